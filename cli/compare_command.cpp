@@ -1,0 +1,125 @@
+#include <fmt/core.h>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/file.h"
+#include "chronormal/workflow/compare.h"
+#include "cli/command.h"
+#include "cli/compare_report.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::vector<std::string> schemes = default_schemes();
+  std::size_t samples = 21;
+  std::string elements = "faces";
+  bool each = false;
+  bool json = false;
+  bool csv = false;
+  bool no_times = false;
+};
+
+std::string footer() {
+  std::string text = "Schemes:\n";
+  for (const SchemeDescription& scheme : scheme_descriptions())
+    text += fmt::format("  {:<24}{}\n", scheme.name, scheme.summary);
+  return text +
+         "\nExamples:\n"
+         "  chronormal compare frames/\n"
+         "  chronormal compare a.obj b.obj --schemes linear,slerp,circle:timed --json\n"
+         "  chronormal compare --each walk/ run/ --sample twist\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
+  CompareOptions compare_options{options.schemes, options.samples, progress.callback("comparing")};
+  auto comparison = compare(input.motion, compare_options);
+  progress.clear();
+  if (!comparison) return comparison.error();
+  return NamedComparison{std::move(input.name), std::move(comparison).value()};
+}
+
+// One motion at a time is in memory.
+Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress) {
+  std::vector<InputOptions> inputs;
+  if (options.each) {
+    for (const std::string& file : options.input.files)
+      inputs.push_back({{file}, {}, options.input.frames_per_second});
+    for (const std::string& sample : options.input.samples)
+      inputs.push_back({{}, {sample}, options.input.frames_per_second});
+    if (inputs.empty()) inputs.push_back(options.input);
+  } else {
+    inputs.push_back(options.input);
+  }
+  std::vector<NamedComparison> comparisons;
+  for (const InputOptions& input : inputs) {
+    auto motion = read_input(input, progress);
+    if (!motion) {
+      const bool could_be_each = !options.each && options.input.samples.size() > 1;
+      Error error = motion.error();
+      if (could_be_each && error.code == ErrorCode::kUsage) error.message += ", or --each to compare them side by side";
+      return error;
+    }
+    auto comparison = compare_one(std::move(motion).value(), options, progress);
+    if (!comparison) return comparison.error();
+    comparisons.push_back(std::move(comparison).value());
+  }
+  return comparisons;
+}
+
+int run(const Options& options) {
+  // Find out about wrong names before anything long begins.
+  for (const std::string& name : options.schemes) {
+    if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
+  }
+  if (const Status output = check_output(options.common.output, options.common.force); !output)
+    return report("compare", output.error());
+
+  Progress progress(options.common.quiet);
+  const auto comparisons = compare_inputs(options, progress);
+  if (!comparisons) return report("compare", comparisons.error());
+
+  const bool with_times = !options.no_times;
+  std::string text;
+  if (options.json)
+    text = compare_json(comparisons.value(), options.each, with_times);
+  else if (options.csv)
+    text = compare_csv(comparisons.value(), with_times);
+  else if (options.each)
+    text = compare_tables_side_by_side(comparisons.value());
+  else
+    text = compare_table(comparisons.value().front(), with_times);
+  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+    return report("compare", written.error());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand(
+      "compare", "Hold ways to interpolate normals against the exact ones, on your mesh");
+  auto options = std::make_shared<Options>();
+  options->input.add_to(*command);
+  command->add_flag("--each", options->each, "every INPUT and --sample is a motion of its own, side by side");
+  command->add_option("--schemes", options->schemes, "which schemes, in which order (comma-separated)")
+      ->delimiter(',')
+      ->type_name("A,B,...")
+      ->allow_extra_args(false);
+  command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}));
+  command->add_option("--elements", options->elements, "which normals: faces")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"faces"}));
+  CLI::Option* json = command->add_flag("--json", options->json, "one JSON object");
+  command->add_flag("--csv", options->csv, "comma-separated values, a line per scheme")->excludes(json);
+  command->add_flag("--no-times", options->no_times, "leave out measured times: the same output on every run");
+  options->common.add_to(*command, false);
+  command->footer(footer());
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,198 @@
+#include "cli/compare_report.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/table.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Align = Table::Align;
+
+double degrees(double radians) { return radians * kDegreesPerRadian; }
+
+std::string counted(std::size_t count, const char* singular, const char* plural) {
+  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
+}
+
+std::string headline(const NamedComparison& input) {
+  const Comparison& c = input.comparison;
+  return fmt::format("{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
+                     counted(c.faces, "face", "faces"), counted(c.segments, "segment", "segments"), c.samples);
+}
+
+// The last part of a path, which is enough above a column.
+std::string short_name(std::string name) {
+  while (name.size() > 1 && name.back() == '/') name.pop_back();
+  const std::size_t slash = name.find_last_of('/');
+  return slash == std::string::npos || slash + 1 == name.size() ? name : name.substr(slash + 1);
+}
+
+Json input_json(const NamedComparison& input) {
+  const Comparison& c = input.comparison;
+  return {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
+}
+
+Json scheme_json(const SchemeComparison& row, bool with_times) {
+  const Quality& q = row.quality;
+  Json json = {{"scheme", row.scheme},
+               {"sum_degrees", degrees(q.sum)},
+               {"relative_to_linear", row.relative_to_linear ? Json(*row.relative_to_linear) : Json()},
+               {"mean_degrees", degrees(q.mean())},
+               {"rms_degrees", degrees(q.rms())},
+               {"max_degrees", degrees(q.max)},
+               {"max_at", {{"segment", q.max_at.segment}, {"element", q.max_at.element}, {"t", q.max_at.t}}},
+               {"degenerate", q.degenerate},
+               {"fallbacks", row.fallbacks},
+               {"flagged", row.flagged}};
+  if (with_times) {
+    json["prepare_ns"] = row.prepare_ns;
+    json["evaluate_ns"] = row.evaluate_ns;
+  }
+  json["bytes"] = row.bytes;
+  json["operations"] = {{"add", row.operations.add},
+                        {"multiply", row.operations.multiply},
+                        {"divide", row.operations.divide},
+                        {"sqrt", row.operations.sqrt},
+                        {"trigonometric", row.operations.trigonometric}};
+  return json;
+}
+
+Json schemes_json(const NamedComparison& input, bool with_times) {
+  Json schemes = Json::array();
+  for (const SchemeComparison& row : input.comparison.schemes) schemes.push_back(scheme_json(row, with_times));
+  return schemes;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
+
+}  // namespace
+
+std::string compare_table(const NamedComparison& input, bool with_times) {
+  Table table;
+  table.add_column("scheme", "", Align::kLeft);
+  table.add_column("sum", "degrees", Align::kRight);
+  table.add_column("vs linear", "ratio", Align::kRight);
+  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("rms", "degrees", Align::kRight);
+  table.add_column("max", "degrees", Align::kRight);
+  const bool several_segments = input.comparison.segments > 1;
+  if (several_segments) table.add_column("worst at", "segment", Align::kRight);
+  table.add_column(several_segments ? "" : "worst at", "face", Align::kRight);
+  table.add_column("", "t", Align::kRight);
+  table.add_column("memory", "B/face", Align::kRight);
+  if (with_times) {
+    table.add_column("prepare", "ns/face", Align::kRight);
+    table.add_column("evaluate", "ns/face", Align::kRight);
+  }
+
+  std::size_t degenerate = 0;
+  std::string notes;
+  const std::size_t elements = input.comparison.faces * input.comparison.segments;
+  const auto share = [elements](std::size_t count) {
+    return fmt::format("{} of {} faces ({:.2f} %)", grouped(count), grouped(elements),
+                       100 * static_cast<double>(count) / static_cast<double>(elements));
+  };
+  for (const SchemeComparison& row : input.comparison.schemes) {
+    const Quality& q = row.quality;
+    std::vector<std::string> cells = {row.scheme,
+                                      grouped_sum(degrees(q.sum)),
+                                      ratio_cell(row.relative_to_linear),
+                                      four_decimals(degrees(q.mean())),
+                                      four_decimals(degrees(q.rms())),
+                                      four_decimals(degrees(q.max))};
+    if (several_segments) cells.push_back(q.max > 0 ? grouped(q.max_at.segment) : "-");
+    cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
+    cells.push_back(q.max > 0 ? fmt::format("{:.2f}", q.max_at.t) : "-");
+    cells.push_back(fmt::format("{:.0f}", row.bytes));
+    if (with_times) {
+      cells.push_back(fmt::format("{:.0f}", row.prepare_ns));
+      cells.push_back(fmt::format("{:.1f}", row.evaluate_ns));
+    }
+    table.add_row(std::move(cells));
+
+    degenerate = std::max(degenerate, q.degenerate);
+    if (row.flagged > 0) notes += fmt::format("{}: {} evaluated in double\n", row.scheme, share(row.flagged));
+    if (row.fallbacks > 0) notes += fmt::format("{}: {} with a stated fallback\n", row.scheme, share(row.fallbacks));
+  }
+  if (degenerate > 0)
+    notes += fmt::format("degenerate: {} without an exact normal left out\n",
+                         counted(degenerate, "(face, sample) pair", "(face, sample) pairs"));
+  return headline(input) + '\n' + table.text() + (notes.empty() ? "" : "\n" + notes);
+}
+
+std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs) {
+  std::string text;
+  for (const NamedComparison& input : inputs) text += headline(input);
+  Table table;
+  table.add_column("scheme", "", Align::kLeft);
+  for (const NamedComparison& input : inputs) {
+    table.add_column(short_name(input.name), "sum, degrees", Align::kRight);
+    table.add_column("", "vs linear", Align::kRight);
+  }
+  const std::size_t rows = inputs.front().comparison.schemes.size();
+  for (std::size_t r = 0; r < rows; ++r) {
+    std::vector<std::string> cells = {inputs.front().comparison.schemes[r].scheme};
+    for (const NamedComparison& input : inputs) {
+      const SchemeComparison& row = input.comparison.schemes[r];
+      cells.push_back(grouped_sum(degrees(row.quality.sum)));
+      cells.push_back(ratio_cell(row.relative_to_linear));
+    }
+    table.add_row(std::move(cells));
+  }
+  return text + '\n' + table.text();
+}
+
+std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
+  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "compare"}, {"schema", 1}};
+  if (!several) json["input"] = input_json(inputs.front());
+  json["elements"] = "faces";
+  json["samples"] = inputs.front().comparison.samples;
+  if (several) {
+    json["inputs"] = Json::array();
+    for (const NamedComparison& input : inputs)
+      json["inputs"].push_back({{"input", input_json(input)}, {"schemes", schemes_json(input, with_times)}});
+  } else {
+    json["schemes"] = schemes_json(inputs.front(), with_times);
+  }
+  // File names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {
+  std::string text =
+      "input,vertices,faces,segments,elements,samples,scheme,sum_degrees,relative_to_linear,mean_degrees,rms_degrees,"
+      "max_degrees,max_segment,max_element,max_t,degenerate,fallbacks,flagged,";
+  if (with_times) text += "prepare_ns,evaluate_ns,";
+  text += "bytes,add,multiply,divide,sqrt,trigonometric\n";
+  for (const NamedComparison& input : inputs) {
+    const Comparison& c = input.comparison;
+    for (const SchemeComparison& row : c.schemes) {
+      const Quality& q = row.quality;
+      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name), c.vertices,
+                          c.faces, c.segments, c.samples, csv_field(row.scheme), degrees(q.sum),
+                          row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "", degrees(q.mean()),
+                          degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element, q.max_at.t,
+                          q.degenerate, row.fallbacks, row.flagged);
+      if (with_times) text += fmt::format("{},{},", row.prepare_ns, row.evaluate_ns);
+      const OperationCounts& o = row.operations;
+      text += fmt::format("{},{},{},{},{},{}\n", row.bytes, o.add, o.multiply, o.divide, o.sqrt, o.trigonometric);
+    }
+  }
+  return text;
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,73 @@
+#include "cli/table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace chronormal::cli {
+
+void Table::add_column(std::string title, std::string unit, Align align) {
+  assert(rows_.empty());
+  columns_.push_back({std::move(title), std::move(unit), align});
+}
+
+void Table::add_row(std::vector<std::string> cells) {
+  assert(cells.size() == columns_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string Table::text() const {
+  std::vector<std::vector<std::string>> lines(2);
+  for (const Column& column : columns_) {
+    lines[0].push_back(column.title);
+    lines[1].push_back(column.unit);
+  }
+  const bool has_units = std::any_of(lines[1].begin(), lines[1].end(), [](const auto& unit) { return !unit.empty(); });
+  if (!has_units) lines.pop_back();
+  lines.insert(lines.end(), rows_.begin(), rows_.end());
+
+  std::vector<std::size_t> widths(columns_.size(), 0);
+  for (const auto& line : lines) {
+    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+  }
+  std::string text;
+  for (const auto& line : lines) {
+    std::string row;
+    for (std::size_t c = 0; c < line.size(); ++c) {
+      if (c > 0) row += "  ";
+      row += columns_[c].align == Align::kLeft ? fmt::format("{:<{}}", line[c], widths[c])
+                                               : fmt::format("{:>{}}", line[c], widths[c]);
+    }
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + '\n';
+  }
+  return text;
+}
+
+std::string grouped(std::size_t value) {
+  std::string digits = fmt::format("{}", value);
+  for (std::size_t i = digits.size(); i > 3;) {
+    i -= 3;
+    digits.insert(i, 1, ',');
+  }
+  return digits;
+}
+
+std::string four_decimals(double value) {
+  if (value == 0) return "0";
+  return value < 5e-4 ? fmt::format("{:.1e}", value) : fmt::format("{:.4f}", value);
+}
+
+std::string grouped_sum(double value) {
+  if (value == 0) return "0";
+  if (value < 0.1) return fmt::format("{:.1e}", value);
+  const double tenths = std::round(value * 10);
+  if (!(tenths < 9e15)) return fmt::format("{:.4e}", value);
+  const auto whole = static_cast<std::size_t>(tenths);
+  return fmt::format("{}.{}", grouped(whole / 10), whole % 10);
+}
+
+}  // namespace chronormal::cli

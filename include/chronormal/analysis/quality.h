@@ -1,0 +1,49 @@
+/// How far interpolated normals are from exact ones: the measure of the paper's Table 1.
+///
+/// For one element, the angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed; for a
+/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero, or for which
+/// the scheme has no direction, is counted as degenerate and left out.
+///
+/// Units      radians inside; what is shown to people is in degrees.
+#ifndef CHRONORMAL_ANALYSIS_QUALITY_H_
+#define CHRONORMAL_ANALYSIS_QUALITY_H_
+
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+
+namespace chronormal {
+
+inline constexpr double kDegreesPerRadian = 57.295779513082320877;
+
+/// Where an angular error was found.
+struct ErrorPlace {
+  std::size_t segment = 0;
+  std::size_t element = 0;
+  double t = 0;
+};
+
+struct Quality {
+  double sum = 0;             ///< of the angles, radians: q and Q of the paper
+  double sum_of_squares = 0;  ///< radians squared
+  double max = 0;             ///< radians
+  ErrorPlace max_at;          ///< the first place of the largest angle
+  std::size_t count = 0;      ///< pairs that were summed
+  std::size_t degenerate = 0; ///< pairs that were left out
+
+  [[nodiscard]] double mean() const noexcept;  ///< radians; 0 where nothing was summed
+  [[nodiscard]] double rms() const noexcept;   ///< radians
+
+  /// Adds the errors of one batch: the angles between exact[i] (any length) and normals[i], for the elements
+  /// first_element + i of one segment at one t.
+  void add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first);
+
+  /// Adds what was measured elsewhere. Adding the same parts in the same order gives the same bits.
+  void add(const Quality& other);
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_ANALYSIS_QUALITY_H_

@@ -1,0 +1,150 @@
+/// Small polynomials over [0, 1], in Bernstein form and in power form.
+///
+/// Bernstein<T, N> has the coefficients b[0] ... b[N] of
+///     p(t) = sum_k  C(N, k) (1-t)^(N-k) t^k  b[k]
+/// where T is a scalar or a Vec3. The end coefficients are the end values, every value is a convex combination of the
+/// coefficients (so they bound the polynomial), and evaluation loses no digits at either end. Power<T, N> has
+/// p(t) = sum_k a[k] t^k, which is cheaper by hand and worse near t = 1.
+///
+/// Source: Farouki, The Bernstein polynomial basis: a centennial retrospective (2012).
+#ifndef CHRONORMAL_CORE_POLYNOMIAL_H_
+#define CHRONORMAL_CORE_POLYNOMIAL_H_
+
+#include <array>
+#include <cassert>
+#include <cstddef>
+
+namespace chronormal {
+
+template <class T, std::size_t N>
+using Bernstein = std::array<T, N + 1>;
+
+template <class T, std::size_t N>
+struct Power {
+  std::array<T, N + 1> a;
+};
+
+/// C(n, k) for small n.
+[[nodiscard]] constexpr double binomial(std::size_t n, std::size_t k) noexcept {
+  double result = 1;
+  for (std::size_t i = 0; i < k; ++i) result = result * static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return result;
+}
+
+/// The two halves of p at t: the polynomials over [0, t] and [t, 1], each again over a parameter in [0, 1].
+/// By de Casteljau's algorithm, N (N+1) / 2 linear interpolations.
+template <class T, std::size_t N>
+struct Halves {
+  Bernstein<T, N> before, after;
+};
+template <class T, std::size_t M>
+[[nodiscard]] constexpr Halves<T, M - 1> split(const std::array<T, M>& p, double t) {
+  Halves<T, M - 1> halves;
+  std::array<T, M> row = p;
+  for (std::size_t level = 0; level < M; ++level) {
+    halves.before[level] = row[0];
+    halves.after[M - 1 - level] = row[M - 1 - level];
+    for (std::size_t k = 0; k + level + 1 < M; ++k) row[k] = (1 - t) * row[k] + t * row[k + 1];
+  }
+  return halves;
+}
+
+/// p(t), by de Casteljau's algorithm. Exact at t = 0 and t = 1.
+template <class T, std::size_t M>
+[[nodiscard]] constexpr T evaluate(const std::array<T, M>& p, double t) {
+  return split(p, t).before[M - 1];
+}
+
+/// p over the interval [t0, t1], as a polynomial over [0, 1].
+/// 0 <= t0 < t1 <= 1
+template <class T, std::size_t M>
+[[nodiscard]] constexpr std::array<T, M> restrict_to(const std::array<T, M>& p, double t0, double t1) {
+  assert(0 <= t0 && t0 < t1 && t1 <= 1);
+  return split(split(p, t1).before, t0 / t1).after;
+}
+
+/// The same polynomial in power form. Cancels near t = 1: evaluate the Bernstein form where digits matter.
+template <class T, std::size_t M>
+[[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
+  Power<T, M - 1> power;
+  std::array<T, M> differences = p;
+  for (std::size_t k = 0; k < M; ++k) {
+    power.a[k] = binomial(M - 1, k) * differences[0];
+    for (std::size_t i = 0; i + k + 1 < M; ++i) differences[i] = differences[i + 1] - differences[i];
+  }
+  return power;
+}
+
+/// The same polynomial in Bernstein form.
+template <class T, std::size_t N>
+[[nodiscard]] constexpr Bernstein<T, N> to_bernstein(const Power<T, N>& p) {
+  Bernstein<T, N> b;
+  for (std::size_t k = 0; k <= N; ++k) {
+    b[k] = p.a[0];
+    for (std::size_t i = 1; i <= k; ++i) b[k] = b[k] + (binomial(k, i) / binomial(N, i)) * p.a[i];
+  }
+  return b;
+}
+
+/// p(t) by Horner's scheme: N multiplications and N additions.
+template <class T, std::size_t N>
+[[nodiscard]] constexpr T evaluate(const Power<T, N>& p, double t) {
+  T value = p.a[N];
+  for (std::size_t k = N; k > 0; --k) value = t * value + p.a[k - 1];
+  return value;
+}
+
+/// The roots of a polynomial of degree up to N in [0, 1].
+template <std::size_t N>
+struct Roots {
+  std::array<double, N> t{};     ///< ascending; a root of even multiplicity may appear once or twice
+  std::size_t count = 0;
+  bool everywhere = false;       ///< p is zero for all t; count is 0
+};
+
+namespace detail {
+
+/// Isolates by the variation of signs (Descartes), subdividing until an interval is as wide as rounding.
+template <std::size_t M>
+void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
+  std::size_t variations = 0;
+  double last = 0, size = 0;
+  for (const double b : p) {
+    if (b != 0 && last != 0 && (b < 0) != (last < 0)) ++variations;
+    if (b != 0) last = b;
+    size = size < b ? b : (size < -b ? -b : size);
+  }
+  // A zero at either end is a root that sign variations do not show; neighbours share it, so take it once.
+  const auto add = [&roots](double t) {
+    if (roots.count < M - 1 && (roots.count == 0 || roots.t[roots.count - 1] + 1e-14 < t)) roots.t[roots.count++] = t;
+  };
+  if (p[0] == 0) add(t0);
+  if (variations > 0) {
+    const double middle = t0 + (t1 - t0) / 2;
+    if (t1 - t0 < 1e-15 || middle <= t0 || middle >= t1) {
+      add(middle);
+    } else {
+      const Halves<double, M - 1> halves = split(p, 0.5);
+      find_roots(halves.before, t0, middle, roots);
+      find_roots(halves.after, middle, t1, roots);
+    }
+  }
+  if (p[M - 1] == 0 && size != 0) add(t1);
+}
+
+}  // namespace detail
+
+/// Finds the roots of p in [0, 1], ends included, to 1e-15. A double root that rounding has lifted off the axis may be
+/// missed, or found as two: a decision that hangs on it needs exact arithmetic.
+template <std::size_t M>
+[[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
+  Roots<M - 1> roots;
+  roots.everywhere = true;
+  for (const double b : p) roots.everywhere &= b == 0;
+  if (!roots.everywhere) detail::find_roots(p, 0, 1, roots);
+  return roots;
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_POLYNOMIAL_H_

@@ -1,0 +1,75 @@
+/// Errors as values: what every function that meets data from outside returns.
+///
+/// An Error has a code (the exit code of the program follows from it), a place and a message. The place says where
+/// to look ("walk_3.obj, line 17" or "frame 2, vertex 5"); the message says what is wrong and, where it helps, what
+/// to do. Together they read as one line:
+///
+///     walk_3.obj, line 17: the face names vertex 9, but the file has 8 vertices
+///
+/// Broken preconditions inside the program are not errors of this kind: they assert.
+#ifndef CHRONORMAL_CORE_RESULT_H_
+#define CHRONORMAL_CORE_RESULT_H_
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace chronormal {
+
+/// What kind of failure it was. The values are the exit codes of the program.
+enum class ErrorCode {
+  kFailed = 1,        ///< reading, writing, or an internal failure
+  kUsage = 2,         ///< the caller asked for something that does not exist
+  kInvalidInput = 3,  ///< the data are wrong; the place says where
+};
+
+struct Error {
+  ErrorCode code = ErrorCode::kFailed;
+  std::string place;    ///< file and line, byte, frame, index; may be empty
+  std::string message;  ///< one sentence without a full stop
+
+  /// Returns "place: message", or the message alone where there is no place.
+  [[nodiscard]] std::string text() const { return place.empty() ? message : place + ": " + message; }
+};
+
+/// Builds an error of invalid input, the kind that parsers return.
+[[nodiscard]] inline Error invalid_input(std::string place, std::string message) {
+  return Error{ErrorCode::kInvalidInput, std::move(place), std::move(message)};
+}
+
+/// Either a value or the Error that prevented it. Test it before you take either.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor): `return value;` is the use
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor): `return error;` too
+
+  [[nodiscard]] bool ok() const noexcept { return state_.index() == 0; }
+  explicit operator bool() const noexcept { return ok(); }
+
+  /// The value. Precondition: ok().
+  [[nodiscard]] T& value() & noexcept { return *checked(std::get_if<0>(&state_)); }
+  [[nodiscard]] const T& value() const& noexcept { return *checked(std::get_if<0>(&state_)); }
+  [[nodiscard]] T&& value() && noexcept { return std::move(*checked(std::get_if<0>(&state_))); }
+
+  /// The error. Precondition: not ok().
+  [[nodiscard]] const Error& error() const noexcept { return *checked(std::get_if<1>(&state_)); }
+
+ private:
+  template <class P>
+  static P* checked(P* pointer) noexcept {
+    assert(pointer != nullptr);
+    return pointer;
+  }
+
+  std::variant<T, Error> state_;
+};
+
+/// A Result that carries nothing but success: `return Success{};`
+struct Success {};
+using Status = Result<Success>;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_RESULT_H_

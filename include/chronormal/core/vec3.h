@@ -1,0 +1,89 @@
+/// Three-component vectors over any scalar.
+///
+/// Vec3f holds data (positions, results), Vec3d holds what must be right (control normals while they are made,
+/// angles). The scalar is a template parameter so that the very code which runs can also be instantiated with a
+/// scalar that counts its operations (schemes/scheme.h reports them).
+///
+/// Everything is spelt out as single additions and multiplications, in a fixed order, so that every compiler gives
+/// the same bits (with -ffp-contract=off, which the build sets).
+#ifndef CHRONORMAL_CORE_VEC3_H_
+#define CHRONORMAL_CORE_VEC3_H_
+
+#include <cmath>
+
+namespace chronormal {
+
+template <class S>
+struct Vec3 {
+  S x{}, y{}, z{};
+
+  friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  friend constexpr Vec3 operator*(const S& s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend constexpr bool operator==(const Vec3& a, const Vec3& b) = default;
+};
+
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+
+template <class S>
+[[nodiscard]] constexpr S dot(const Vec3<S>& a, const Vec3<S>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class S>
+[[nodiscard]] constexpr Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// The point of the line from a (t = 0) to b (t = 1).
+template <class S>
+[[nodiscard]] constexpr Vec3<S> lerp(const Vec3<S>& a, const Vec3<S>& b, const S& t) {
+  return (S(1) - t) * a + t * b;
+}
+
+[[nodiscard]] constexpr Vec3d to_double(const Vec3f& a) { return {a.x, a.y, a.z}; }
+[[nodiscard]] constexpr Vec3f to_float(const Vec3d& a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
+/// The largest absolute component: a length that neither overflows nor underflows.
+[[nodiscard]] inline double max_abs(const Vec3d& a) noexcept {
+  return std::fmax(std::fabs(a.x), std::fmax(std::fabs(a.y), std::fabs(a.z)));
+}
+
+/// Length of a, without overflow or underflow in between.
+[[nodiscard]] inline double length(const Vec3d& a) noexcept {
+  const double scale = max_abs(a);
+  if (scale == 0) return 0;
+  const Vec3d b{a.x / scale, a.y / scale, a.z / scale};
+  return scale * std::sqrt(dot(b, b));
+}
+
+/// a scaled to length 1, and (0, 0, 0) for the zero vector. Goes through the largest component, so that vectors of
+/// any finite length are scaled right.
+[[nodiscard]] inline Vec3d unit(const Vec3d& a) noexcept {
+  const double scale = max_abs(a);
+  if (scale == 0) return {};
+  const Vec3d b{a.x / scale, a.y / scale, a.z / scale};
+  return (1 / std::sqrt(dot(b, b))) * b;
+}
+
+/// A unit vector perpendicular to the unit vector u: a fixed choice, the same for the same u.
+[[nodiscard]] inline Vec3d any_perpendicular(const Vec3d& u) noexcept {
+  const double x = std::fabs(u.x), y = std::fabs(u.y), z = std::fabs(u.z);
+  if (x <= y && x <= z) return unit(cross(u, Vec3d{1, 0, 0}));
+  if (y <= z) return unit(cross(u, Vec3d{0, 1, 0}));
+  return unit(cross(u, Vec3d{0, 0, 1}));
+}
+
+/// Angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. By atan2, never by acos, which loses
+/// all angles below 1e-8 in double and below 3e-4 in float.
+[[nodiscard]] inline double angle_between(const Vec3d& a, const Vec3d& b) noexcept {
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_VEC3_H_

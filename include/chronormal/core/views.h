@@ -1,0 +1,76 @@
+/// Views of memory that the caller owns.
+///
+/// VectorView names n vectors without copying them, in either of the two layouts that meshes come in:
+///
+///     planes   x0 x1 x2 ...   y0 y1 y2 ...   z0 z1 z2 ...      three arrays, stride 1
+///     packed   x0 y0 z0  x1 y1 z1  x2 y2 z2 ...                one array of shape (n, 3), stride 3
+///
+/// Vector i has the components x[i * stride], y[i * stride], z[i * stride]. A view is pointer + count + stride, is
+/// passed by value, and is never kept by the function that it is passed to unless that function says so.
+#ifndef CHRONORMAL_CORE_VIEWS_H_
+#define CHRONORMAL_CORE_VIEWS_H_
+
+#include <cassert>
+#include <cstddef>
+#include <type_traits>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// Half-open range of element indices: first, first + 1, ..., first + count - 1.
+struct IndexRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+
+  [[nodiscard]] constexpr std::size_t end() const noexcept { return first + count; }
+};
+
+/// T is float, const float, double or const double.
+template <class T>
+struct VectorView {
+  using Scalar = std::remove_const_t<T>;
+
+  T* x = nullptr;
+  T* y = nullptr;
+  T* z = nullptr;
+  std::size_t count = 0;
+  std::size_t stride = 1;  ///< in scalars, from one vector to the next
+
+  [[nodiscard]] static VectorView planes(T* x, T* y, T* z, std::size_t count) noexcept { return {x, y, z, count, 1}; }
+  [[nodiscard]] static VectorView packed(T* xyz, std::size_t count) noexcept {
+    if (count == 0) return {};
+    return {xyz, xyz + 1, xyz + 2, count, 3};
+  }
+
+  [[nodiscard]] Vec3<Scalar> operator[](std::size_t i) const noexcept {
+    assert(i < count);
+    return {x[i * stride], y[i * stride], z[i * stride]};
+  }
+
+  void set(std::size_t i, const Vec3<Scalar>& value) const noexcept
+    requires(!std::is_const_v<T>)
+  {
+    assert(i < count);
+    x[i * stride] = value.x;
+    y[i * stride] = value.y;
+    z[i * stride] = value.z;
+  }
+
+  /// The vectors of a range, as a view of their own.
+  [[nodiscard]] VectorView part(IndexRange range) const noexcept {
+    assert(range.end() <= count);
+    const std::size_t offset = range.first * stride;
+    return {x + offset, y + offset, z + offset, range.count, stride};
+  }
+
+  operator VectorView<const T>() const noexcept  // NOLINT(google-explicit-constructor): adds const only
+    requires(!std::is_const_v<T>)
+  {
+    return {x, y, z, count, stride};
+  }
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_VIEWS_H_

@@ -1,0 +1,57 @@
+/// A mesh that deforms: keyframes of vertex positions over one topology, and the segments between them.
+///
+/// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A
+/// sequence of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have
+/// 0 -> 1 and 0 -> 2. Both are a Motion, and nothing after this file asks which it was.
+///
+/// Shapes     V = vertices; a keyframe has V positions, packed as (V, 3) float32.
+/// Units      positions: any length; times: seconds, double.
+#ifndef CHRONORMAL_MOTION_MOTION_H_
+#define CHRONORMAL_MOTION_MOTION_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/topology.h"
+
+namespace chronormal {
+
+/// One straight piece of a motion, as a view: what control normals and schemes are prepared from.
+/// The Motion that it comes from must outlive it.
+struct Segment {
+  const Topology* topology = nullptr;
+  VectorView<const float> from;  ///< positions at t = 0, one per vertex
+  VectorView<const float> to;    ///< positions at t = 1
+  double start_time = 0;         ///< seconds, at t = 0
+  double end_time = 1;           ///< seconds, at t = 1
+  std::size_t index = 0;         ///< which segment of its motion it is
+};
+
+struct Motion {
+  struct Keyframe {
+    std::vector<float> positions;  ///< (V, 3)
+    double time = 0;               ///< seconds
+    std::string name;              ///< for messages: the file that it came from, or empty
+  };
+  struct SegmentKeys {
+    std::size_t from = 0;  ///< index of the keyframe at t = 0
+    std::size_t to = 0;    ///< index of the keyframe at t = 1
+  };
+
+  Topology topology;
+  std::vector<Keyframe> keyframes;
+  std::vector<SegmentKeys> segments;
+
+  /// View of one segment. Precondition: the motion is valid (motion/validate.h) and i < segments.size().
+  [[nodiscard]] Segment segment(std::size_t i) const noexcept;
+
+  /// Makes one segment between every two neighbouring keyframes.
+  void connect_as_sequence();
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_MOTION_MOTION_H_

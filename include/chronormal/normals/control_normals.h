@@ -1,0 +1,67 @@
+/// Face normals as polynomials in time.
+///
+/// Inside one segment every vertex moves on a straight line, so the normal of the triangle (a, b, c)
+///     n(t) = (b(t) - a(t)) x (c(t) - a(t))                                    (eq. 1 of docs/theory.md)
+/// is a quadratic in each component. It is kept in Bernstein form,
+///     n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1                                  (eq. 5)
+/// by three control normals: n0 and n1 are the normals at the ends, m is not the normal in the middle but the middle
+/// control point. |n(t)| is twice the area of the face, so sums of n(t) are area-weighted; the vector area of a
+/// polygon, planar or not, is such a sum over a fan of its triangles, and a quadratic too.
+///
+/// Units      positions: any length L; control normals: L^2; t: fraction of the segment, [0, 1].
+/// Threads    everything here is pure: no allocation, no throw, the same bits on every compiler.
+#ifndef CHRONORMAL_NORMALS_CONTROL_NORMALS_H_
+#define CHRONORMAL_NORMALS_CONTROL_NORMALS_H_
+
+#include <span>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// The control normals of one element: a face now, a sum of faces later.
+struct ControlNormals {
+  Vec3d n0, m, n1;
+
+  friend ControlNormals operator+(const ControlNormals& a, const ControlNormals& b) {
+    return {a.n0 + b.n0, a.m + b.m, a.n1 + b.n1};
+  }
+  friend bool operator==(const ControlNormals&, const ControlNormals&) = default;
+};
+
+/// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle.
+/// A control normal that is smaller than the rounding error of its own products is written as exactly zero, so that
+/// collinear corners give zero and not a direction made of noise.
+/// result must have faces.count elements; faces must lie inside the topology
+void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
+
+/// The true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, a face of which two vertices move alike
+/// has at most 1, and so have others (shear within the plane), so the coefficients are tested, not the motion. A
+/// coefficient below 2^-28 of the largest control normal is rounding of the float32 positions and counts as zero.
+[[nodiscard]] int degree(const ControlNormals& normals) noexcept;
+
+/// n(t) itself, by eq. 5. A convex combination: its error is a few rounding errors of the largest control normal.
+[[nodiscard]] Vec3d normal_at(const ControlNormals& normals, double t) noexcept;
+
+/// Whether a direction could be given, and how.
+enum class Direction {
+  kRegular,      ///< n(t) is not zero
+  kLimit,        ///< n(t) = 0, and both sides (or the only side, at an end) agree on the limit
+  kDiscontinuous,///< n(t) = 0, and the two sides are antipodal: the limit from before is given, a stated fallback
+  kNone,         ///< n is zero in the whole segment: (0, 0, 0) is given
+};
+
+struct UnitNormal {
+  Vec3d vector;
+  Direction direction = Direction::kRegular;
+};
+
+/// n(t) / |n(t)| in double, with every degenerate case defined as named by Direction. At t = 0 the limit is taken from
+/// after, elsewhere from before. n(t) counts as zero below 8 rounding errors of its control normals.
+[[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_NORMALS_H_

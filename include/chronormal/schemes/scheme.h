@@ -1,0 +1,94 @@
+/// Ways to interpolate normals over a segment: those of the paper, and better ones.
+///
+/// A scheme is prepared from a block of elements and then fills unit normals at any t, in any order of t. It works on
+/// whole blocks: one virtual call per block and t, none per element.
+///
+///     auto scheme = make_scheme("circle:timed").value();
+///     scheme->prepare({segment, faces, control_normals});
+///     scheme->evaluate(0.25, VectorView<float>::packed(normals.data(), faces.count));
+///
+/// Names      recompute, polynomial, rational, linear, quadratic, cubic, lagrange:K, linear:scaled, slerp,
+///            decasteljau:K, quaternion:matrix|edge|polar|random:SEED|optimal, circle, circle:timed.
+///            docs/theory.md, section 4, derives each of them.
+/// Ends       every scheme starts from the exact unit normals of the block, with their limits where they vanish.
+/// Degenerate An element whose normal is zero in the whole segment gets (0, 0, 0). Everything else gets a finite unit
+///            vector: where a scheme is not defined (antipodal ends, singular frames, a node at a collapse) it has a
+///            stated fallback, and counts it. NaN never comes out.
+/// Threads    one scheme object belongs to one thread at a time; evaluate() is const and may be shared.
+#ifndef CHRONORMAL_SCHEMES_SCHEME_H_
+#define CHRONORMAL_SCHEMES_SCHEME_H_
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+
+namespace chronormal {
+
+/// What a scheme is prepared from: some elements of one segment, and their control normals.
+struct ElementBlock {
+  const Segment* segment = nullptr;
+  IndexRange elements;                      ///< which faces
+  std::span<const ControlNormals> normals;  ///< one per element; may be empty for `recompute`
+};
+
+/// Elementary operations of one evaluation of one element at random t. What all elements of a block share at one t
+/// (powers of t, Bernstein or Lagrange weights) is computed once per block and not counted. A sine with its cosine
+/// counts as one trigonometric operation, and so does an arc tangent.
+struct OperationCounts {
+  int add = 0;
+  int multiply = 0;
+  int divide = 0;
+  int sqrt = 0;
+  int trigonometric = 0;
+
+  friend bool operator==(const OperationCounts&, const OperationCounts&) = default;
+};
+
+class Scheme {
+ public:
+  Scheme() = default;
+  Scheme(const Scheme&) = delete;
+  Scheme& operator=(const Scheme&) = delete;
+  virtual ~Scheme() = default;
+
+  /// Takes a new block; forgets the one before. Allocates what it keeps. The block and what it views must stay alive
+  /// until the last evaluate(): `recompute` reads the positions again.
+  virtual void prepare(const ElementBlock& block) = 0;
+
+  /// Writes one unit normal per element, at local t in [0, 1]. Returns how many (0, 0, 0) were written.
+  /// result must have as many vectors as the block has elements
+  virtual std::size_t evaluate(double t, VectorView<float> result) const noexcept = 0;
+
+  /// Whether prepare() reads the control normals of the block.
+  [[nodiscard]] virtual bool uses_control_normals() const noexcept { return true; }
+  /// How many elements of the block needed a stated fallback when they were prepared.
+  [[nodiscard]] virtual std::size_t fallback_count() const noexcept = 0;
+  /// How many elements of the block are evaluated in double, to keep the promised accuracy.
+  [[nodiscard]] virtual std::size_t flagged_count() const noexcept { return 0; }
+  /// Memory that an evaluation of the block reads, in bytes.
+  [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
+  /// Operations per element and evaluation, counted on the code that runs.
+  [[nodiscard]] virtual OperationCounts operations() const = 0;
+};
+
+/// Makes a scheme from its name. Errors: kUsage with the names that there are, or the range of a parameter.
+[[nodiscard]] Result<std::unique_ptr<Scheme>> make_scheme(std::string_view name);
+
+struct SchemeDescription {
+  std::string_view name;     ///< as make_scheme() takes it; K and SEED stand for a number
+  std::string_view summary;  ///< one line
+};
+
+/// All schemes, in the order of docs/theory.md.
+[[nodiscard]] std::span<const SchemeDescription> scheme_descriptions() noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_SCHEMES_SCHEME_H_

@@ -1,0 +1,60 @@
+/// The paper's Table 1 for any motion: every scheme held against the exact normals.
+#ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
+#define CHRONORMAL_WORKFLOW_COMPARE_H_
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/schemes/scheme.h"
+
+namespace chronormal {
+
+/// The rows of the paper's table, and ours.
+[[nodiscard]] std::vector<std::string> default_schemes();
+
+struct CompareOptions {
+  std::vector<std::string> schemes = default_schemes();  ///< names, in the order of the rows
+  std::size_t samples = 21;                              ///< per segment, ends included; 2 or more
+  /// Told how much of the work is done, from the calling thread; may be empty.
+  std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+/// One scheme on one motion. Costs are per element: time is the sum over threads, on blocks that stay in cache.
+struct SchemeComparison {
+  std::string scheme;
+  Quality quality;
+  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing where linear has no error at all
+  std::size_t fallbacks = 0;                 ///< (element, segment) pairs prepared with a stated fallback
+  std::size_t flagged = 0;                   ///< (element, segment) pairs evaluated in double
+  double prepare_ns = 0;                     ///< control normals included, where the scheme uses them
+  double evaluate_ns = 0;                    ///< per sample
+  double bytes = 0;                          ///< read by an evaluation
+  OperationCounts operations;
+};
+
+struct Comparison {
+  std::size_t vertices = 0;
+  std::size_t faces = 0;
+  std::size_t segments = 0;
+  std::size_t samples = 0;
+  std::vector<SchemeComparison> schemes;
+};
+
+/// Compares schemes on the faces of a motion, over all its segments.
+///
+/// Errors     kUsage for a scheme that does not exist or fewer than 2 samples.
+/// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
+/// Memory     a few MB beyond the motion, whatever its size.
+/// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
+/// Precondition: the motion is valid (motion/validate.h)
+[[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_COMPARE_H_

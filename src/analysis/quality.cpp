@@ -1,0 +1,48 @@
+#include "chronormal/analysis/quality.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace chronormal {
+
+double Quality::mean() const noexcept { return count == 0 ? 0 : sum / static_cast<double>(count); }
+
+double Quality::rms() const noexcept {
+  return count == 0 ? 0 : std::sqrt(sum_of_squares / static_cast<double>(count));
+}
+
+void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first) {
+  assert(exact.size() == normals.count);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const Vec3d u = to_double(normals[i]);
+    // Through the largest component of the exact normal, whose length is an area of any size.
+    const double scale = max_abs(exact[i]);
+    if (scale == 0 || u == Vec3d{}) {
+      ++degenerate;
+      continue;
+    }
+    const Vec3d n{exact[i].x / scale, exact[i].y / scale, exact[i].z / scale};
+    const Vec3d x = cross(n, u);
+    const double angle = std::atan2(std::sqrt(dot(x, x)), dot(n, u));
+    sum += angle;
+    sum_of_squares += angle * angle;
+    ++count;
+    if (angle > max) {
+      max = angle;
+      max_at = {first.segment, first.element + i, first.t};
+    }
+  }
+}
+
+void Quality::add(const Quality& other) {
+  sum += other.sum;
+  sum_of_squares += other.sum_of_squares;
+  count += other.count;
+  degenerate += other.degenerate;
+  if (other.max > max) {
+    max = other.max;
+    max_at = other.max_at;
+  }
+}
+
+}  // namespace chronormal

@@ -1,0 +1,168 @@
+#include "chronormal/io/builtin_morphs.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+constexpr std::array kMorphs = {
+    BuiltinMorph{"cloth", "a sheet with a wave running through it, 4 segments, 35,112 faces"},
+    BuiltinMorph{"bend", "a tube bent by a quarter turn, 44,700 faces"},
+    BuiltinMorph{"twist", "a square column twisted by 120 degrees, 15,200 faces"},
+    BuiltinMorph{"eversion", "a sphere that collapses and turns inside out, 21,000 faces"},
+    BuiltinMorph{"soup", "independent random triangles at both ends, 5,000 faces"},
+};
+
+// A grid of (columns + 1) x (rows + 1) points, each quad two triangles; `closed` joins the last column to the first.
+struct Grid {
+  std::size_t columns, rows;
+  bool closed;
+
+  [[nodiscard]] std::size_t points_per_row() const { return closed ? columns : columns + 1; }
+  [[nodiscard]] std::size_t vertex_count() const { return points_per_row() * (rows + 1); }
+
+  [[nodiscard]] Topology topology() const {
+    std::vector<std::uint32_t> corners;
+    corners.reserve(6 * columns * rows);
+    const auto vertex = [this](std::size_t column, std::size_t row) {
+      return static_cast<std::uint32_t>(row * points_per_row() + column % points_per_row());
+    };
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t column = 0; column < columns; ++column) {
+        const std::uint32_t a = vertex(column, row), b = vertex(column + 1, row);
+        const std::uint32_t c = vertex(column + 1, row + 1), d = vertex(column, row + 1);
+        corners.insert(corners.end(), {a, b, c, a, c, d});
+      }
+    }
+    return Topology::triangles(vertex_count(), std::move(corners)).value();
+  }
+
+  // The positions point(u, v) with u, v in [0, 1] over columns and rows.
+  template <class Point>
+  [[nodiscard]] Motion::Keyframe keyframe(double time, Point point) const {
+    Motion::Keyframe keyframe{{}, time, {}};
+    keyframe.positions.reserve(3 * vertex_count());
+    for (std::size_t row = 0; row <= rows; ++row) {
+      for (std::size_t column = 0; column < points_per_row(); ++column) {
+        const Vec3f p = to_float(point(static_cast<double>(column) / static_cast<double>(columns),
+                                       static_cast<double>(row) / static_cast<double>(rows)));
+        keyframe.positions.insert(keyframe.positions.end(), {p.x, p.y, p.z});
+      }
+    }
+    return keyframe;
+  }
+};
+
+Vec3d turned_about_z(const Vec3d& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+}
+
+Motion connected(Topology topology, std::vector<Motion::Keyframe> keyframes) {
+  Motion motion{std::move(topology), std::move(keyframes), {}};
+  motion.connect_as_sequence();
+  return motion;
+}
+
+// A wave in which every point runs round an ellipse, and a weaker one across it.
+Motion cloth() {
+  const Grid grid{133, 132, false};
+  std::vector<Motion::Keyframe> keyframes;
+  for (int k = 0; k <= 4; ++k) {
+    const double phase = 0.4 * kPi * k;
+    keyframes.push_back(grid.keyframe(k, [phase](double u, double v) {
+      const double along = 3 * kPi * u - phase, across = 5 * v + phase;
+      return Vec3d{u - 0.5 - 0.05 * std::sin(along), v - 0.5 + 0.03 * std::cos(across) * u,
+                   0.08 * (0.4 + v) * std::cos(along) + 0.03 * std::sin(across) * u};
+    }));
+  }
+  return connected(grid.topology(), std::move(keyframes));
+}
+
+// A tube along y; bending keeps the length of its middle line.
+Motion bend() {
+  const Grid grid{149, 150, true};
+  const auto tube = [&grid](double time, double bend_angle) {
+    return grid.keyframe(time, [bend_angle](double u, double v) {
+      constexpr double kLength = 4, kRadius = 0.5;
+      const double around = -2 * kPi * u;
+      const double x = kRadius * std::cos(around), z = kRadius * std::sin(around), y = kLength * v;
+      if (bend_angle == 0) return Vec3d{x, y, z};
+      const double middle = kLength / bend_angle, angle = bend_angle * v;
+      return Vec3d{middle - (middle - x) * std::cos(angle), (middle - x) * std::sin(angle), z};
+    });
+  };
+  return connected(grid.topology(), {tube(0, 0), tube(1, kPi / 2)});
+}
+
+// A column with a square cross-section, so that its sides are flat and its edges are sharp.
+Motion twist() {
+  const Grid grid{100, 76, true};
+  const auto column = [&grid](double time, double twist_angle) {
+    return grid.keyframe(time, [twist_angle](double u, double v) {
+      const double side = 4 * u, along = 2 * (side - std::floor(side)) - 1;
+      const Vec3d on_side = {1, along, 3 * v};
+      return turned_about_z(on_side, kPi / 2 * std::floor(side) + twist_angle * v);
+    });
+  };
+  return connected(grid.topology(), {column(0, 0), column(1, 2 * kPi / 3)});
+}
+
+// Every point goes through the neighbourhood of the centre to the opposite side, turning as it goes.
+Motion eversion() {
+  const Grid grid{100, 105, true};
+  const auto sphere = [&grid](double time, double scale, double turn) {
+    return grid.keyframe(time, [scale, turn](double u, double v) {
+      const double around = 2 * kPi * u, down = kPi * (0.02 + 0.96 * v);
+      const Vec3d p{std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), -std::cos(down)};
+      return scale * turned_about_z(p, turn * p.z);
+    });
+  };
+  return connected(grid.topology(), {sphere(0, 1, 0), sphere(1, -0.8, 1.2)});
+}
+
+Motion soup() {
+  constexpr std::size_t kFaces = 5000;
+  std::mt19937_64 random(20110601);
+  std::vector<std::uint32_t> corners(3 * kFaces);
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
+  // By hand: the standard distributions differ between libraries.
+  const auto coordinate = [&random] { return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1); };
+  std::vector<Motion::Keyframe> keyframes(2);
+  for (Motion::Keyframe& keyframe : keyframes) {
+    keyframe.positions.resize(9 * kFaces);
+    for (float& value : keyframe.positions) value = coordinate();
+  }
+  keyframes[1].time = 1;
+  return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
+}
+
+}  // namespace
+
+std::span<const BuiltinMorph> builtin_morphs() noexcept { return kMorphs; }
+
+Result<Motion> make_builtin_morph(std::string_view name) {
+  if (name == "cloth") return cloth();
+  if (name == "bend") return bend();
+  if (name == "twist") return twist();
+  if (name == "eversion") return eversion();
+  if (name == "soup") return soup();
+  std::string message = "there is no built-in morph '" + std::string(name) + "'; there are";
+  const char* separator = " ";
+  for (const BuiltinMorph& morph : kMorphs) {
+    message += separator + std::string(morph.name);
+    separator = ", ";
+  }
+  return Error{ErrorCode::kUsage, "", std::move(message)};
+}
+
+}  // namespace chronormal

@@ -1,0 +1,58 @@
+#include "chronormal/motion/topology.h"
+
+#include <limits>
+#include <string>
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
+
+Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> offsets,
+                     std::span<const std::uint32_t> corners) {
+  if (vertex_count > kMaxCount || corners.size() > kMaxCount)
+    return invalid_input("", "the mesh has more than 4,294,967,295 vertices or corners");
+  const std::size_t face_count = offsets.empty() ? corners.size() / 3 : offsets.size() - 1;
+  for (std::size_t f = 0; f < face_count; ++f) {
+    const std::size_t first = offsets.empty() ? 3 * f : offsets[f];
+    const std::size_t end = offsets.empty() ? 3 * f + 3 : offsets[f + 1];
+    if (end > corners.size() || end < first || end - first < 3)
+      return invalid_input("face " + std::to_string(f), "a face needs three or more corners");
+    for (std::size_t c = first; c < end; ++c) {
+      if (corners[c] >= vertex_count)
+        return invalid_input("face " + std::to_string(f) + ", corner " + std::to_string(c - first),
+                             "the corner names vertex " + std::to_string(corners[c]) + ", but the mesh has " +
+                                 std::to_string(vertex_count) + " vertices");
+    }
+  }
+  return Success{};
+}
+
+}  // namespace
+
+Result<Topology> Topology::polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
+                                    std::vector<std::uint32_t> corners) {
+  if (offsets.empty() || offsets.front() != 0 || offsets.back() != corners.size())
+    return invalid_input("", "the offsets of the faces must run from 0 to the number of corners");
+  if (Status status = check_corners(vertex_count, offsets, corners); !status) return status.error();
+
+  Topology topology;
+  topology.vertex_count_ = vertex_count;
+  bool all_triangles = true;
+  for (std::size_t f = 0; f + 1 < offsets.size(); ++f) all_triangles &= offsets[f + 1] - offsets[f] == 3;
+  if (!all_triangles) topology.offsets_ = std::move(offsets);
+  topology.corners_ = std::move(corners);
+  return topology;
+}
+
+Result<Topology> Topology::triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners) {
+  if (corners.size() % 3 != 0) return invalid_input("", "the corners of triangles must come in threes");
+  if (Status status = check_corners(vertex_count, {}, corners); !status) return status.error();
+
+  Topology topology;
+  topology.vertex_count_ = vertex_count;
+  topology.corners_ = std::move(corners);
+  return topology;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,220 @@
+#include "chronormal/normals/evaluate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "chronormal/core/polynomial.h"
+#include "normals/curve_elements.h"
+
+namespace chronormal {
+namespace {
+
+// docs/theory.md, section 5: below this ratio of sum w_k |c_k| to |n(t)|, float32 is within 1e-6 rad.
+constexpr double kMaxCancellation = 3;
+constexpr int kCertificateDepth = 4;
+
+// Planes are scaled so that the largest component is near 2^50 and none that counts is below 2^-58: then |n(t)|^2 stays
+// between 2^-122 and 2^104.
+constexpr int kLargestExponent = 50;
+constexpr double kSmallestShare = 0x1p-108;
+
+constexpr std::size_t kShortestRun = 8;
+
+double largest_component(const ControlNormals& c) {
+  return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
+}
+
+// Whether p >= 0 on [0, 1] can be shown by its Bernstein coefficients after a few subdivisions.
+bool certainly_not_negative(const Bernstein<double, 4>& p, int depth) {
+  if (std::all_of(p.begin(), p.end(), [](double b) { return b >= 0; })) return true;
+  if (depth == 0 || p.front() < 0 || p.back() < 0) return false;
+  const auto [before, after] = split(p, 0.5);
+  return certainly_not_negative(before, depth - 1) && certainly_not_negative(after, depth - 1);
+}
+
+// The square of a quadratic, given the products of its Bernstein coefficients.
+template <class Product>
+Bernstein<double, 4> squared(Product product) {
+  return {product(0, 0), product(0, 1), (product(0, 2) + 2 * product(1, 1)) / 3, product(1, 2), product(2, 2)};
+}
+
+// Whether float32 can be trusted with this element at every t. `largest` is that of all elements.
+bool float_suffices(const ControlNormals& normals, double largest) {
+  const double smallest_end = std::min(max_abs(normals.n0), max_abs(normals.n1));
+  if (!(smallest_end >= kSmallestShare * largest) || smallest_end == 0) return false;
+
+  const double scale = 1 / largest_component(normals);
+  const std::array<Vec3d, 3> c = {scale * normals.n0, scale * normals.m, scale * normals.n1};
+  const std::array<double, 3> lengths = {length(c[0]), length(c[1]), length(c[2])};
+  const auto n_squared = squared([&](std::size_t i, std::size_t j) { return dot(c[i], c[j]); });
+  const auto g_squared = squared([&](std::size_t i, std::size_t j) { return lengths[i] * lengths[j]; });
+  Bernstein<double, 4> slack;
+  for (std::size_t k = 0; k < slack.size(); ++k)
+    slack[k] = kMaxCancellation * kMaxCancellation * n_squared[k] - g_squared[k];
+  return certainly_not_negative(slack, kCertificateDepth);
+}
+
+struct DegreeRun {
+  std::size_t count;
+  int degree;
+};
+
+// Joins runs of `degree` that are too short to pay into the neighbour of the next higher degree.
+std::vector<DegreeRun> raise_short_runs(const std::vector<DegreeRun>& runs, int degree) {
+  std::vector<DegreeRun> result;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    DegreeRun run = runs[i];
+    if (run.degree == degree && run.count < kShortestRun) {
+      int raised = 3;
+      if (i > 0 && runs[i - 1].degree > degree) raised = std::min(raised, runs[i - 1].degree);
+      if (i + 1 < runs.size() && runs[i + 1].degree > degree) raised = std::min(raised, runs[i + 1].degree);
+      if (raised < 3) run.degree = raised;
+    }
+    if (!result.empty() && result.back().degree == run.degree)
+      result.back().count += run.count;
+    else
+      result.push_back(run);
+  }
+  return result;
+}
+
+std::size_t planes_of(int degree) { return degree == 0 ? 4 : 3 * (static_cast<std::size_t>(degree) + 1); }
+
+float clamped_to_float(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(value, -kLargest, kLargest));
+}
+
+Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
+
+}  // namespace
+
+NormalCurves::NormalCurves(std::span<const ControlNormals> normals) : size_(normals.size()) {
+  double largest = 0;
+  for (const ControlNormals& c : normals) largest = std::fmax(largest, largest_component(c));
+  exponent_ = largest > 0 ? std::ilogb(largest) - kLargestExponent : 0;
+
+  // Find the degree of every element, flag those that float32 cannot carry, and collect runs.
+  std::vector<DegreeRun> runs;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    int element_degree = degree(normals[i]);
+    ++degree_counts_[static_cast<std::size_t>(element_degree)];
+    if (!float_suffices(normals[i], largest)) {
+      flagged_.push_back({i, normals[i]});
+      element_degree = runs.empty() ? 0 : runs.back().degree;  // its place in the planes is not read: join any run
+    }
+    if (!runs.empty() && runs.back().degree == element_degree)
+      ++runs.back().count;
+    else
+      runs.push_back({1, element_degree});
+  }
+  runs = raise_short_runs(raise_short_runs(runs, 0), 1);
+
+  std::size_t value_count = 0;
+  for (const DegreeRun& run : runs) value_count += run.count * planes_of(run.degree);
+  values_.assign(value_count, 1.0f);
+
+  std::size_t first = 0, offset = 0, next_flagged = 0;
+  for (const DegreeRun& run : runs) {
+    runs_.push_back({first, run.count, offset, run.degree});
+    for (std::size_t i = 0; i < run.count; ++i) {
+      if (next_flagged < flagged_.size() && flagged_[next_flagged].element == first + i) {
+        ++next_flagged;
+        continue;
+      }
+      float* value = values_.data() + offset + i;
+      const auto put = [&](const Vec3d& v) {
+        for (const double component : {v.x, v.y, v.z}) {
+          *value = static_cast<float>(component);
+          value += run.count;
+        }
+      };
+      const auto scaled = [this](const Vec3d& v) { return std::ldexp(1.0, -exponent_) * v; };
+      const ControlNormals& c = normals[first + i];
+      if (run.degree == 0) {
+        put(unit(c.n0));
+        *value = static_cast<float>(std::ldexp(length(c.n0), -exponent_));
+      } else {
+        put(scaled(c.n0));
+        if (run.degree == 2) put(scaled(c.m));
+        put(scaled(c.n1));
+      }
+    }
+    first += run.count;
+    offset += run.count * planes_of(run.degree);
+  }
+}
+
+namespace {
+
+// The vectors of one control normal of a run.
+VectorView<const float> run_planes(const float* first, std::size_t count) {
+  return VectorView<const float>::planes(first, first + count, first + 2 * count, count);
+}
+
+}  // namespace
+
+std::size_t NormalCurves::unit_normals(double t, VectorView<float> result) const noexcept {
+  assert(result.count == size_);
+  const auto weights = QuadraticWeights<float>::at(t);
+  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
+
+  for (const Run& run : runs_) {
+    const VectorView<float> part = result.part({run.first, run.count});
+    const auto c0 = run_planes(values_.data() + run.offset, run.count);
+    if (run.degree == 0) {
+      fill(part, [c0](std::size_t i) { return c0[i]; });
+      continue;
+    }
+    const auto c1 = run_planes(c0.z + run.count, run.count);
+    if (run.degree == 1) {
+      fill(part, [=](std::size_t i) { return normalized(start_weight * c0[i] + end_weight * c1[i]); });
+      continue;
+    }
+    const auto c2 = run_planes(c1.z + run.count, run.count);
+    fill(part, [=](std::size_t i) { return normalized(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
+  }
+
+  std::size_t without_direction = 0;
+  for (const Flagged& flagged : flagged_) {
+    const UnitNormal u = unit_normal_at(flagged.exact, t);
+    result.set(flagged.element, to_float(u.vector));
+    if (u.direction == Direction::kNone) ++without_direction;
+  }
+  return without_direction;
+}
+
+void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
+  assert(result.count == size_);
+  const auto weights = QuadraticWeights<float>::at(t);
+  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
+  const double scale = std::ldexp(1.0, exponent_);
+  const auto unscaled = [scale](const Vec3f& v) { return clamped_to_float(scale * to_double(v)); };
+
+  for (const Run& run : runs_) {
+    const VectorView<float> part = result.part({run.first, run.count});
+    const auto c0 = run_planes(values_.data() + run.offset, run.count);
+    if (run.degree == 0) {
+      const float* lengths = c0.z + run.count;
+      fill(part, [=](std::size_t i) { return unscaled(lengths[i] * c0[i]); });
+      continue;
+    }
+    const auto c1 = run_planes(c0.z + run.count, run.count);
+    if (run.degree == 1) {
+      fill(part, [=](std::size_t i) { return unscaled(start_weight * c0[i] + end_weight * c1[i]); });
+      continue;
+    }
+    const auto c2 = run_planes(c1.z + run.count, run.count);
+    fill(part, [=](std::size_t i) { return unscaled(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
+  }
+  for (const Flagged& flagged : flagged_)
+    result.set(flagged.element, clamped_to_float(normal_at(flagged.exact, t)));
+}
+
+std::size_t NormalCurves::bytes() const noexcept {
+  return values_.size() * sizeof(float) + runs_.size() * sizeof(Run) + flagged_.size() * sizeof(Flagged);
+}
+
+}  // namespace chronormal

@@ -1,0 +1,115 @@
+/// Arcs of circles on the unit sphere: what slerp, quaternion slerp and the circle schemes all run on.
+///
+/// A rotation about a fixed axis at constant speed takes u0 along a circle,
+///     u(t) = w + cos(t A) p + sin(t A) q,   w = (axis . u0) axis,  p = u0 - w,  q = axis x u0        (eq. 7)
+/// Quaternion slerp between two frames is such a rotation, so its run time is one sine with its cosine and six
+/// multiplications and additions: no quaternion is left. For a great circle w = 0: that is vector slerp.
+#ifndef CHRONORMAL_SCHEMES_ARC_H_
+#define CHRONORMAL_SCHEMES_ARC_H_
+
+#include "chronormal/core/trigonometry.h"
+#include "chronormal/core/vec3.h"
+#include "schemes/curve_scheme.h"
+
+namespace chronormal {
+
+struct Arc {
+  Vec3d w, p, q;
+  double angle = 0;  ///< A, from u0 to u1 counter-clockwise about the axis, in [0, 2 pi]
+
+  [[nodiscard]] Vec3d at(double t) const {
+    return w + std::cos(t * angle) * p + std::sin(t * angle) * q;
+  }
+};
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// The arc of u0 about a unit axis.
+[[nodiscard]] inline Arc arc_about(const Vec3d& axis, const Vec3d& u0, double angle) {
+  const Vec3d w = dot(axis, u0) * axis;
+  return {w, u0 - w, cross(axis, u0), angle};
+}
+
+/// The angle by which v lies behind the start of the arc, counter-clockwise about its axis, in [0, 2 pi).
+[[nodiscard]] inline double angle_along(const Arc& arc, const Vec3d& v) {
+  const double angle = std::atan2(dot(arc.q, v), dot(arc.p, v));
+  return angle < 0 ? angle + 2 * kPi : angle;
+}
+
+/// The circles through u0 and u1, as one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq. 6)
+struct CircleFamily {
+  Vec3d u0, u1;
+  Vec3d pole;      ///< axis of the great circle: phi = 0, slerp
+  Vec3d bisector;  ///< unit(u0 + u1): phi = pi / 2, half a turn
+  enum class Kind {
+    kGeneral,
+    kEqual,      ///< u0 = u1: every axis but u0 leads nowhere; the family is a point
+    kAntipodal,  ///< u1 = -u0: pole is a fixed perpendicular, and every circle is a great one
+  } kind;
+
+  CircleFamily(const Vec3d& start, const Vec3d& end) : u0(start), u1(end) {
+    // Below this sine, the direction of u0 x u1 is mostly rounding.
+    constexpr double kSmallestSine = 1e-10;
+    const Vec3d normal = cross(u0, u1);
+    if (length(normal) > kSmallestSine) {
+      kind = Kind::kGeneral;
+      pole = unit(normal);
+      bisector = dot(u0, u1) > 0 ? unit(u0 + u1) : cross(unit(u1 - u0), pole);
+      if (dot(bisector, u0) < 0) bisector = -bisector;
+    } else {
+      kind = dot(u0, u1) > 0 ? Kind::kEqual : Kind::kAntipodal;
+      pole = any_perpendicular(u0);
+      bisector = cross(pole, u0);
+    }
+  }
+
+  /// The arc from u0 to u1 about axis(phi): at most half a turn for phi in [-pi/2, pi/2], more beyond.
+  [[nodiscard]] Arc arc(double phi) const {
+    if (kind == Kind::kEqual) return {{}, u0, {}, 0};
+    Arc arc = arc_about(std::cos(phi) * pole + std::sin(phi) * bisector, u0, 0);
+    arc.angle = angle_along(arc, u1);
+    return arc;
+  }
+
+  /// The phi of an axis, which should be as far from u0 as from u1.
+  [[nodiscard]] double phi_of(const Vec3d& axis) const { return std::atan2(dot(axis, bisector), dot(axis, pole)); }
+
+  /// phi = 0: vector slerp. Equal ends stay where they are, antipodal ends turn about a fixed perpendicular.
+  [[nodiscard]] Arc great_arc() const { return arc(0); }
+};
+
+/// u(t) on an arc that is kept as coefficients, given the angle t A.
+template <class S>
+[[nodiscard]] Vec3<S> point_on_arc(const Vec3<S>& w, const Vec3<S>& p, const Vec3<S>& q, const S& angle) {
+  const auto [sine, cosine] = sin_cos(angle);
+  return w + cosine * p + sine * q;
+}
+
+/// The planes of an arc: w, p, q, A.
+inline constexpr std::size_t kArcPlanes = 10;
+
+inline void put_arc(double* c, const Arc& arc) {
+  put_vector(c, 0, arc.w);
+  put_vector(c, 1, arc.p);
+  put_vector(c, 2, arc.q);
+  c[9] = arc.angle;
+}
+
+/// What every policy on arcs at uniform speed shares; it adds fit().
+struct UniformArc {
+  [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
+
+  template <class S>
+  [[nodiscard]] S at(double t) const {
+    return S(static_cast<float>(t));
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
+    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), t * c[9]);
+  }
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_SCHEMES_ARC_H_

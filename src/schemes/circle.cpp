@@ -1,0 +1,76 @@
+// The circle through three exact normals u0, u(1/2), u1: the frames that interpolate best, in closed form
+// (docs/theory.md, section 4.7).
+//
+//   circle         at constant speed
+//   circle:timed   meets the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
+//                  the share of the arc that lies before the middle; monotone for every r in (0, 1)
+//
+// Where the three normals do not span a circle (u1 = u0, or the middle one equal or opposite to an end), both fall
+// back to slerp.
+
+#include "schemes/arc.h"
+#include "schemes/makers.h"
+
+namespace chronormal {
+namespace {
+
+struct ThroughMiddle {
+  Arc arc;
+  double share = 0.5;  // of the arc, up to the middle normal
+};
+
+ThroughMiddle circle_through_middle(ElementMotion& element) {
+  const Vec3d u0 = element.start().vector, u1 = element.end().vector, middle = element.node(0.5);
+  const Vec3d to_middle = middle - u0, to_end = u1 - u0;
+  const Vec3d normal = cross(to_middle, to_end);
+
+  // A circle needs three different points; on short arcs the triangle that they span is small of third order.
+  constexpr double kSmallestChord = 1e-12, kSmallestSine = 1e-10;
+  const double chords = length(to_middle) * length(to_end);
+  if (length(to_end) > kSmallestChord && length(middle + u0) > kSmallestChord &&
+      length(normal) > kSmallestSine * chords && chords > 0) {
+    Arc arc = arc_about(unit(normal), u0, 0);
+    arc.angle = angle_along(arc, u1);
+    const double middle_angle = angle_along(arc, middle);
+    if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
+  }
+  const CircleFamily circles(u0, u1);
+  // Ends that differ by rounding only are no loss; everything else is a stated fallback.
+  if (circles.kind != CircleFamily::Kind::kEqual || length(to_middle) > 1e-7) element.use_fallback();
+  return {circles.great_arc(), 0.5};
+}
+
+struct Circle : UniformArc {
+  void fit(ElementMotion& element, double* c) const { put_arc(c, circle_through_middle(element).arc); }
+};
+
+struct TimedCircle {
+  [[nodiscard]] std::size_t plane_count() const { return kArcPlanes + 1; }
+
+  void fit(ElementMotion& element, double* c) const {
+    const ThroughMiddle circle = circle_through_middle(element);
+    put_arc(c, circle.arc);
+    c[kArcPlanes] = circle.share;
+  }
+
+  template <class S>
+  [[nodiscard]] S at(double t) const {
+    return S(static_cast<float>(t));
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
+    const S share = c[kArcPlanes];
+    const S numerator = share * t, rest = (S(1) - share) * (S(1) - t);
+    const S sum = numerator + rest;
+    const S warped = numerator / (sum > S(0) ? sum : S(1));
+    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), warped * c[9]);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_circle() { return std::make_unique<CurveScheme<Circle>>(Circle{}); }
+std::unique_ptr<Scheme> make_timed_circle() { return std::make_unique<CurveScheme<TimedCircle>>(TimedCircle{}); }
+
+}  // namespace chronormal

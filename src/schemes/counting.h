@@ -1,0 +1,57 @@
+/// A scalar that counts what is done to it. Instantiating a scheme's own evaluation with it gives the operations that
+/// one evaluation costs, so the figures cannot drift from the code.
+#ifndef CHRONORMAL_SCHEMES_COUNTING_H_
+#define CHRONORMAL_SCHEMES_COUNTING_H_
+
+#include <cmath>
+
+#include "chronormal/core/trigonometry.h"
+#include "chronormal/schemes/scheme.h"
+
+namespace chronormal {
+
+/// Comparisons and changes of sign are free; selections are taken as the values have it.
+class Counting {
+ public:
+  Counting() = default;
+  explicit Counting(float value) : value_(value) {}
+  explicit Counting(int value) : value_(static_cast<float>(value)) {}
+
+  /// The counts since the last reset(), of this thread.
+  static OperationCounts& counts() {
+    thread_local OperationCounts counts;
+    return counts;
+  }
+  static void reset() { counts() = {}; }
+
+  friend Counting operator+(Counting a, Counting b) { return counted(counts().add, a.value_ + b.value_); }
+  friend Counting operator-(Counting a, Counting b) { return counted(counts().add, a.value_ - b.value_); }
+  friend Counting operator*(Counting a, Counting b) { return counted(counts().multiply, a.value_ * b.value_); }
+  friend Counting operator/(Counting a, Counting b) { return counted(counts().divide, a.value_ / b.value_); }
+  friend Counting operator-(Counting a) { return Counting(-a.value_); }
+  friend bool operator<(Counting a, Counting b) { return a.value_ < b.value_; }
+  friend bool operator>(Counting a, Counting b) { return a.value_ > b.value_; }
+  friend bool operator==(Counting a, Counting b) { return a.value_ == b.value_; }
+
+  friend Counting sqrt(Counting a) { return counted(counts().sqrt, std::sqrt(a.value_)); }
+  friend Counting upper_angle(Counting y, Counting x) {
+    return counted(counts().trigonometric, upper_angle(y.value_, x.value_));
+  }
+  friend SinCos<Counting> sin_cos(Counting x) {
+    ++counts().trigonometric;
+    const auto [s, c] = sin_cos(x.value_);
+    return {Counting(s), Counting(c)};
+  }
+
+ private:
+  static Counting counted(int& count, float value) {
+    ++count;
+    return Counting(value);
+  }
+
+  float value_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_SCHEMES_COUNTING_H_

@@ -1,0 +1,161 @@
+#include "schemes/frames.h"
+
+#include <array>
+
+namespace chronormal {
+namespace {
+
+// The edges at the first corner of a face: e to the next corner, f to the previous one. For a polygon they are taken
+// within the plane of its vector area.
+struct FaceEdges {
+  Vec3d e, f;
+};
+
+struct EdgeMotion {
+  FaceEdges start, end;
+  Vec3d e_delta;  // e at t = 1 less e at t = 0
+};
+
+Vec3d within_plane(const Vec3d& v, const Vec3d& unit_normal) { return v - dot(v, unit_normal) * unit_normal; }
+
+EdgeMotion edges_of(const ElementMotion& element) {
+  const auto face = element.segment().topology->face(element.element());
+  const auto edge = [&face](VectorView<const float> positions, std::size_t corner) {
+    return to_double(positions[face[corner]]) - to_double(positions[face[0]]);
+  };
+  const std::size_t last = face.size() - 1;
+  const auto edges = [&](VectorView<const float> positions, const Vec3d& u) {
+    return FaceEdges{within_plane(edge(positions, 1), u), within_plane(edge(positions, last), u)};
+  };
+  const auto& from = element.segment().from;
+  const auto& to = element.segment().to;
+  return {edges(from, element.start().vector), edges(to, element.end().vector), edge(to, 1) - edge(from, 1)};
+}
+
+std::optional<Frame> frame_along(const Vec3d& tangent, const Vec3d& unit_normal) {
+  const Vec3d t = unit(tangent);
+  if (t == Vec3d{}) return std::nullopt;
+  return Frame{t, cross(unit_normal, t), unit_normal};
+}
+
+std::optional<FramePair> pair_of(const std::optional<Frame>& start, const std::optional<Frame>& end) {
+  if (!start || !end) return std::nullopt;
+  return FramePair{*start, *end};
+}
+
+// The frame turned about its own normal.
+Frame turned(const Frame& frame, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * frame.tangent + s * frame.binormal, c * frame.binormal - s * frame.tangent, frame.normal};
+}
+
+// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t mixed(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return z ^ (z >> 31);
+}
+
+}  // namespace
+
+std::optional<FramePair> matrix_frames(const ElementMotion& element) {
+  if (element.start().direction != Direction::kRegular) return std::nullopt;  // M is singular
+  const EdgeMotion edges = edges_of(element);
+  const auto& [e0, f0] = edges.start;
+  const auto& [e1, f1] = edges.end;
+  const double square = dot(e0, e0);
+  if (square == 0) return std::nullopt;
+
+  // binormal0 = normal x tangent is f0 less its part along e0, so M takes it to the same combination of f1 and e1. The
+  // paper prints tangent1 = n1 x b1, which with b = n x t would be a left-handed frame.
+  const Vec3d binormal = unit(within_plane(f1 - (dot(e0, f0) / square) * e1, element.end().vector));
+  if (binormal == Vec3d{}) return std::nullopt;
+  const Vec3d& u1 = element.end().vector;
+  return pair_of(frame_along(e0, element.start().vector), Frame{cross(binormal, u1), binormal, u1});
+}
+
+std::optional<FramePair> edge_frames(const ElementMotion& element) {
+  const EdgeMotion edges = edges_of(element);
+  // An edge of no length has the direction in which it starts to grow, or in which it shrinks away.
+  const Vec3d& u0 = element.start().vector;
+  const Vec3d& u1 = element.end().vector;
+  const Vec3d start = edges.start.e == Vec3d{} ? within_plane(edges.e_delta, u0) : edges.start.e;
+  const Vec3d end = edges.end.e == Vec3d{} ? within_plane(-edges.e_delta, u1) : edges.end.e;
+  return pair_of(frame_along(start, u0), frame_along(end, u1));
+}
+
+std::optional<FramePair> polar_frames(const ElementMotion& element) {
+  if (element.start().direction != Direction::kRegular) return std::nullopt;  // M is singular
+  const auto frames = edge_frames(element);
+  if (!frames) return std::nullopt;
+
+  // M maps the plane of the face to the plane of the face and u0 to u1, so its polar rotation is that of the 2 x 2 map
+  // between the planes. Over the edge frames that map is upper triangular, S = [s11 s12; 0 s22], and its rotation
+  // factor turns by atan2(s21 - s12, s11 + s22); the determinant of S is not negative.
+  const EdgeMotion edges = edges_of(element);
+  const double e0x = dot(edges.start.e, frames->at_start.tangent), f0x = dot(edges.start.f, frames->at_start.tangent);
+  const double f0y = dot(edges.start.f, frames->at_start.binormal);
+  const double e1x = dot(edges.end.e, frames->at_end.tangent), f1x = dot(edges.end.f, frames->at_end.tangent);
+  const double f1y = dot(edges.end.f, frames->at_end.binormal);
+  const double sine = e1x * f0x - f1x * e0x, cosine = e1x * f0y + f1y * e0x;
+  if (sine == 0 && cosine == 0) return std::nullopt;
+  return FramePair{frames->at_start, turned(frames->at_end, std::atan2(sine, cosine))};
+}
+
+std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed) {
+  const auto frames = edge_frames(element);
+  if (!frames) return std::nullopt;
+  const std::uint64_t draw = 1 + element.element() + (static_cast<std::uint64_t>(element.segment().index) << 32);
+  const double angle = 2 * kPi * std::ldexp(static_cast<double>(mixed(seed + 0x9E3779B97F4A7C15u * draw)), -64);
+  return FramePair{frames->at_start, turned(frames->at_end, angle)};
+}
+
+Arc shorter_arc(const FramePair& frames) {
+  // R = F1 F0^T takes F0 to F1.
+  const Frame& a = frames.at_start;
+  const Frame& b = frames.at_end;
+  const auto column = [](double x, const Vec3d& u, double y, const Vec3d& v, double z, const Vec3d& w) {
+    return x * u + y * v + z * w;
+  };
+  const Vec3d c0 = column(a.tangent.x, b.tangent, a.binormal.x, b.binormal, a.normal.x, b.normal);
+  const Vec3d c1 = column(a.tangent.y, b.tangent, a.binormal.y, b.binormal, a.normal.y, b.normal);
+  const Vec3d c2 = column(a.tangent.z, b.tangent, a.binormal.z, b.binormal, a.normal.z, b.normal);
+
+  // The quaternion of R, times four times its largest component, so that no digit cancels (Shepperd 1978).
+  const double trace = c0.x + c1.y + c2.z;
+  const std::array<double, 4> squares = {trace, c0.x, c1.y, c2.z};
+  std::size_t largest = 0;
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (squares[i] > squares[largest]) largest = i;
+  }
+  Vec3d v;
+  double w = 0;
+  switch (largest) {
+    case 0:
+      w = 1 + trace;
+      v = {c1.z - c2.y, c2.x - c0.z, c0.y - c1.x};
+      break;
+    case 1:
+      w = c1.z - c2.y;
+      v = {1 + 2 * c0.x - trace, c0.y + c1.x, c2.x + c0.z};
+      break;
+    case 2:
+      w = c2.x - c0.z;
+      v = {c0.y + c1.x, 1 + 2 * c1.y - trace, c1.z + c2.y};
+      break;
+    default:
+      w = c0.y - c1.x;
+      v = {c2.x + c0.z, c1.z + c2.y, 1 + 2 * c2.z - trace};
+      break;
+  }
+  // Both q and -q are this rotation; w >= 0 is the shorter arc. At exactly half a turn v decides, the same every time.
+  if (w < 0) {
+    w = -w;
+    v = -v;
+  }
+  const double size = length(v);
+  if (size <= 1e-15 * w) return {{}, a.normal, {}, 0};
+  return arc_about((1 / size) * v, a.normal, 2 * std::atan2(size, w));
+}
+
+}  // namespace chronormal

@@ -1,0 +1,38 @@
+/// The frames that a face can be given, and the rotation between two of them (section 2.5 of the paper).
+///
+/// A frame F = (tangent, binormal, normal) is an orthonormal, right-handed triple with binormal = normal x tangent. The
+/// paper asks which F0 and F1 make quaternion slerp interpolate normals best; each function here is one answer. They
+/// return nothing where their construction fails (singular M, an edge of no length).
+#ifndef CHRONORMAL_SCHEMES_FRAMES_H_
+#define CHRONORMAL_SCHEMES_FRAMES_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "schemes/arc.h"
+
+namespace chronormal {
+
+struct Frame {
+  Vec3d tangent, binormal, normal;
+};
+
+struct FramePair {
+  Frame at_start, at_end;
+};
+
+/// Frames through the paper's matrix M, which maps the face at t = 0, with its normal, to the face at t = 1.
+[[nodiscard]] std::optional<FramePair> matrix_frames(const ElementMotion& element);
+/// Tangent along the first edge of the face at both ends.
+[[nodiscard]] std::optional<FramePair> edge_frames(const ElementMotion& element);
+/// F1 is F0 turned by the rotation factor of the polar decomposition of M.
+[[nodiscard]] std::optional<FramePair> polar_frames(const ElementMotion& element);
+/// The edge frames, the second turned about its normal by an angle drawn from (seed, segment, element).
+[[nodiscard]] std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed);
+
+/// The path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
+[[nodiscard]] Arc shorter_arc(const FramePair& frames);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_SCHEMES_FRAMES_H_

@@ -1,0 +1,62 @@
+// Linear interpolation with one end scaled: u0 + t (s u1 - u0) has the same ends for every s > 0, and the best s makes
+// it run faster where the normal does (docs/theory.md, section 4.8). The best that a host can do which only adds one
+// delta. s is found per element by a search over its logarithm.
+
+#include "schemes/mean_error.h"
+#include "schemes/makers.h"
+#include "schemes/minimize.h"
+
+namespace chronormal {
+namespace {
+
+class ScaledLinear {
+ public:
+  [[nodiscard]] std::size_t plane_count() const { return 6; }  // u0, s u1
+
+  void fit(ElementMotion& element, double* c) const {
+    const Vec3d u0 = element.start().vector, u1 = element.end().vector;
+    put_vector(c, 0, u0);
+    put_vector(c, 1, best_scale(element, u0, u1) * u1);
+  }
+
+  template <class S>
+  struct Weights {
+    S start, end;
+  };
+
+  template <class S>
+  [[nodiscard]] Weights<S> at(double t) const {
+    return {S(static_cast<float>(1 - t)), S(static_cast<float>(t))};
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const Weights<S>& weights) const {
+    return normalized_or(weights.start * c.vector(0) + weights.end * c.vector(1), c.vector(0));
+  }
+
+ private:
+  static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
+    if (u0 == u1) return 1;
+    // s beyond e^6 is a jump; in float32 it would also cost digits at the other end.
+    constexpr double kRange = 6;
+    constexpr std::size_t kGrid = 25;
+    std::array<double, kGrid + 1> points;
+    for (std::size_t i = 0; i < kGrid; ++i)
+      points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among them
+    // An element of degree 1 is met exactly by the ratio of its areas.
+    const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
+    points[kGrid] = std::isnormal(areas) ? std::clamp(std::log(areas), -kRange, kRange) : 0;
+    std::sort(points.begin(), points.end());
+
+    const ExactSamples exact(element.control_normals());
+    return std::exp(minimize(points, [&](double s) { return exact.mean_error_of_line(u0, std::exp(s) * u1); }));
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_scaled_linear() {
+  return std::make_unique<CurveScheme<ScaledLinear>>(ScaledLinear{});
+}
+
+}  // namespace chronormal

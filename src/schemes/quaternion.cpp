@@ -1,0 +1,43 @@
+// Quaternion slerp of the frames of a face, and the normal out of it (section 2.5 of the paper), for frames that are
+// constructed: matrix (the paper's), edge, polar, random. quaternion_optimal.cpp has those that are searched for.
+//
+// Slerp on the shorter arc is a rotation about a fixed axis at constant speed, so what is kept is an arc (arc.h). Where
+// the frames cannot be built, slerp takes their place and counts as a fallback.
+
+#include "schemes/frames.h"
+#include "schemes/makers.h"
+
+namespace chronormal {
+namespace {
+
+template <class MakeFrames>
+struct Quaternion : UniformArc {
+  explicit Quaternion(MakeFrames make) : make_frames(std::move(make)) {}
+
+  void fit(ElementMotion& element, double* c) const {
+    if (const auto frames = make_frames(element)) {
+      put_arc(c, shorter_arc(*frames));
+    } else {
+      element.use_fallback();
+      put_arc(c, CircleFamily(element.start().vector, element.end().vector).great_arc());
+    }
+  }
+
+  MakeFrames make_frames;
+};
+
+template <class MakeFrames>
+std::unique_ptr<Scheme> make_quaternion(MakeFrames make_frames) {
+  return std::make_unique<CurveScheme<Quaternion<MakeFrames>>>(Quaternion<MakeFrames>(std::move(make_frames)));
+}
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_quaternion_matrix() { return make_quaternion(matrix_frames); }
+std::unique_ptr<Scheme> make_quaternion_edge() { return make_quaternion(edge_frames); }
+std::unique_ptr<Scheme> make_quaternion_polar() { return make_quaternion(polar_frames); }
+std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed) {
+  return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); });
+}
+
+}  // namespace chronormal

@@ -1,0 +1,57 @@
+// The frames that interpolate best: the paper's open question, answered (docs/theory.md, section 4.6).
+//
+// All pairs of frames are one angle phi (eq. 6), so the best is a search over one variable per face: a grid, the
+// frames that are known by construction, and golden section in the lowest valleys. The result has the smallest mean
+// angular error over t that any quaternion slerp on the shorter arc can have.
+
+#include "schemes/frames.h"
+#include "schemes/makers.h"
+#include "schemes/mean_error.h"
+#include "schemes/minimize.h"
+
+namespace chronormal {
+namespace {
+
+struct OptimalQuaternion : UniformArc {
+  void fit(ElementMotion& element, double* c) const {
+    const CircleFamily circles(element.start().vector, element.end().vector);
+    if (circles.kind == CircleFamily::Kind::kEqual) {
+      put_arc(c, circles.great_arc());
+      return;
+    }
+    const ExactSamples exact(element.control_normals());
+    const double phi = best_phi(element, circles, exact);
+    put_arc(c, circles.arc(phi));
+  }
+
+ private:
+  static double best_phi(const ElementMotion& element, const CircleFamily& circles, const ExactSamples& exact) {
+    // Antipodal ends are half a turn apart about every axis of the family, both ways round.
+    const double limit = circles.kind == CircleFamily::Kind::kAntipodal ? kPi : kPi / 2;
+    constexpr std::size_t kGrid = 21;
+    std::array<double, kGrid + 4> points;
+    std::size_t count = 0;
+    for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
+
+    // The grid has slerp; add the constructed frames, and the circle through the middle.
+    for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
+      if (!frames) continue;
+      const Arc arc = shorter_arc(*frames);
+      if (arc.angle > 0) points[count++] = std::clamp(circles.phi_of(cross(arc.p, arc.q)), -limit, limit);
+    }
+    const Vec3d middle = unit_normal_at(element.control_normals(), 0.5).vector;
+    const Vec3d axis = cross(middle - circles.u0, circles.u1 - circles.u0);
+    if (length(axis) > 0) points[count++] = std::clamp(circles.phi_of(axis), -limit, limit);
+
+    std::sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
+    return minimize(std::span(points).first(count), [&](double phi) { return exact.mean_error(circles.arc(phi)); });
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_quaternion_optimal() {
+  return std::make_unique<CurveScheme<OptimalQuaternion>>(OptimalQuaternion{});
+}
+
+}  // namespace chronormal

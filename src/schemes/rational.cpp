@@ -1,0 +1,70 @@
+// The t-variant cross product with its normalisation in the formula (eq. 3 of the paper): three quadratics over the
+// square root of one quartic, |n(t)|^2, whose coefficients are prepared. No sum of squares at run time, but five more
+// coefficients to read; the direction is that of `polynomial`, without its evaluation in double where n(t) is small.
+
+#include "chronormal/core/polynomial.h"
+#include "schemes/curve_scheme.h"
+#include "schemes/makers.h"
+
+namespace chronormal {
+namespace {
+
+// Against control normals of length 1: below float32's rounding, and its square well above zero.
+constexpr double kVanishingLength = 1e-7;
+
+class Rational {
+ public:
+  [[nodiscard]] std::size_t plane_count() const { return 14; }  // n0, m, n1, and the quartic
+
+  void fit(ElementMotion& element, double* c) const {
+    const ControlNormals& exact = element.control_normals();
+    const double largest = std::fmax(length(exact.n0), std::fmax(length(exact.m), length(exact.n1)));
+    const double scale = 1 / largest;
+    // An end that vanishes keeps its limit direction, at a length that only counts where nothing else does.
+    const auto end = [scale](const Vec3d& n, const UnitNormal& u) {
+      return u.direction == Direction::kRegular ? scale * n : kVanishingLength * u.vector;
+    };
+    const Vec3d n0 = end(exact.n0, element.start()), m = scale * exact.m, n1 = end(exact.n1, element.end());
+    put_vector(c, 0, n0);
+    put_vector(c, 1, m);
+    put_vector(c, 2, n1);
+    const Bernstein<double, 4> square = {dot(n0, n0), dot(n0, m), (dot(n0, n1) + 2 * dot(m, m)) / 3, dot(m, n1),
+                                         dot(n1, n1)};
+    for (std::size_t k = 0; k < square.size(); ++k) c[9 + k] = square[k];
+  }
+
+  template <class S>
+  struct Weights {
+    QuadraticWeights<S> quadratic;
+    S quartic[5];
+  };
+
+  template <class S>
+  [[nodiscard]] Weights<S> at(double t) const {
+    const double s = 1 - t;
+    const double b[] = {s * s * s * s, 4 * s * s * s * t, 6 * s * s * t * t, 4 * s * t * t * t, t * t * t * t};
+    Weights<S> weights{QuadraticWeights<S>::at(t), {}};
+    for (int k = 0; k < 5; ++k) weights.quartic[k] = S(static_cast<float>(b[k]));
+    return weights;
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const Weights<S>& weights) const {
+    using std::sqrt;
+    const Vec3<S> n = quadratic_normal(c.vector(0), c.vector(1), c.vector(2), weights.quadratic);
+    S square = weights.quartic[0] * c[9];
+    for (std::size_t k = 1; k < 5; ++k) square = square + weights.quartic[k] * c[9 + k];
+    // Below this share of the largest coefficient the quartic has lost its digits: measure n instead.
+    if (!(square > S(1e-3f))) {
+      const Vec3<S> start = normalized_or(c.vector(0), c.vector(0));
+      return normalized_or(n, start);
+    }
+    return (S(1) / sqrt(square)) * n;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_rational() { return std::make_unique<CurveScheme<Rational>>(Rational{}); }
+
+}  // namespace chronormal

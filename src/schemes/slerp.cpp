@@ -1,0 +1,41 @@
+// Vector slerp: the shortest arc from u0 to u1 at constant speed (section 2.3 of the paper, its eq. 5).
+//
+// With q perpendicular to u0 in the plane of both, u(t) = cos(t T) u0 + sin(t T) q is the same curve as
+// (sin((1-t) T) u0 + sin(t T) u1) / sin T, without the division that fails at T = 0 and T = pi. Equal ends stay;
+// antipodal ends turn about a fixed perpendicular, and count as a fallback.
+
+#include "schemes/arc.h"
+#include "schemes/makers.h"
+
+namespace chronormal {
+namespace {
+
+struct Slerp {
+  [[nodiscard]] std::size_t plane_count() const { return 7; }  // u0, q, T
+
+  void fit(ElementMotion& element, double* c) const {
+    const CircleFamily circles(element.start().vector, element.end().vector);
+    if (circles.kind == CircleFamily::Kind::kAntipodal) element.use_fallback();
+    const Arc arc = circles.great_arc();
+    put_vector(c, 0, arc.p);
+    put_vector(c, 1, arc.q);
+    c[6] = arc.angle;
+  }
+
+  template <class S>
+  [[nodiscard]] S at(double t) const {
+    return S(static_cast<float>(t));
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
+    const auto [sine, cosine] = sin_cos(t * c[6]);
+    return cosine * c.vector(0) + sine * c.vector(1);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_slerp() { return std::make_unique<CurveScheme<Slerp>>(Slerp{}); }
+
+}  // namespace chronormal

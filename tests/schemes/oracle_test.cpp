@@ -1,0 +1,359 @@
+// Every scheme against an oracle that shares no code with it (tests/support/reference.h).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/schemes/scheme.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference.h"
+
+namespace chronormal {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// All names that make_scheme() knows, with numbers for K and SEED.
+std::vector<std::string> scheme_names() {
+  std::vector<std::string> names;
+  for (const SchemeDescription& description : scheme_descriptions()) {
+    const std::string name(description.name);
+    const std::string stem = name.substr(0, name.rfind(':'));
+    if (name == "lagrange:K") {
+      for (const char* degree : {":1", ":2", ":3", ":5", ":8"}) names.push_back(stem + degree);
+    } else if (name == "decasteljau:K") {
+      for (const char* count : {":2", ":3", ":4", ":6"}) names.push_back(stem + count);
+    } else if (name == "quaternion:random:SEED") {
+      for (const char* seed : {":1", ":7"}) names.push_back(stem + seed);
+    } else {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+// A motion with everything that schemes and oracles are prepared from.
+struct Subject {
+  explicit Subject(Motion moving) : motion(std::move(moving)), normals(motion.topology.face_count()) {
+    face_control_normals(motion.segment(0), faces(), normals);
+  }
+
+  [[nodiscard]] IndexRange faces() const { return {0, motion.topology.face_count()}; }
+  [[nodiscard]] Segment segment() const { return motion.segment(0); }
+
+  [[nodiscard]] reference::Triangle triangle(std::size_t f) const {
+    const Segment moving = segment();
+    reference::Triangle result{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const auto vertex = motion.topology.face(f)[corner];
+      const Vec3f a = moving.from[vertex], b = moving.to[vertex];
+      result.from[corner] = {a.x, a.y, a.z};
+      result.to[corner] = {b.x, b.y, b.z};
+    }
+    return result;
+  }
+
+  Motion motion;
+  std::vector<ControlNormals> normals;
+};
+
+// What a scheme gives for all faces at equidistant samples.
+class Output {
+ public:
+  Output(const std::string& name, const Subject& subject, std::size_t sample_count)
+      : face_count_(subject.faces().count), sample_count_(sample_count), values_(3 * face_count_ * sample_count) {
+    auto scheme = make_scheme(name);
+    EXPECT_TRUE(scheme.ok()) << name;
+    if (!scheme) return;
+    const Segment segment = subject.segment();
+    scheme.value()->prepare({&segment, subject.faces(), subject.normals});
+    fallback_count = scheme.value()->fallback_count();
+    flagged_count = scheme.value()->flagged_count();
+    for (std::size_t i = 0; i < sample_count; ++i) {
+      float* const out = values_.data() + 3 * face_count_ * i;
+      (void)scheme.value()->evaluate(time(i), VectorView<float>::packed(out, face_count_));
+    }
+  }
+
+  [[nodiscard]] double time(std::size_t sample) const {
+    return static_cast<double>(sample) / static_cast<double>(sample_count_ - 1);
+  }
+  [[nodiscard]] reference::VectorD at(std::size_t face, std::size_t sample) const {
+    const float* const v = values_.data() + 3 * (face_count_ * sample + face);
+    return {v[0], v[1], v[2]};
+  }
+
+  std::size_t fallback_count = 0;
+  std::size_t flagged_count = 0;
+
+ private:
+  std::size_t face_count_;
+  std::size_t sample_count_;
+  std::vector<float> values_;
+};
+
+struct Family {
+  const char* name;
+  Motion (*make)();
+};
+
+const std::array<Family, 3> kFamilies{
+    Family{"smooth morph", [] { return fixtures::smooth_morph(); }},
+    Family{"soup, independent ends", [] { return fixtures::large_soup(); }},
+    Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(); }},
+};
+
+// Fewer faces, for the dense searches.
+const std::array<Family, 3> kSmallFamilies{
+    Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
+    Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
+    Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
+};
+
+// ---- all schemes against their definitions -------------------------------------------------------------------------
+
+class SchemeOracle : public testing::TestWithParam<std::string> {};
+
+TEST_P(SchemeOracle, agrees_with_the_scheme) {
+  constexpr std::size_t kSamples = 21;
+  const std::string name = GetParam();
+  ASSERT_TRUE(reference::parse_scheme(name)) << "the oracle does not know this scheme";
+  for (const Family& family : kFamilies) {
+    SCOPED_TRACE(family.name);
+    const Subject subject(family.make());
+    const Output output(name, subject, kSamples);
+    double sum = 0, largest = 0, worst_time = 0, off_length = 0;
+    std::size_t judged = 0, worst_face = 0;
+    for (std::size_t f = 0; f < subject.faces().count; ++f) {
+      const reference::Triangle triangle = subject.triangle(f);
+      const reference::Vector middle = reference::to_real(output.at(f, kSamples / 2));
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        const auto expected = reference::unit_normal(name, triangle, output.time(i), {f, 0}, middle);
+        if (!expected) continue;
+        const reference::VectorD given = output.at(f, i);
+        off_length = std::max(off_length, std::fabs(reference::length(given) - 1));
+        const double error = reference::angle(given, reference::to_double(*expected)) / kDegree;
+        sum += error;
+        ++judged;
+        if (error > largest) {
+          largest = error;
+          worst_face = f;
+          worst_time = output.time(i);
+        }
+      }
+    }
+    ASSERT_GT(judged, 0U);
+    const double mean = sum / static_cast<double>(judged);
+    const double share = static_cast<double>(judged) / static_cast<double>(subject.faces().count * kSamples);
+    std::cout << "  " << family.name << ": mean " << mean << " deg, max " << largest << " deg (face " << worst_face
+              << ", t = " << worst_time << "), length off by " << off_length << ", judged " << 100 * share << " %, fallbacks " << output.fallback_count
+              << ", flagged " << output.flagged_count << "\n";
+    EXPECT_GE(share, 0.95);
+    EXPECT_LT(off_length, 1e-5);
+    EXPECT_LT(mean, 2e-4) << "degrees; worst: face " << worst_face << ", t = " << worst_time << ", " << largest;
+  }
+}
+
+// Motions on which something vanishes, overflows or is undefined in one scheme or another.
+const std::array<Family, 10> kNastyFamilies{
+    Family{"needles", [] { return fixtures::needle_soup(200); }},
+    Family{"edges of 1e-6", [] { return fixtures::tiny_soup(200); }},
+    Family{"edges of 1e6", [] { return fixtures::huge_soup(200); }},
+    Family{"edges of 1e-13", [] { return fixtures::soup({.face_count = 200, .seed = 31, .size = 1e-13}); }},
+    Family{"edges of 1e17", [] { return fixtures::soup({.face_count = 200, .seed = 32, .size = 1e17}); }},
+    Family{"far off the origin", [] { return fixtures::far_soup(200); }},
+    Family{"nearly collapsing", [] { return fixtures::collapsing_soup(1e-4, 200); }},
+    Family{"collapsing to rounding", [] { return fixtures::collapsing_soup(1e-30, 200); }},
+    Family{"standing still", [] { return fixtures::soup({.face_count = 200, .seed = 33, .motion = 0}); }},
+    Family{"turned inside out", [] { return fixtures::inside_out_soup(200); }},
+};
+
+TEST_P(SchemeOracle, meets_unit_vectors_or_zero_wherever_the_motion_is_nasty) {
+  constexpr std::size_t kSamples = 101;
+  const std::string name = GetParam();
+  for (const Family& family : kNastyFamilies) {
+    SCOPED_TRACE(family.name);
+    const Subject subject(family.make());
+    const Output output(name, subject, kSamples);
+    double off_length = 0, worst_time = 0;
+    std::size_t zeros = 0, worst_face = 0;
+    for (std::size_t f = 0; f < subject.faces().count; ++f) {
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        const reference::VectorD given = output.at(f, i);
+        if (given == reference::VectorD{}) {
+          ++zeros;
+          continue;
+        }
+        const double off = std::fabs(reference::length(given) - 1);
+        if (!(off <= off_length)) {  // NaN as well
+          off_length = off;
+          worst_face = f;
+          worst_time = output.time(i);
+        }
+      }
+    }
+    EXPECT_LT(off_length, 1e-5) << "face " << worst_face << ", t = " << worst_time;
+    EXPECT_EQ(zeros, 0U) << "every one of these faces has a normal at some time";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [](const auto& tested) {
+  std::string label = tested.param;
+  std::replace(label.begin(), label.end(), ':', '_');
+  return label;
+});
+
+TEST(scheme_oracle, knows_every_scheme_that_there_is) {
+  EXPECT_FALSE(scheme_descriptions().empty());
+  for (const std::string& name : scheme_names()) {
+    EXPECT_TRUE(reference::parse_scheme(name)) << name << " has no oracle";
+    EXPECT_TRUE(make_scheme(name).ok()) << name << " is described but cannot be made";
+  }
+}
+
+TEST(scheme_oracle, does_not_know_what_is_not_there) {
+  for (const char* name : {"", "spline", "lagrange", "lagrange:", "lagrange:x", "quaternion", "quaternion:random"}) {
+    EXPECT_FALSE(reference::parse_scheme(name)) << name;
+  }
+}
+
+// ---- the oracle against itself -------------------------------------------------------------------------------------
+
+TEST(scheme_oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) {
+  const Subject subject(fixtures::large_soup(200, 21));
+  std::size_t judged = 0;
+  for (const char* name : {"quaternion:matrix", "quaternion:edge", "quaternion:polar", "quaternion:random:3"}) {
+    for (std::size_t f = 0; f < subject.faces().count; ++f) {
+      const reference::Triangle triangle = subject.triangle(f);
+      const auto at = [&](reference::Real t) { return reference::unit_normal(name, triangle, t, {f, 0}); };
+      if (!at(0.5L)) continue;
+      const auto circle = reference::circle_through(*at(0), *at(0.5L), *at(1));
+      ASSERT_TRUE(circle);
+      EXPECT_LE(circle->end, reference::kPi + 1e-6L);  // quaternions on the shorter arc turn by half a turn at most
+      for (const reference::Real t : {0.1L, 0.3L, 0.77L}) {
+        EXPECT_LT(reference::angle(*at(t), circle->at(t * circle->end)), 1e-9L) << name << ", face " << f;
+        ++judged;
+      }
+    }
+  }
+  EXPECT_GT(judged, 2000U);
+}
+
+TEST(scheme_oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
+  const Subject subject(fixtures::large_soup(40, 22));
+  for (std::size_t f = 0; f < subject.faces().count; ++f) {
+    const reference::Triangle triangle = subject.triangle(f);
+    const reference::ExactSamples exact(triangle, 201);
+    const auto best = reference::optimal_circle_error(triangle, exact);
+    ASSERT_TRUE(best);
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const auto frames = reference::frames("random", triangle, seed, {f, 0});
+      ASSERT_TRUE(frames);
+      const double error = reference::mean_error(exact, [&](double t) {
+        return reference::to_double(*reference::quaternion_slerp(frames->first, frames->second, t));
+      });
+      EXPECT_GE(error, *best * (1 - 1e-3)) << "face " << f << ", seed " << seed;
+    }
+  }
+}
+
+// ---- searched schemes ----------------------------------------------------------------------------------------------
+
+// Compares the mean errors, face by face, of a scheme that searches with a dense search over the same family and with
+// members of the family that a scheme computes outright.
+template <class DenseSearch>
+void expect_nearly_optimal(const std::string& name, const std::vector<std::string>& members, DenseSearch&& search) {
+  constexpr std::size_t kSamples = 201;
+  for (const Family& family : kSmallFamilies) {
+    SCOPED_TRACE(family.name);
+    const Subject subject(family.make());
+    const Output output(name, subject, kSamples);
+    double total = 0, optimum = 0, worst_excess = 0;
+    std::size_t judged = 0, worst_face = 0;
+    for (std::size_t f = 0; f < subject.faces().count; ++f) {
+      const reference::Triangle triangle = subject.triangle(f);
+      const reference::ExactSamples exact(triangle, kSamples);
+      const auto best = search(triangle, exact);
+      if (!best) continue;
+      const double error = reference::mean_error(exact, [&](double t) {
+        return output.at(f, static_cast<std::size_t>(std::lround(t * static_cast<double>(kSamples - 1))));
+      });
+      ++judged;
+      total += error;
+      optimum += *best;
+      if (error / *best - 1 > worst_excess && error - *best > 1e-6) {
+        worst_excess = error / *best - 1;
+        worst_face = f;
+      }
+      EXPECT_GE(error, *best * 0.99 - 1e-6) << "face " << f << " leaves the family: better than its best member";
+      for (const std::string& member : members) {
+        if (!reference::unit_normal(member, triangle, reference::Real(0.5L), {f, 0})) continue;
+        const double other = reference::mean_error(exact, [&](double t) {
+          return reference::to_double(*reference::unit_normal(member, triangle, t, {f, 0}));
+        });
+        EXPECT_LE(error, other * 1.01 + 1e-6) << "face " << f << " is worse than " << member;
+      }
+    }
+    std::cout << "  " << family.name << ": " << total / optimum << " of the dense search over " << judged
+              << " faces (mean " << optimum / static_cast<double>(judged) / kDegree << " deg), worst face "
+              << worst_face << " by " << 100 * worst_excess << " %\n";
+    EXPECT_GE(judged, subject.faces().count * 95 / 100);
+    EXPECT_LE(total, optimum * 1.02);
+  }
+}
+
+TEST(quaternion_optimal, is_within_two_percent_of_a_dense_search_and_beats_every_other_frame) {
+  expect_nearly_optimal(
+      "quaternion:optimal", {"slerp", "quaternion:matrix", "quaternion:edge", "quaternion:polar"},
+      [](const auto& triangle, const auto& exact) { return reference::optimal_circle_error(triangle, exact); });
+}
+
+TEST(linear_scaled, is_within_two_percent_of_a_dense_search_and_never_worse_than_linear) {
+  expect_nearly_optimal("linear:scaled", {"linear"}, [](const auto& triangle, const auto& exact) {
+    return reference::scaled_linear_error(triangle, exact);
+  });
+}
+
+// ---- the exact curve in float32 ------------------------------------------------------------------------------------
+
+TEST(polynomial, has_an_error_above_zero_and_below_a_ten_thousandth_of_a_degree_on_large_motion) {
+  constexpr std::size_t kSamples = 21;
+  const Subject subject(fixtures::large_soup());
+  const Output output("polynomial", subject, kSamples);
+  double largest = 0;
+  std::size_t judged = 0;
+  for (std::size_t f = 0; f < subject.faces().count; ++f) {
+    const reference::Triangle triangle = subject.triangle(f);
+    const auto n0 = reference::exact_normal(triangle, 0), n1 = reference::exact_normal(triangle, 1);
+    const auto half = reference::exact_normal(triangle, reference::Real(0.5L));
+    const auto m = reference::subtract(reference::scaled(reference::Real(2), half),
+                                       reference::scaled(reference::Real(0.5L), reference::add(n0, n1)));
+    const auto size = std::max({reference::length(n0), reference::length(m), reference::length(n1)});
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const auto normal = reference::exact_normal(triangle, output.time(i));
+      if (reference::length(normal) < 1e-10L * size) continue;
+      largest = std::max(largest, reference::angle(output.at(f, i), reference::to_double(normal)) / kDegree);
+      ++judged;
+    }
+  }
+  std::cout << "  largest error " << largest << " deg, " << output.flagged_count << " of " << subject.faces().count
+            << " faces in double\n";
+  EXPECT_GT(judged, subject.faces().count * kSamples * 99 / 100);
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(largest, 1e-4);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,114 @@
+/// Normals of moving triangles without any rounding, in rational numbers.
+///
+/// Floats and doubles are rationals, and normals are polynomials in them, so n(t) and the control normals are rationals
+/// too. The only rounding is at the very end, when an angle becomes a double.
+#ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
+#define CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
+
+#include <gmpxx.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace chronormal::exact {
+
+using Rational = mpq_class;
+using Vector = std::array<Rational, 3>;
+
+/// Corners a, b, c at t = 0 and at t = 1.
+struct Triangle {
+  std::array<Vector, 3> from;
+  std::array<Vector, 3> to;
+};
+
+struct ControlNormals {
+  Vector n0, m, n1;
+};
+
+/// Any three finite floats or doubles, as they are.
+template <class S>
+[[nodiscard]] Vector vector(S x, S y, S z) {
+  return {Rational(static_cast<double>(x)), Rational(static_cast<double>(y)), Rational(static_cast<double>(z))};
+}
+
+[[nodiscard]] inline Vector subtract(const Vector& a, const Vector& b) {
+  return {Rational(a[0] - b[0]), Rational(a[1] - b[1]), Rational(a[2] - b[2])};
+}
+
+[[nodiscard]] inline Vector cross(const Vector& a, const Vector& b) {
+  return {Rational(a[1] * b[2] - a[2] * b[1]), Rational(a[2] * b[0] - a[0] * b[2]),
+          Rational(a[0] * b[1] - a[1] * b[0])};
+}
+
+[[nodiscard]] inline Rational dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Largest absolute component.
+[[nodiscard]] inline Rational max_abs(const Vector& a) {
+  Rational largest = 0;
+  for (const Rational& component : a) {
+    if (abs(component) > largest) largest = abs(component);
+  }
+  return largest;
+}
+
+[[nodiscard]] inline bool is_zero(const Vector& a) { return max_abs(a) == 0; }
+
+/// n(t) by eq. 1 on the corners at t.
+[[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) {
+  const Rational time(t);
+  std::array<Vector, 3> corner;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[i][k] = triangle.from[i][k] + time * (triangle.to[i][k] - triangle.from[i][k]);
+    }
+  }
+  return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
+}
+
+/// n(t) by eq. 5.
+[[nodiscard]] inline Vector normal_at(const ControlNormals& normals, double t) {
+  const Rational time(t), rest = 1 - time;
+  const Rational w0 = rest * rest, wm = 2 * time * rest, w1 = time * time;
+  Vector sum;
+  for (std::size_t k = 0; k < 3; ++k) sum[k] = w0 * normals.n0[k] + wm * normals.m[k] + w1 * normals.n1[k];
+  return sum;
+}
+
+/// n0, m and n1, the last two without (5): m is what makes the quadratic pass through the normal at t = 1/2.
+[[nodiscard]] inline ControlNormals control_normals(const Triangle& triangle) {
+  ControlNormals result{normal_at(triangle, 0.0), {}, normal_at(triangle, 1.0)};
+  const Vector half = normal_at(triangle, 0.5);
+  for (std::size_t k = 0; k < 3; ++k) result.m[k] = 2 * half[k] - (result.n0[k] + result.n1[k]) / 2;
+  return result;
+}
+
+/// Largest component of the three control normals.
+[[nodiscard]] inline Rational max_abs(const ControlNormals& normals) {
+  Rational largest = max_abs(normals.n0);
+  for (const Vector* v : {&normals.m, &normals.n1}) {
+    const Rational other = max_abs(*v);
+    if (other > largest) largest = other;
+  }
+  return largest;
+}
+
+/// Exact a / b as a double, to one rounding. Precondition: b is not zero.
+[[nodiscard]] inline double ratio(const Rational& a, const Rational& b) { return Rational(a / b).get_d(); }
+
+/// Angle in radians between a direction, taken as it is to the last bit, and an exact vector: right to 1e-15 relative,
+/// so that it tells 1e-12 from 1e-13. Cross and dot product are exact; both are divided by the lengths' scales, exactly
+/// again, before they become doubles. NaN if one of the two is zero.
+template <class S>
+[[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
+  const Vector candidate = vector(x, y, z);
+  const Rational scale = max_abs(candidate) * max_abs(exact);
+  if (scale == 0) return std::nan("");
+  const Vector sine = cross(candidate, exact);
+  const double sx = ratio(sine[0], scale), sy = ratio(sine[1], scale), sz = ratio(sine[2], scale);
+  return std::atan2(std::sqrt(sx * sx + sy * sy + sz * sz), ratio(dot(candidate, exact), scale));
+}
+
+}  // namespace chronormal::exact
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_

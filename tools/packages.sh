@@ -1,0 +1,42 @@
+# Sourced by ./run and ./test: installs what tools/packages.txt lists and the machine lacks.
+
+say() { printf 'chronormal: %s\n' "$*" >&2; }
+
+# listed_packages SECTION...: the packages of those sections.
+listed_packages() {
+  local wanted=" $* "
+  awk -v wanted="$wanted" '
+    /^\[/ { section = substr($0, 2, length($0) - 2); next }
+    NF && !/^#/ && index(wanted, " " section " ") { print }
+  ' "$root/tools/packages.txt"
+}
+
+# install_packages SECTION...: silent where nothing is missing.
+install_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "this is not Debian: the packages of tools/packages.txt must be there under the names of your system"
+    return 0
+  fi
+  local missing=() package
+  for package in $(listed_packages "$@"); do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      say "packages are missing, and there is neither root nor sudo to install them; as root, run"
+      say "  apt-get install --no-install-recommends ${missing[*]}"
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  say "installing ${missing[*]}"
+  if ! { "${as_root[@]}" apt-get update -q &&
+         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
+           "${missing[@]}"; } </dev/null >&2; then
+    say "the packages could not be installed; is there a network, and is this Debian 12 (apt-get says why above)?"
+    return 1
+  fi
+}
