@@ -45,8 +45,7 @@ Result<NamedComparison> compare_one(NamedMotion input, const Options& options, P
 Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress) {
   std::vector<InputOptions> inputs;
   if (options.each) {
-    for (const std::string& file : options.input.files)
-      inputs.push_back({{file}, {}, options.input.frames_per_second});
+    for (const std::string& file : options.input.files) inputs.push_back({{file}, {}, options.input.frames_per_second});
     for (const std::string& sample : options.input.samples)
       inputs.push_back({{}, {sample}, options.input.frames_per_second});
     if (inputs.empty()) inputs.push_back(options.input);
@@ -99,8 +98,8 @@ int run(const Options& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand(
-      "compare", "Hold ways to interpolate normals against the exact ones, on your mesh");
+  CLI::App* command =
+      program.add_subcommand("compare", "Hold ways to interpolate normals against the exact ones, on your mesh");
   auto options = std::make_shared<Options>();
   options->input.add_to(*command);
   command->add_flag("--each", options->each, "every INPUT and --sample is a motion of its own, side by side");

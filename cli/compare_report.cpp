@@ -182,8 +182,8 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
       const Quality& q = row.quality;
-      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name), c.vertices,
-                          c.faces, c.segments, c.samples, csv_field(row.scheme), degrees(q.sum),
+      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
+                          c.vertices, c.faces, c.segments, c.samples, csv_field(row.scheme), degrees(q.sum),
                           row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "", degrees(q.mean()),
                           degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element, q.max_at.t,
                           q.degenerate, row.fallbacks, row.flagged);

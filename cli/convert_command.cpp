@@ -13,7 +13,8 @@ int run(const Options& options) {
   Progress progress(options.common.quiet);
   const auto input = read_input(options.input, progress);
   if (!input) return report("convert", input.error());
-  if (const Status written = write_sequence(input.value().motion, options.common.output, options.common.force); !written)
+  if (const Status written = write_sequence(input.value().motion, options.common.output, options.common.force);
+      !written)
     return report("convert", written.error());
   return kExitDone;
 }

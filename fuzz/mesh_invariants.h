@@ -22,8 +22,8 @@ inline void require(bool condition, const char* what) {
   std::abort();
 }
 
-/// Aborts where the result of reading byte_count bytes is neither an error with code, place and message, nor a mesh that
-/// validate() accepts as both keyframes of a motion.
+/// Aborts where the result of reading byte_count bytes is neither an error with code, place and message, nor a mesh
+/// that validate() accepts as both keyframes of a motion.
 inline void check_mesh_invariants(Result<MeshFrame> result, std::size_t byte_count) {
   if (!result) {
     require(result.error().code == ErrorCode::kInvalidInput, "the code of an error is kInvalidInput");

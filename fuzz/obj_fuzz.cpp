@@ -1,7 +1,7 @@
 // Fuzz target of the OBJ reader: whatever the bytes are, the result is an error with a place, or a mesh that is valid
 // and no larger than the bytes can have said.
 #include "chronormal/io/obj.h"
-#include "fuzz/mesh_invariants.h"
+#include "mesh_invariants.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

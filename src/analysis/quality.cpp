@@ -7,9 +7,7 @@ namespace chronormal {
 
 double Quality::mean() const noexcept { return count == 0 ? 0 : sum / static_cast<double>(count); }
 
-double Quality::rms() const noexcept {
-  return count == 0 ? 0 : std::sqrt(sum_of_squares / static_cast<double>(count));
-}
+double Quality::rms() const noexcept { return count == 0 ? 0 : std::sqrt(sum_of_squares / static_cast<double>(count)); }
 
 void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first) {
   assert(exact.size() == normals.count);

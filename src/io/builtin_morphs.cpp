@@ -136,7 +136,9 @@ Motion soup() {
   std::vector<std::uint32_t> corners(3 * kFaces);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
   // By hand: the standard distributions differ between libraries.
-  const auto coordinate = [&random] { return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1); };
+  const auto coordinate = [&random] {
+    return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1);
+  };
   std::vector<Motion::Keyframe> keyframes(2);
   for (Motion::Keyframe& keyframe : keyframes) {
     keyframe.positions.resize(9 * kFaces);

@@ -19,13 +19,20 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
   return bytes;
 }
 
-// Takes the next word of a statement; empty at its end or where a comment begins.
+// Takes the next word of a statement; empty at its end or where a comment begins. Inside a word, # is not a comment:
+// 1.#QNAN is a number that some programs write, and must not be read as 1.
 std::string_view take_word(std::string_view& line) {
   const std::string_view word = scan::take_word(line);
-  const std::size_t comment = word.find('#');
-  if (comment == std::string_view::npos) return word;
+  if (!word.starts_with('#')) return word;
   line = {};
-  return word.substr(0, comment);
+  return {};
+}
+
+bool has_comment(std::string_view line) {
+  for (std::string_view word = scan::take_word(line); !word.empty(); word = scan::take_word(line)) {
+    if (word.starts_with('#')) return true;
+  }
+  return false;
 }
 
 class ObjReader {
@@ -83,8 +90,7 @@ Result<MeshFrame> ObjReader::read() {
   if (faces_.face_count() == 0)
     return error_in_line(last_line, "the file ends without a face (a line that begins with f)");
   if (largest_.index > static_cast<std::int64_t>(vertex_count()))
-    return error_in_line(largest_.line,
-                         corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
+    return error_in_line(largest_.line, corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
 
   Result<Topology> topology = faces_.build(vertex_count());
   if (!topology) return error_in_line(last_line, topology.error().text());
@@ -97,7 +103,7 @@ std::string_view ObjReader::whole_statement() {
   const auto is_continued = [](std::string_view& line) {
     std::string_view body = line;
     while (!body.empty() && body.back() == '\r') body.remove_suffix(1);
-    if (!body.ends_with('\\') || body.find('#') != std::string_view::npos) return false;
+    if (!body.ends_with('\\') || has_comment(body)) return false;
     body.remove_suffix(1);
     line = body;
     return true;

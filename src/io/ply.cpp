@@ -176,8 +176,8 @@ class BinarySource {
     return true;
   }
   bool fail_at_end() {
-    message_ = "the file ends before the data that its header declares: " + std::to_string(bytes_left()) +
-               " bytes are left";
+    message_ =
+        "the file ends before the data that its header declares: " + std::to_string(bytes_left()) + " bytes are left";
     return false;
   }
   // Sets the place back to the value that was just read.
@@ -232,9 +232,9 @@ class BodyReader {
     std::size_t row_bytes = 0;
     for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
     if (element.count <= source_.bytes_left() / row_bytes) return Success{};
-    return invalid_input(name_ + ", " + source_.place(),
-                         "the header declares " + std::to_string(element.count) + " elements " +
-                             scan::quoted(element.name) + ", for which the file is too short");
+    return invalid_input(name_ + ", " + source_.place(), "the header declares " + std::to_string(element.count) +
+                                                             " elements " + scan::quoted(element.name) +
+                                                             ", for which the file is too short");
   }
 
   [[nodiscard]] bool read_row(std::size_t e) {
@@ -326,18 +326,18 @@ Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
 std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {
   assert(positions.count == topology.vertex_count());
   std::size_t most_corners = 0;
-  for (std::size_t f = 0; f < topology.face_count(); ++f) most_corners = std::max(most_corners, topology.face(f).size());
+  for (std::size_t f = 0; f < topology.face_count(); ++f)
+    most_corners = std::max(most_corners, topology.face(f).size());
   const bool is_short = most_corners <= 255;  // lengths of lists fit in uchar, the usual type
   const char* const index_type = positions.count <= 0x80000000U ? "int" : "uint";
   const char* const encoding_name = encoding == PlyEncoding::kAscii                ? "ascii"
                                     : encoding == PlyEncoding::kBinaryLittleEndian ? "binary_little_endian"
                                                                                    : "binary_big_endian";
 
-  std::string bytes = std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " +
-                      std::to_string(positions.count) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(topology.face_count()) + "\nproperty list " + (is_short ? "uchar " : "uint ") +
-                      index_type + " vertex_indices\nend_header\n";
+  std::string bytes =
+      std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " + std::to_string(positions.count) +
+      "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(topology.face_count()) +
+      "\nproperty list " + (is_short ? "uchar " : "uint ") + index_type + " vertex_indices\nend_header\n";
 
   if (encoding == PlyEncoding::kAscii) {
     for (std::size_t v = 0; v < positions.count; ++v) {

@@ -19,7 +19,7 @@ bool is_ply(std::string_view first_bytes) {
 
 // The first line that is neither empty nor a comment begins with a common word of OBJ.
 bool is_obj(std::string_view first_bytes) {
-  constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o", "g",
+  constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o",      "g",
                                                           "mtllib", "s",  "l",  "p", "usemtl", "vp"};
   if (first_bytes.starts_with("\xEF\xBB\xBF")) first_bytes.remove_prefix(3);
   scan::Lines lines(first_bytes, first_bytes.find('\n') == std::string_view::npos ? '\r' : '\n');
@@ -79,8 +79,8 @@ Result<const MeshReader*> choose_mesh_reader(std::string_view bytes, const std::
   for (const MeshReader& reader : kReaders) {
     if (reader.recognises(bytes.substr(0, 512))) return &reader;
   }
-  return invalid_input(file_name, "neither the name nor the content tells the format; what can be read is " +
-                                      readable_formats());
+  return invalid_input(file_name,
+                       "neither the name nor the content tells the format; what can be read is " + readable_formats());
 }
 
 Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& name) {

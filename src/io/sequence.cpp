@@ -121,8 +121,8 @@ Status check_same_topology(const Topology& first, const Topology& other, const s
   for (std::size_t f = 0; f < first.face_count(); ++f) {
     const auto a = first.face(f), b = other.face(f);
     if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
-      return invalid_input(
-          place, "face " + std::to_string(f) + " differs from frame 0" + std::string(kTopologyMustNotChange));
+      return invalid_input(place,
+                           "face " + std::to_string(f) + " differs from frame 0" + std::string(kTopologyMustNotChange));
   }
   return Success{};
 }

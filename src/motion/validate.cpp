@@ -21,9 +21,9 @@ Status validate(const Motion& motion) {
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const Motion::Keyframe& keyframe = motion.keyframes[k];
     if (keyframe.positions.size() % 3 != 0 || keyframe.positions.size() / 3 != vertex_count)
-      return invalid_input(keyframe_place(motion, k),
-                           "the frame has " + std::to_string(keyframe.positions.size()) + " coordinates, but " +
-                               std::to_string(vertex_count) + " vertices need three each");
+      return invalid_input(keyframe_place(motion, k), "the frame has " + std::to_string(keyframe.positions.size()) +
+                                                          " coordinates, but " + std::to_string(vertex_count) +
+                                                          " vertices need three each");
     for (std::size_t i = 0; i < keyframe.positions.size(); ++i) {
       if (!std::isfinite(keyframe.positions[i]))
         return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),

@@ -22,9 +22,7 @@ constexpr double kSmallestShare = 0x1p-108;
 
 constexpr std::size_t kShortestRun = 8;
 
-double largest_component(const ControlNormals& c) {
-  return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
-}
+double largest_component(const ControlNormals& c) { return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)}); }
 
 // Whether p >= 0 on [0, 1] can be shown by its Bernstein coefficients after a few subdivisions.
 bool certainly_not_negative(const Bernstein<double, 4>& p, int depth) {
@@ -209,8 +207,7 @@ void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
     const auto c2 = run_planes(c1.z + run.count, run.count);
     fill(part, [=](std::size_t i) { return unscaled(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
   }
-  for (const Flagged& flagged : flagged_)
-    result.set(flagged.element, clamped_to_float(normal_at(flagged.exact, t)));
+  for (const Flagged& flagged : flagged_) result.set(flagged.element, clamped_to_float(normal_at(flagged.exact, t)));
 }
 
 std::size_t NormalCurves::bytes() const noexcept {

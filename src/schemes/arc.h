@@ -17,9 +17,7 @@ struct Arc {
   Vec3d w, p, q;
   double angle = 0;  ///< A, from u0 to u1 counter-clockwise about the axis, in [0, 2 pi]
 
-  [[nodiscard]] Vec3d at(double t) const {
-    return w + std::cos(t * angle) * p + std::sin(t * angle) * q;
-  }
+  [[nodiscard]] Vec3d at(double t) const { return w + std::cos(t * angle) * p + std::sin(t * angle) * q; }
 };
 
 inline constexpr double kPi = 3.14159265358979323846;

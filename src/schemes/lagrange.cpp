@@ -47,9 +47,7 @@ class Lagrange {
   }
 
  private:
-  [[nodiscard]] double node_time(std::size_t k) const {
-    return static_cast<double>(k) / static_cast<double>(degree_);
-  }
+  [[nodiscard]] double node_time(std::size_t k) const { return static_cast<double>(k) / static_cast<double>(degree_); }
 
   std::size_t degree_;
 };

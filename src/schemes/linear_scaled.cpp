@@ -2,8 +2,8 @@
 // it run faster where the normal does (docs/theory.md, section 4.8). The best that a host can do which only adds one
 // delta. s is found per element by a search over its logarithm.
 
-#include "schemes/mean_error.h"
 #include "schemes/makers.h"
+#include "schemes/mean_error.h"
 #include "schemes/minimize.h"
 
 namespace chronormal {
@@ -55,8 +55,6 @@ class ScaledLinear {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_scaled_linear() {
-  return std::make_unique<CurveScheme<ScaledLinear>>(ScaledLinear{});
-}
+std::unique_ptr<Scheme> make_scaled_linear() { return std::make_unique<CurveScheme<ScaledLinear>>(ScaledLinear{}); }
 
 }  // namespace chronormal

@@ -9,19 +9,19 @@
 
 namespace chronormal {
 
-std::unique_ptr<Scheme> make_recompute();                              // recompute.cpp
-std::unique_ptr<Scheme> make_polynomial();                             // polynomial.cpp
-std::unique_ptr<Scheme> make_rational();                               // rational.cpp
-std::unique_ptr<Scheme> make_lagrange(std::size_t degree);             // lagrange.cpp
-std::unique_ptr<Scheme> make_scaled_linear();                          // linear_scaled.cpp
-std::unique_ptr<Scheme> make_slerp();                                  // slerp.cpp
-std::unique_ptr<Scheme> make_de_casteljau(std::size_t normal_count);   // de_casteljau.cpp
-std::unique_ptr<Scheme> make_quaternion_matrix();                      // quaternion.cpp
+std::unique_ptr<Scheme> make_recompute();                             // recompute.cpp
+std::unique_ptr<Scheme> make_polynomial();                            // polynomial.cpp
+std::unique_ptr<Scheme> make_rational();                              // rational.cpp
+std::unique_ptr<Scheme> make_lagrange(std::size_t degree);            // lagrange.cpp
+std::unique_ptr<Scheme> make_scaled_linear();                         // linear_scaled.cpp
+std::unique_ptr<Scheme> make_slerp();                                 // slerp.cpp
+std::unique_ptr<Scheme> make_de_casteljau(std::size_t normal_count);  // de_casteljau.cpp
+std::unique_ptr<Scheme> make_quaternion_matrix();                     // quaternion.cpp
 std::unique_ptr<Scheme> make_quaternion_edge();
 std::unique_ptr<Scheme> make_quaternion_polar();
 std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed);
-std::unique_ptr<Scheme> make_quaternion_optimal();                     // quaternion_optimal.cpp
-std::unique_ptr<Scheme> make_circle();                                 // circle.cpp
+std::unique_ptr<Scheme> make_quaternion_optimal();  // quaternion_optimal.cpp
+std::unique_ptr<Scheme> make_circle();              // circle.cpp
 std::unique_ptr<Scheme> make_timed_circle();
 
 inline constexpr std::size_t kMaxLagrangeDegree = 64;      // the weights at equidistant nodes grow as 2^degree

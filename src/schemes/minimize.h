@@ -35,7 +35,8 @@ template <class F>
   std::size_t minimum_count = 0;
   for (std::size_t i = 0; i < n; ++i) {
     offer(points[i], values[i]);
-    const bool below_left = i == 0 || values[i] <= values[i - 1], below_right = i + 1 == n || values[i] <= values[i + 1];
+    const bool below_left = i == 0 || values[i] <= values[i - 1],
+               below_right = i + 1 == n || values[i] <= values[i + 1];
     if (below_left && below_right) minima[minimum_count++] = i;
   }
   std::sort(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(minimum_count),

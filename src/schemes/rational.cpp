@@ -20,9 +20,10 @@ class Rational {
     const ControlNormals& exact = element.control_normals();
     const double largest = std::fmax(length(exact.n0), std::fmax(length(exact.m), length(exact.n1)));
     const double scale = 1 / largest;
-    // An end that vanishes keeps its limit direction, at a length that only counts where nothing else does.
+    // An end that (almost) vanishes keeps its direction, at a length that only counts where nothing else does.
     const auto end = [scale](const Vec3d& n, const UnitNormal& u) {
-      return u.direction == Direction::kRegular ? scale * n : kVanishingLength * u.vector;
+      const Vec3d scaled = scale * n;
+      return length(scaled) > kVanishingLength ? scaled : kVanishingLength * u.vector;
     };
     const Vec3d n0 = end(exact.n0, element.start()), m = scale * exact.m, n1 = end(exact.n1, element.end());
     put_vector(c, 0, n0);

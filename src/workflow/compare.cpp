@@ -81,8 +81,15 @@ std::vector<Tally> compare_block(const Segment& segment, IndexRange faces, const
 }  // namespace
 
 std::vector<std::string> default_schemes() {
-  return {"linear",        "quadratic",         "cubic",              "polynomial",  "slerp",
-          "decasteljau:4", "quaternion:matrix", "quaternion:optimal", "circle:timed"};
+  return {"linear",
+          "quadratic",
+          "cubic",
+          "polynomial",
+          "slerp",
+          "decasteljau:4",
+          "quaternion:matrix",
+          "quaternion:optimal",
+          "circle:timed"};
 }
 
 Result<Comparison> compare(const Motion& motion, const CompareOptions& options) {

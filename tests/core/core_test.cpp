@@ -91,7 +91,11 @@ TEST(Parallel, every_index_runs_once) {
 }
 
 TEST(Parallel, an_exception_comes_out) {
-  EXPECT_THROW(parallel_for(100, [](std::size_t i) { if (i == 42) throw std::runtime_error("42"); }), std::runtime_error);
+  EXPECT_THROW(parallel_for(100,
+                            [](std::size_t i) {
+                              if (i == 42) throw std::runtime_error("42");
+                            }),
+               std::runtime_error);
 }
 
 }  // namespace

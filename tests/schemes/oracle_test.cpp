@@ -10,8 +10,10 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chronormal/motion/motion.h"
@@ -23,7 +25,13 @@
 namespace chronormal {
 namespace {
 
+using fixtures::Shape;
+
 constexpr double kDegree = std::numbers::pi / 180;
+
+// How far from 1 a length may be. `rational` alone divides by a length that is not measured but evaluated, as a quartic
+// in float32 that loses digits where n(t) is small against its control normals: its direction is as good as any.
+double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 1e-4 : 1e-6; }
 
 // All names that make_scheme() knows, with numbers for K and SEED.
 std::vector<std::string> scheme_names() {
@@ -161,13 +169,13 @@ TEST_P(SchemeOracle, agrees_with_the_scheme) {
               << ", t = " << worst_time << "), length off by " << off_length << ", judged " << 100 * share << " %, fallbacks " << output.fallback_count
               << ", flagged " << output.flagged_count << "\n";
     EXPECT_GE(share, 0.95);
-    EXPECT_LT(off_length, 1e-5);
+    EXPECT_LT(off_length, length_tolerance(name));
     EXPECT_LT(mean, 2e-4) << "degrees; worst: face " << worst_face << ", t = " << worst_time << ", " << largest;
   }
 }
 
 // Motions on which something vanishes, overflows or is undefined in one scheme or another.
-const std::array<Family, 10> kNastyFamilies{
+const std::array<Family, 16> kNastyFamilies{
     Family{"needles", [] { return fixtures::needle_soup(200); }},
     Family{"edges of 1e-6", [] { return fixtures::tiny_soup(200); }},
     Family{"edges of 1e6", [] { return fixtures::huge_soup(200); }},
@@ -178,6 +186,13 @@ const std::array<Family, 10> kNastyFamilies{
     Family{"collapsing to rounding", [] { return fixtures::collapsing_soup(1e-30, 200); }},
     Family{"standing still", [] { return fixtures::soup({.face_count = 200, .seed = 33, .motion = 0}); }},
     Family{"turned inside out", [] { return fixtures::inside_out_soup(200); }},
+    Family{"born of lines", [] { return fixtures::degenerate_soup(Shape::kLine, Shape::kTriangle); }},
+    Family{"ending as lines", [] { return fixtures::degenerate_soup(Shape::kTriangle, Shape::kLine); }},
+    Family{"from line to line", [] { return fixtures::degenerate_soup(Shape::kLine, Shape::kLine); }},
+    Family{"born of points", [] { return fixtures::degenerate_soup(Shape::kPoint, Shape::kTriangle); }},
+    Family{"ending as points", [] { return fixtures::degenerate_soup(Shape::kTriangle, Shape::kPoint); }},
+    Family{"needles that stand still",
+           [] { return fixtures::soup({.face_count = 200, .seed = 34, .motion = 0, .needle = 1e-7}); }},
 };
 
 TEST_P(SchemeOracle, meets_unit_vectors_or_zero_wherever_the_motion_is_nasty) {
@@ -204,8 +219,38 @@ TEST_P(SchemeOracle, meets_unit_vectors_or_zero_wherever_the_motion_is_nasty) {
         }
       }
     }
-    EXPECT_LT(off_length, 1e-5) << "face " << worst_face << ", t = " << worst_time;
+    EXPECT_LT(off_length, length_tolerance(name)) << "face " << worst_face << ", t = " << worst_time;
     EXPECT_EQ(zeros, 0U) << "every one of these faces has a normal at some time";
+  }
+}
+
+TEST_P(SchemeOracle, meets_zero_where_a_face_has_no_normal_at_any_time) {
+  for (const auto& [start, end] : {std::pair{Shape::kPoint, Shape::kPoint}, std::pair{Shape::kPoint, Shape::kLine},
+                                   std::pair{Shape::kLine, Shape::kPoint}}) {
+    const Subject subject(fixtures::degenerate_soup(start, end, 20));
+    const Output output(GetParam(), subject, 5);
+    for (std::size_t f = 0; f < subject.faces().count; ++f) {
+      for (std::size_t i = 0; i < 5; ++i) ASSERT_EQ(output.at(f, i), reference::VectorD{}) << "face " << f;
+    }
+  }
+}
+
+TEST_P(SchemeOracle, meets_the_same_bits_in_a_part_of_the_faces) {
+  const Subject subject(fixtures::large_soup(60, 35));
+  const IndexRange part{17, 30};
+  const Output whole(GetParam(), subject, 5);
+  auto scheme = make_scheme(GetParam());
+  ASSERT_TRUE(scheme.ok());
+  const Segment segment = subject.segment();
+  scheme.value()->prepare({&segment, part, std::span(subject.normals).subspan(part.first, part.count)});
+  std::vector<float> values(3 * part.count);
+  const auto view = VectorView<float>::packed(values.data(), part.count);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(scheme.value()->evaluate(whole.time(i), view), 0U);
+    for (std::size_t f = 0; f < part.count; ++f) {
+      const Vec3d u = to_double(view[f]);
+      ASSERT_EQ(whole.at(part.first + f, i), (reference::VectorD{u.x, u.y, u.z})) << "face " << part.first + f;
+    }
   }
 }
 
@@ -214,6 +259,31 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
   std::replace(label.begin(), label.end(), ':', '_');
   return label;
 });
+
+// The turn of a random frame depends on the segment too.
+TEST(scheme_oracle, agrees_with_random_frames_in_a_second_segment) {
+  Motion motion = fixtures::large_soup(50, 36);
+  motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);
+  motion.keyframes[0].time = -1;
+  motion.segments.clear();
+  motion.connect_as_sequence();
+  ASSERT_EQ(motion.segments.size(), 2U);
+  const Subject same_segment(fixtures::large_soup(50, 36));  // gives the triangles of segment 1
+  const Segment segment = motion.segment(1);
+  ASSERT_EQ(segment.index, 1U);
+  auto scheme = make_scheme("quaternion:random:7");
+  ASSERT_TRUE(scheme.ok());
+  scheme.value()->prepare({&segment, same_segment.faces(), same_segment.normals});
+  std::vector<float> values(3 * same_segment.faces().count);
+  const auto view = VectorView<float>::packed(values.data(), same_segment.faces().count);
+  (void)scheme.value()->evaluate(0.375, view);
+  for (std::size_t f = 0; f < same_segment.faces().count; ++f) {
+    const auto expected = reference::unit_normal("quaternion:random:7", same_segment.triangle(f), 0.375L, {f, 1});
+    ASSERT_TRUE(expected);
+    const Vec3d u = to_double(view[f]);
+    EXPECT_LT(reference::angle({u.x, u.y, u.z}, reference::to_double(*expected)), 1e-5) << "face " << f;
+  }
+}
 
 TEST(scheme_oracle, knows_every_scheme_that_there_is) {
   EXPECT_FALSE(scheme_descriptions().empty());

@@ -228,6 +228,35 @@ struct SoupOptions {
   return motion;
 }
 
+/// How the corners of degenerate_soup() lie at one end.
+enum class Shape { kTriangle, kLine, kPoint };
+
+/// Triangles that start and end as given: on a line they have no normal there, though exactly, since coordinates are
+/// small integers; from line to line they do have one in between.
+[[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
+                                            std::uint64_t seed = 9) {
+  Random random(seed);
+  const auto coordinate = [&random] { return static_cast<double>(random.below(2001)) - 1000; };
+  // On a line, c divides a b in the ratio `along`; were it the same at both ends, the corners would stay on a line.
+  const auto append = [&](std::vector<Point>& points, Shape shape, double along) {
+    std::array<Point, 3> corners{};
+    for (Point& corner : corners) {
+      for (double& c : corner) c = coordinate();
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (shape == Shape::kLine) corners[2][k] = corners[0][k] + along * (corners[1][k] - corners[0][k]);
+      if (shape == Shape::kPoint) corners[1][k] = corners[2][k] = corners[0][k];
+    }
+    points.insert(points.end(), corners.begin(), corners.end());
+  };
+  std::vector<Point> from, to;
+  for (std::size_t f = 0; f < face_count; ++f) {
+    append(from, start, static_cast<double>(random.below(3)));
+    append(to, end, -1 - static_cast<double>(random.below(3)));
+  }
+  return make_motion(make_soup(face_count), from, to);
+}
+
 /// A closed mesh: its points on the unit sphere, and its faces.
 struct ClosedMesh {
   std::vector<Point> points;

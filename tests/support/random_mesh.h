@@ -15,12 +15,14 @@
 
 namespace chronormal::test {
 
-/// A mesh of 1 to 20 vertices, with coordinates of any finite bit pattern, and 1 to 20 faces of 3 to 6 corners.
+/// A mesh of 1 to 20 vertices, with coordinates of any finite bit pattern, and 1 to 20 faces of 3 to 6 corners (of 3
+/// alone in one mesh of four).
 [[nodiscard]] inline MeshFrame random_mesh() {
   const auto vertex_count = *rc::gen::inRange<std::size_t>(1, 21);
+  const auto any_bits = rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>());
   MeshFrame frame;
   for (std::size_t i = 0; i < 3 * vertex_count; ++i) {
-    const auto value = std::bit_cast<float>(*rc::gen::arbitrary<std::uint32_t>());
+    const auto value = std::bit_cast<float>(*any_bits);
     frame.positions.push_back(std::isfinite(value) ? value : 0.1F);
   }
   const auto face_count = *rc::gen::inRange<std::size_t>(1, 21);

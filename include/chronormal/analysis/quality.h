@@ -1,8 +1,8 @@
 /// How far interpolated normals are from exact ones: the measure of the paper's Table 1.
 ///
 /// For one element, the angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed; for a
-/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero, or for which
-/// the scheme has no direction, is counted as degenerate and left out.
+/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero, or for
+/// which the scheme has no direction, is counted as degenerate and left out.
 ///
 /// Units      radians inside; what is shown to people is in degrees.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_H_
@@ -26,12 +26,12 @@ struct ErrorPlace {
 };
 
 struct Quality {
-  double sum = 0;             ///< of the angles, radians: q and Q of the paper
-  double sum_of_squares = 0;  ///< radians squared
-  double max = 0;             ///< radians
-  ErrorPlace max_at;          ///< the first place of the largest angle
-  std::size_t count = 0;      ///< pairs that were summed
-  std::size_t degenerate = 0; ///< pairs that were left out
+  double sum = 0;              ///< of the angles, radians: q and Q of the paper
+  double sum_of_squares = 0;   ///< radians squared
+  double max = 0;              ///< radians
+  ErrorPlace max_at;           ///< the first place of the largest angle
+  std::size_t count = 0;       ///< pairs that were summed
+  std::size_t degenerate = 0;  ///< pairs that were left out
 
   [[nodiscard]] double mean() const noexcept;  ///< radians; 0 where nothing was summed
   [[nodiscard]] double rms() const noexcept;   ///< radians

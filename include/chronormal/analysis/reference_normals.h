@@ -1,7 +1,7 @@
 /// The exact normals that every scheme is held against.
 ///
-/// They are computed as the paper writes them, by the cross product (eq. 1) of vertices interpolated at t, in double and
-/// from nothing but positions: no control normals and no scheme, so that an error of those cannot hide here.
+/// They are computed as the paper writes them, by the cross product (eq. 1) of vertices interpolated at t, in double
+/// and from nothing but positions: no control normals and no scheme, so that an error of those cannot hide here.
 #ifndef CHRONORMAL_ANALYSIS_REFERENCE_NORMALS_H_
 #define CHRONORMAL_ANALYSIS_REFERENCE_NORMALS_H_
 

@@ -97,9 +97,9 @@ template <class T, std::size_t N>
 /// The roots of a polynomial of degree up to N in [0, 1].
 template <std::size_t N>
 struct Roots {
-  std::array<double, N> t{};     ///< ascending; a root of even multiplicity may appear once or twice
+  std::array<double, N> t{};  ///< ascending; a root of even multiplicity may appear once or twice
   std::size_t count = 0;
-  bool everywhere = false;       ///< p is zero for all t; count is 0
+  bool everywhere = false;  ///< p is zero for all t; count is 0
 };
 
 namespace detail {

@@ -42,7 +42,8 @@ struct SinCos {
 
   const float z = r * r;
   const float polynomial =
-      r + r * z * (-0.3333333176f + z * (0.1999954048f + z * (-0.1426395560f + z * (0.1074373147f + z * -0.0645192816f))));
+      r +
+      r * z * (-0.3333333176f + z * (0.1999954048f + z * (-0.1426395560f + z * (0.1074373147f + z * -0.0645192816f))));
   const float octant = fold ? polynomial + 0.785398163f : polynomial;
   const float quadrant = y > ax ? 1.570796327f - octant : octant;
   return x < 0 ? 3.141592654f - quadrant : quadrant;

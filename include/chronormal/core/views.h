@@ -48,9 +48,7 @@ struct VectorView {
     return {x[i * stride], y[i * stride], z[i * stride]};
   }
 
-  void set(std::size_t i, const Vec3<Scalar>& value) const noexcept
-    requires(!std::is_const_v<T>)
-  {
+  void set(std::size_t i, const Vec3<Scalar>& value) const noexcept requires(!std::is_const_v<T>) {
     assert(i < count);
     x[i * stride] = value.x;
     y[i * stride] = value.y;
@@ -65,8 +63,7 @@ struct VectorView {
   }
 
   operator VectorView<const T>() const noexcept  // NOLINT(google-explicit-constructor): adds const only
-    requires(!std::is_const_v<T>)
-  {
+      requires(!std::is_const_v<T>) {
     return {x, y, z, count, stride};
   }
 };

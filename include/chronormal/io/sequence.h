@@ -40,8 +40,9 @@ struct SequenceOptions {
 /// Errors: those of find_frames(), of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj),
 /// line 17"); kInvalidInput for fewer than two frames, and where vertex count or faces differ from those of frame 0;
 /// kUsage for a frame rate that is not positive.
-[[nodiscard]] Result<Motion> read_sequence(std::span<const std::string> inputs, const SequenceOptions& options,
-                                           const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+[[nodiscard]] Result<Motion> read_sequence(
+    std::span<const std::string> inputs, const SequenceOptions& options,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 /// Writes every keyframe to a file of its own. In the file name of pattern, one %d or %0Nd stands for the number of the
 /// keyframe, from 0; it may be missing for a motion of one keyframe. The extension chooses the format: .obj, or .ply

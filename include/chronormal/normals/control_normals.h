@@ -47,10 +47,10 @@ void face_control_normals(const Segment& segment, IndexRange faces, std::span<Co
 
 /// Whether a direction could be given, and how.
 enum class Direction {
-  kRegular,      ///< n(t) is not zero
-  kLimit,        ///< n(t) = 0, and both sides (or the only side, at an end) agree on the limit
-  kDiscontinuous,///< n(t) = 0, and the two sides are antipodal: the limit from before is given, a stated fallback
-  kNone,         ///< n is zero in the whole segment: (0, 0, 0) is given
+  kRegular,        ///< n(t) is not zero
+  kLimit,          ///< n(t) = 0, and both sides (or the only side, at an end) agree on the limit
+  kDiscontinuous,  ///< n(t) = 0, and the two sides are antipodal: the limit from before is given, a stated fallback
+  kNone,           ///< n is zero in the whole segment: (0, 0, 0) is given
 };
 
 struct UnitNormal {

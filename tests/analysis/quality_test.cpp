@@ -1,0 +1,113 @@
+// quality and reference_normals.
+
+#include "chronormal/analysis/quality.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "chronormal/analysis/reference_normals.h"
+
+namespace chronormal {
+namespace {
+
+TEST(Quality, sums_angles_and_remembers_the_worst_place) {
+  const std::vector<Vec3d> exact = {{0, 0, 5}, {0, 0, 1e-30}, {1e30, 0, 0}};
+  float normals[] = {0, 0, 1, 0, 1, 0, 0.70710678f, 0.70710678f, 0};
+  Quality quality;
+  quality.add(exact, VectorView<float>::packed(normals, 3), {2, 10, 0.25});
+  EXPECT_NEAR(quality.sum, 0.75 * 3.14159265358979, 1e-7);
+  EXPECT_NEAR(quality.mean(), 0.25 * 3.14159265358979, 1e-7);
+  EXPECT_NEAR(quality.rms(), 3.14159265358979 * std::sqrt((0.25 + 0.0625) / 3), 1e-7);
+  EXPECT_NEAR(quality.max, 3.14159265358979 / 2, 1e-7);
+  EXPECT_EQ(quality.max_at.segment, 2u);
+  EXPECT_EQ(quality.max_at.element, 11u);
+  EXPECT_EQ(quality.max_at.t, 0.25);
+  EXPECT_EQ(quality.count, 3u);
+}
+
+TEST(Quality, tiny_angles_count) {
+  const std::vector<Vec3d> exact = {{1, 0, 0}};
+  float normals[] = {1, 1e-7f, 0};
+  Quality quality;
+  quality.add(exact, VectorView<float>::packed(normals, 1), {});
+  EXPECT_NEAR(quality.sum, 1e-7, 1e-14);
+}
+
+TEST(Quality, pairs_without_a_direction_are_counted_not_summed) {
+  const std::vector<Vec3d> exact = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  float normals[] = {1, 0, 0, 0, 0, 0, 0, 1, 0};
+  Quality quality;
+  quality.add(exact, VectorView<float>::packed(normals, 3), {});
+  EXPECT_EQ(quality.degenerate, 2u);
+  EXPECT_EQ(quality.count, 1u);
+  EXPECT_NEAR(quality.mean(), 3.14159265358979 / 2, 1e-7);
+}
+
+TEST(Quality, parts_add_up) {
+  const std::vector<Vec3d> exact = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  float normals[] = {0, 0, 1, 0, 0.1f, 1, 0, 0.3f, 1, 0, 0.3f, 1};
+  const auto view = VectorView<float>::packed(normals, 4);
+  Quality whole, first, second;
+  whole.add(exact, view, {0, 0, 0});
+  first.add(std::span(exact).first(2), view.part({0, 2}), {0, 0, 0});
+  second.add(std::span(exact).last(2), view.part({2, 2}), {0, 2, 0});
+  first.add(second);
+  EXPECT_NEAR(first.sum, whole.sum, 1e-15);
+  EXPECT_EQ(first.max, whole.max);
+  EXPECT_EQ(first.max_at.element, 2u);  // the first of equals
+  EXPECT_EQ(whole.max_at.element, 2u);
+  EXPECT_EQ(first.count, 4u);
+}
+
+TEST(Quality, nothing_measured_is_zero_not_nan) {
+  EXPECT_EQ(Quality{}.mean(), 0);
+  EXPECT_EQ(Quality{}.rms(), 0);
+}
+
+Vec3d reference(const std::vector<float>& from, const std::vector<float>& to, double t) {
+  const Topology topology = Topology::polygons(from.size() / 3, {0, static_cast<std::uint32_t>(from.size() / 3)},
+                                               from.size() == 9 ? std::vector<std::uint32_t>{0, 1, 2}
+                                                                : std::vector<std::uint32_t>{0, 1, 2, 3})
+                                .value();
+  const Segment segment{&topology,
+                        VectorView<const float>::packed(from.data(), from.size() / 3),
+                        VectorView<const float>::packed(to.data(), to.size() / 3),
+                        0,
+                        1,
+                        0};
+  Vec3d n;
+  reference_normals(segment, {0, 1}, t, {&n, 1});
+  return n;
+}
+
+TEST(ReferenceNormals, are_cross_products_of_interpolated_vertices) {
+  const std::vector<float> from = {0, 0, 0, 1, 0, 0, 0, 1, 0}, to = {0, 0, 2, 1, 0, 2, 0, 1, 4};
+  const Vec3d n = reference(from, to, 0.5);  // (0,0,1) (1,0,1) (0,1,2)
+  EXPECT_EQ(n, (Vec3d{0, -1, 1}));
+}
+
+TEST(ReferenceNormals, of_a_polygon_are_its_vector_area) {
+  const std::vector<float> square = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  EXPECT_EQ(reference(square, square, 0.3), (Vec3d{0, 0, 2}));
+}
+
+TEST(ReferenceNormals, a_collapse_is_exact_zero_wherever_it_lies) {
+  // Zero at t = 0.35, a sample that binary fractions cannot name.
+  const std::vector<float> from = {0, 0, 0, 7, 0, 0, 0, 7, 0}, to = {0, 0, 0, -13, 0, 0, 0, -13, 0};
+  EXPECT_EQ(reference(from, to, 0.35), Vec3d{});
+  EXPECT_FALSE(reference(from, to, 0.3500001) == Vec3d{});
+}
+
+TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
+  std::vector<float> from = {0, 0, 0, 1, 0, 0, 0, 1, 0}, to = {0, 0, 0, 0, 1, 0, 0, 0, 1};
+  const Vec3d near = reference(from, to, 0.3);
+  for (auto* points : {&from, &to})
+    for (float& value : *points) value += 4096;
+  const Vec3d far = reference(from, to, 0.3);
+  EXPECT_LT(length(near - far), 1e-12);
+}
+
+}  // namespace
+}  // namespace chronormal

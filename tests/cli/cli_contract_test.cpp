@@ -1,0 +1,278 @@
+// What scripts depend on: exit codes, what goes to stdout and what to stderr, the JSON, and files that are never half
+// written. Runs the program itself.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Cli : public testing::Test {
+ protected:
+  Cli() {
+    char name[] = "/tmp/chronormal_cli_XXXXXX";
+    folder_ = mkdtemp(name);
+  }
+  ~Cli() override { fs::remove_all(folder_); }
+
+  // Runs `chronormal ARGUMENTS` in a folder of its own.
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
+    return run_shell(std::string(CHRONORMAL_PROGRAM) + " " + arguments, folder_.string(), input);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  // Two keyframes, a.obj and b.obj.
+  void write_two_frames() const {
+    write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("b.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+  }
+
+  fs::path folder_;
+};
+
+void expect_error(const ProcessResult& result, int exit_code, const std::vector<std::string>& words) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_EQ(result.out, "");
+  for (const std::string& word : words)
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << " in " << result.err;
+}
+
+TEST_F(Cli, version_and_help_go_to_stdout) {
+  EXPECT_EQ(run("--version").out, "chronormal " CHRONORMAL_VERSION "\n");
+  EXPECT_EQ(run("--version").exit_code, 0);
+  const ProcessResult help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_EQ(help.err, "");
+  EXPECT_NE(help.out.find("compare"), std::string::npos);
+  const ProcessResult compare_help = run("compare --help");
+  EXPECT_EQ(compare_help.exit_code, 0);
+  for (const char* word : {"--schemes", "--json", "quaternion:optimal", "eversion", "Exit codes"})
+    EXPECT_NE(compare_help.out.find(word), std::string::npos) << word;
+}
+
+TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
+  write_two_frames();
+  expect_error(run(""), 2, {"--help"});
+  expect_error(run("frobnicate"), 2, {"--help"});
+  expect_error(run("compare"), 2, {"nothing to read", "compare --help"});
+  expect_error(run("compare --no-such-option"), 2, {"--no-such-option"});
+  expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
+  expect_error(run("compare a.obj b.obj --samples x"), 2, {"--samples"});
+  expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
+  expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"scheme"});
+  expect_error(run("compare a.obj b.obj --schemes lagrange:0"), 2, {"1 to 64"});
+  expect_error(run("compare a.obj b.obj --elements edges"), 2, {"--elements"});
+  expect_error(run("compare a.obj b.obj --json --csv"), 2, {"--csv"});
+  expect_error(run("compare a.obj b.obj --fps 0"), 2, {"frame"});
+  expect_error(run("compare --sample teapot"), 2, {"teapot", "twist"});
+  expect_error(run("compare --sample twist --sample bend"), 2, {"--each"});
+  expect_error(run("convert --sample twist"), 2, {"--output"});
+  expect_error(run("convert --sample twist -o twist_%d.stl"), 2, {".obj", ".ply"});
+}
+
+TEST_F(Cli, a_missing_file_is_exit_1_and_names_it) {
+  write_two_frames();
+  expect_error(run("compare a.obj missing.obj"), 1, {"missing.obj"});
+  expect_error(run("compare 'none_*.obj'"), 1, {"none_*.obj"});
+}
+
+TEST_F(Cli, invalid_input_is_exit_3_with_file_line_and_frame) {
+  write_two_frames();
+  write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n");
+  expect_error(run("compare a.obj bad.obj"), 3, {"frame 1", "bad.obj", "line 5", "4"});
+  write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_error(run("compare a.obj nan.obj"), 3, {"nan.obj", "line 2"});
+  write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n");
+  expect_error(run("compare a.obj other.obj"), 3, {"frame 1", "face 0"});
+  expect_error(run("compare a.obj"), 3, {"a.obj"});
+  write("text.txt", "hello\n");
+  expect_error(run("compare a.obj text.txt"), 3, {"text.txt", "obj", "ply"});
+}
+
+TEST_F(Cli, compare_prints_an_aligned_table_and_nothing_else) {
+  write_two_frames();
+  const ProcessResult result = run("compare a.obj b.obj --no-times");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  std::istringstream lines(result.out);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "a.obj ... b.obj: 3 vertices, 1 face, 1 segment x 21 samples");
+  std::getline(lines, line);
+  std::getline(lines, line);
+  const std::size_t mean = line.find("mean") + 4;
+  std::getline(lines, line);
+  EXPECT_EQ(line.substr(mean - 7, 7), "degrees");
+  int rows = 0;
+  while (std::getline(lines, line) && !line.empty()) {
+    ++rows;
+    EXPECT_NE(line[mean - 1], ' ') << line;
+    EXPECT_EQ(line[mean], ' ') << line;
+  }
+  EXPECT_EQ(rows, 9);
+}
+
+TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
+  write_two_frames();
+  const ProcessResult result = run("compare a.obj b.obj --json --samples 5");
+  ASSERT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  const Json json = Json::parse(result.out);
+  EXPECT_EQ(json["chronormal"], CHRONORMAL_VERSION);
+  EXPECT_EQ(json["command"], "compare");
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["input"]["vertices"], 3);
+  EXPECT_EQ(json["input"]["faces"], 1);
+  EXPECT_EQ(json["input"]["segments"], 1);
+  EXPECT_EQ(json["input"]["name"], "a.obj ... b.obj");
+  EXPECT_EQ(json["elements"], "faces");
+  EXPECT_EQ(json["samples"], 5);
+  ASSERT_EQ(json["schemes"].size(), 9u);
+  std::vector<std::string> names;
+  for (const Json& row : json["schemes"]) {
+    names.push_back(row["scheme"]);
+    for (const char* key : {"sum_degrees", "relative_to_linear", "mean_degrees", "rms_degrees", "max_degrees",
+                            "degenerate", "prepare_ns", "evaluate_ns", "bytes"})
+      EXPECT_TRUE(row[key].is_number()) << key;
+    for (const char* key : {"segment", "element", "t"}) EXPECT_TRUE(row["max_at"][key].is_number()) << key;
+    for (const char* key : {"add", "multiply", "divide", "sqrt", "trigonometric"})
+      EXPECT_TRUE(row["operations"][key].is_number_integer()) << key;
+    EXPECT_NEAR(row["mean_degrees"].get<double>() * 5, row["sum_degrees"].get<double>(), 1e-9);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
+                                             "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
+  // Linear at the middle, by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and 3/4 alike.
+  EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
+}
+
+TEST_F(Cli, schemes_are_selected_and_ordered) {
+  const Json json = Json::parse(run("compare --sample soup --schemes slerp,linear --samples 3 --json").out);
+  ASSERT_EQ(json["schemes"].size(), 2u);
+  EXPECT_EQ(json["schemes"][0]["scheme"], "slerp");
+  EXPECT_EQ(json["schemes"][1]["scheme"], "linear");
+}
+
+TEST_F(Cli, csv_has_a_line_per_scheme_and_as_many_fields_as_the_header) {
+  write_two_frames();
+  const ProcessResult result = run("compare a.obj b.obj --csv");
+  std::istringstream lines(result.out);
+  std::string header, line;
+  std::getline(lines, header);
+  const auto fields = [](const std::string& text) { return std::count(text.begin(), text.end(), ','); };
+  EXPECT_TRUE(header.starts_with("input,vertices,faces,segments,elements,samples,scheme,sum_degrees"));
+  int rows = 0;
+  while (std::getline(lines, line)) {
+    EXPECT_EQ(fields(line), fields(header)) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 9);
+}
+
+TEST_F(Cli, csv_quotes_a_name_with_a_comma) {
+  fs::create_directory(folder_ / "a,b");
+  write("a,b/1.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("a,b/2.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+  const std::string out = run("compare 'a,b' --csv --schemes linear").out;
+  EXPECT_NE(out.find("\n\"a,b\",3,1,1,faces"), std::string::npos) << out;
+}
+
+TEST_F(Cli, each_puts_inputs_side_by_side) {
+  write_two_frames();
+  fs::create_directory(folder_ / "walk");
+  for (const char* frame : {"1", "2", "10"})
+    write(std::string("walk/") + frame + ".obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 ") + frame + "\nf 1 2 3\n");
+  const ProcessResult table = run("compare --each walk --sample soup --schemes linear,slerp --samples 5");
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_NE(table.out.find("walk: 3 vertices, 1 face, 2 segments"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("soup: 15,000 vertices"), std::string::npos);
+  const Json json = Json::parse(run("compare --each walk --sample soup --schemes linear,slerp --samples 5 --json").out);
+  ASSERT_EQ(json["inputs"].size(), 2u);
+  EXPECT_EQ(json["inputs"][0]["input"]["name"], "walk");
+  EXPECT_EQ(json["inputs"][1]["schemes"][1]["scheme"], "slerp");
+}
+
+TEST_F(Cli, a_stream_can_be_a_keyframe) {
+  write_two_frames();
+  const Json files = Json::parse(run("compare a.obj b.obj --json --no-times").out);
+  const Json stream = Json::parse(run("compare - b.obj --json --no-times", read("a.obj")).out);
+  EXPECT_EQ(files["schemes"], stream["schemes"]);
+}
+
+TEST_F(Cli, output_without_times_is_the_same_on_every_run) {
+  EXPECT_EQ(run("compare --sample twist --no-times").out, run("compare --sample twist --no-times").out);
+  EXPECT_EQ(run("compare --sample twist --no-times --csv").out, run("compare --sample twist --no-times --csv").out);
+}
+
+TEST_F(Cli, an_existing_file_is_kept_without_force) {
+  write_two_frames();
+  write("table.txt", "precious\n");
+  expect_error(run("compare a.obj b.obj -o table.txt"), 1, {"table.txt", "--force"});
+  EXPECT_EQ(read("table.txt"), "precious\n");
+  EXPECT_EQ(run("compare a.obj b.obj -o table.txt --force").exit_code, 0);
+  EXPECT_TRUE(read("table.txt").starts_with("a.obj ... b.obj"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "a temporary file was left behind";
+}
+
+TEST_F(Cli, a_full_device_is_an_error) {
+  write_two_frames();
+  for (const char* arguments : {"compare a.obj b.obj -o /dev/full", "compare a.obj b.obj >/dev/full"}) {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments;
+    EXPECT_NE(result.err.find("space"), std::string::npos) << result.err;
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(Cli, a_folder_that_does_not_exist_is_an_error_before_the_work) {
+  expect_error(run("compare --sample soup -o no/such/folder/table.txt"), 1, {"no/such/folder"});
+}
+
+TEST_F(Cli, an_error_leaves_no_output_file) {
+  write("bad.obj", "v 0 0 0\nf 1 2 3\n");
+  EXPECT_EQ(run("compare bad.obj bad.obj -o table.txt").exit_code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "table.txt"));
+}
+
+TEST_F(Cli, convert_writes_keyframes_that_compare_reads_back) {
+  ASSERT_EQ(run("convert --sample twist -o twist_%d.obj").exit_code, 0);
+  ASSERT_EQ(run("convert --sample twist -o twist_%02d.ply").exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "twist_1.obj"));
+  EXPECT_TRUE(fs::exists(folder_ / "twist_01.ply"));
+  const Json direct = Json::parse(run("compare --sample twist --json --no-times").out);
+  EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.obj' --json --no-times").out)["schemes"]);
+  EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.ply' --json --no-times").out)["schemes"]);
+}
+
+TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) {
+  EXPECT_EQ(run("compare --sample eversion --schemes linear:scaled,quaternion:optimal").err, "");
+}
+
+TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
+  if (run_shell("command -v script", "/tmp").exit_code != 0) GTEST_SKIP() << "there is no `script` to make a terminal";
+  const std::string command = std::string(CHRONORMAL_PROGRAM) +
+                              " compare --sample eversion --schemes linear:scaled,quaternion:optimal --samples 101";
+  const ProcessResult shown = run_shell("script -qec '" + command + "' /dev/null", folder_.string());
+  EXPECT_NE(shown.out.find("comparing ["), std::string::npos);
+  EXPECT_NE(shown.out.find("\033[K"), std::string::npos);
+  const ProcessResult quiet = run_shell("script -qec '" + command + " --quiet' /dev/null", folder_.string());
+  EXPECT_EQ(quiet.out.find("comparing ["), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chronormal

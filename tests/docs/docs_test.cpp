@@ -1,0 +1,175 @@
+// The documents are executed: every command in them runs, and what they print stands as it is printed.
+//
+// A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
+// command whose output has measured times in it says --no-times, or shows no output. Output "?" is to be filled in. A
+// block ```cpp under a line
+// <!-- examples/NAME.cpp --> is that file, which examples/ builds and the tests run.
+//
+// With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+using Lines = std::vector<std::string>;
+
+const fs::path kRoot = CHRONORMAL_SOURCE_DIR;
+
+Lines lines_of(const std::string& text) {
+  Lines lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> paths = {kRoot / "README.md", kRoot / "CONTRIBUTING.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "docs")) {
+    if (entry.path().extension() == ".md") paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+bool updating() {
+  const char* value = std::getenv("CHRONORMAL_UPDATE_DOCS");
+  return value != nullptr && std::string(value) == "1";
+}
+
+// Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
+ProcessResult run_documented(std::string command, const fs::path& folder) {
+  command = std::regex_replace(command, std::regex(R"(build/release\b)"), CHRONORMAL_BUILD_DIR);
+  command = std::regex_replace(command, std::regex(R"(\./run\b)"), CHRONORMAL_PROGRAM);
+  return run_shell("{ " + command + "\n} 2>&1", folder.string());
+}
+
+bool matches(const Lines& pattern, std::size_t p, const Lines& lines, std::size_t l) {
+  if (p == pattern.size()) return l == lines.size();
+  if (pattern[p] == "...") {
+    for (std::size_t skip = l; skip <= lines.size(); ++skip) {
+      if (matches(pattern, p + 1, lines, skip)) return true;
+    }
+    return false;
+  }
+  return l < lines.size() && pattern[p] == lines[l] && matches(pattern, p + 1, lines, l + 1);
+}
+
+std::string joined(const Lines& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
+}
+
+// The lines of one console block, checked, or with the output as it is now.
+Lines check_console(const Lines& block, const fs::path& folder, const std::string& where) {
+  Lines renewed;
+  for (std::size_t i = 0; i < block.size();) {
+    if (!block[i].starts_with("$ ")) {
+      ADD_FAILURE() << where << ": a console block begins with '$ ': " << block[i];
+      return block;
+    }
+    std::string command = block[i].substr(2);
+    renewed.push_back(block[i++]);
+    while (command.ends_with('\\') && i < block.size()) {
+      command = command.substr(0, command.size() - 1) + block[i];
+      renewed.push_back(block[i++]);
+    }
+    Lines shown;
+    while (i < block.size() && !block[i].starts_with("$ ")) shown.push_back(block[i++]);
+
+    const ProcessResult result = run_documented(command, folder);
+    const Lines actual = lines_of(result.out);
+    // A command may be shown to fail: then its message is shown too.
+    if (shown.empty()) {
+      EXPECT_EQ(result.exit_code, 0) << where << ": " << command << "\n" << result.out;
+    }
+    const bool current = shown.empty() || matches(shown, 0, actual, 0);
+    const bool has_gap = std::find(shown.begin(), shown.end(), "...") != shown.end();
+    if (updating() && !has_gap && !shown.empty()) {
+      shown = actual;
+    } else {
+      EXPECT_TRUE(current) << where << ": " << command << "\nprints\n"
+                           << result.out << "but the document shows\n"
+                           << joined(shown);
+    }
+    renewed.insert(renewed.end(), shown.begin(), shown.end());
+  }
+  return renewed;
+}
+
+TEST(Documents, every_command_runs_and_prints_what_is_shown) {
+  int blocks = 0;
+  for (const fs::path& path : documents()) {
+    char name[] = "/tmp/chronormal_docs_XXXXXX";
+    const fs::path folder = mkdtemp(name);
+    const Lines lines = lines_of(read(path));
+    Lines renewed;
+    for (std::size_t i = 0; i < lines.size();) {
+      renewed.push_back(lines[i]);
+      if (lines[i++] != "```console") continue;
+      ++blocks;
+      const std::string where = fs::relative(path, kRoot).string() + ":" + std::to_string(i);
+      Lines block;
+      while (i < lines.size() && lines[i] != "```") block.push_back(lines[i++]);
+      const Lines checked = check_console(block, folder, where);
+      renewed.insert(renewed.end(), checked.begin(), checked.end());
+    }
+    fs::remove_all(folder);
+    if (updating() && renewed != lines) std::ofstream(path, std::ios::binary) << joined(renewed);
+  }
+  EXPECT_GT(blocks, 5);
+}
+
+TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
+  int quotes = 0;
+  for (const fs::path& path : documents()) {
+    const Lines lines = lines_of(read(path));
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (lines[i] != "```cpp") continue;
+      std::smatch match;
+      const bool named = i > 0 && std::regex_match(lines[i - 1], match, std::regex("<!-- (examples/\\S+\\.cpp) -->"));
+      EXPECT_TRUE(named) << path << ":" << i + 1 << ": code without <!-- examples/NAME.cpp --> above it";
+      if (!named) continue;
+      ++quotes;
+      Lines block;
+      while (++i < lines.size() && lines[i] != "```") block.push_back(lines[i]);
+      EXPECT_EQ(joined(block), read(kRoot / match[1].str())) << path;
+    }
+  }
+  EXPECT_GT(quotes, 0);
+}
+
+TEST(Documents, links_to_files_lead_somewhere) {
+  const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+  for (const fs::path& path : documents()) {
+    const std::string text = read(path);
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it)
+      EXPECT_TRUE(fs::exists(path.parent_path() / (*it)[1].str())) << path << " links to " << (*it)[1];
+  }
+}
+
+TEST(Documents, the_changelog_knows_the_version) {
+  EXPECT_NE(read(kRoot / "CHANGELOG.md").find("## " CHRONORMAL_VERSION), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,220 @@
+#include "chronormal/io/file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+using test::read_whole;
+using test::TemporaryFolder;
+
+std::string error_of(const Status& status) {
+  if (status) return "no error";
+  EXPECT_EQ(status.error().code, ErrorCode::kFailed);
+  return status.error().text();
+}
+
+mode_t permissions_of(const std::string& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0);
+  return status.st_mode & 07777;
+}
+
+// Bytes that no pipe takes at once.
+std::string many_bytes() {
+  std::string bytes(3000001, ' ');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7 + i / 251);
+  return bytes;
+}
+
+// Puts a descriptor in the place of another one while it lives.
+class Redirect {
+ public:
+  Redirect(int from, int to) : from_(from), saved_(::dup(from)) { ::dup2(to, from); }
+  Redirect(const Redirect&) = delete;
+  Redirect& operator=(const Redirect&) = delete;
+  ~Redirect() {
+    ::dup2(saved_, from_);
+    ::close(saved_);
+  }
+
+ private:
+  int from_, saved_;
+};
+
+TEST(FileBytes, are_all_bytes_of_a_file_and_survive_a_move) {
+  const TemporaryFolder folder;
+  const std::string bytes = many_bytes();
+  Result<FileBytes> file = FileBytes::open(folder.write("a", bytes));
+  ASSERT_TRUE(file.ok()) << file.error().text();
+  FileBytes moved = std::move(file).value();
+  EXPECT_TRUE(moved.bytes() == bytes);
+  moved = FileBytes::open(folder.write("b", "two")).value();
+  EXPECT_EQ(moved.bytes(), "two");
+  EXPECT_EQ(FileBytes::open(folder.write("empty", "")).value().bytes(), "");
+}
+
+TEST(FileBytes, pipe_and_standard_input_are_read_to_the_end) {
+  const TemporaryFolder folder;
+  const std::string bytes = many_bytes();
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const bool as_stdin : {false, true}) {
+    // The writer goes through write_output, which must not rename over the pipe.
+    std::thread writer([&] { EXPECT_TRUE(write_output(pipe, bytes, false).ok()); });
+    if (as_stdin) {
+      const int opened = ::open(pipe.c_str(), O_RDONLY);
+      const Redirect redirect(STDIN_FILENO, opened);
+      EXPECT_TRUE(FileBytes::open("-").value().bytes() == bytes);
+      ::close(opened);
+    } else {
+      EXPECT_TRUE(FileBytes::open(pipe).value().bytes() == bytes);
+    }
+    writer.join();
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(FileBytes, file_of_unknown_size_is_read_to_the_end) {
+  EXPECT_NE(FileBytes::open("/proc/self/status").value().bytes().find("Pid:"), std::string_view::npos);
+}
+
+TEST(FileBytes, missing_file_and_folder_are_errors_with_the_path) {
+  const TemporaryFolder folder;
+  const Result<FileBytes> missing = FileBytes::open(folder / "no");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, ErrorCode::kFailed);
+  EXPECT_EQ(missing.error().text(), folder / "no" + ": No such file or directory");
+  const Result<FileBytes> directory = FileBytes::open(folder.path());
+  ASSERT_FALSE(directory.ok());
+  EXPECT_EQ(directory.error().text(), folder.path() + ": this is a folder, not a file");
+}
+
+TEST(WriteOutput, new_file_has_the_permissions_of_the_umask) {
+  const TemporaryFolder folder;
+  const mode_t before = ::umask(027);
+  EXPECT_TRUE(write_output(folder / "a", "bytes", false).ok());
+  ::umask(before);
+  EXPECT_EQ(read_whole(folder / "a"), "bytes");
+  EXPECT_EQ(permissions_of(folder / "a"), 0640U);
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(WriteOutput, existing_file_is_kept_without_force_and_replaced_with_it) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a", "old");
+  ASSERT_EQ(::chmod(path.c_str(), 0604), 0);
+  const std::string refusal = path + ": the file exists already; pass --force to overwrite it";
+  EXPECT_EQ(error_of(write_output(path, "new", false)), refusal);
+  EXPECT_EQ(error_of(check_output(path, false)), refusal);
+  EXPECT_EQ(read_whole(path), "old");
+  EXPECT_TRUE(check_output(path, true).ok());
+  EXPECT_TRUE(write_output(path, "new", true).ok());
+  EXPECT_EQ(read_whole(path), "new");
+  EXPECT_EQ(permissions_of(path), 0604U);
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(WriteOutput, replaced_file_stays_whole_for_who_has_it_open) {
+  const TemporaryFolder folder;
+  const std::string old = many_bytes();
+  const std::string path = folder.write("a", old);
+  const FileBytes before = FileBytes::open(path).value();
+  EXPECT_TRUE(write_output(path, "new", true).ok());
+  EXPECT_TRUE(before.bytes() == old);
+}
+
+TEST(WriteOutput, symbolic_link_stays_and_its_target_is_written) {
+  const TemporaryFolder folder;
+  const TemporaryFolder elsewhere;
+  const std::string target = elsewhere.write("target", "old");
+  std::filesystem::create_symlink(target, folder / "middle");
+  std::filesystem::create_symlink("middle", folder / "link");
+  EXPECT_NE(error_of(write_output(folder / "link", "new", false)).find("--force"), std::string::npos);
+  EXPECT_TRUE(write_output(folder / "link", "new", true).ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "middle"));
+  EXPECT_EQ(read_whole(target), "new");
+
+  std::filesystem::create_symlink(elsewhere / "not_yet", folder / "dangling");
+  EXPECT_TRUE(write_output(folder / "dangling", "made", false).ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "dangling"));
+  EXPECT_EQ(read_whole(elsewhere / "not_yet"), "made");
+
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_NE(error_of(write_output(folder / "loop", "x", true)), "no error");
+}
+
+TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  EXPECT_EQ(error_of(write_output("/dev/full", "bytes", false)), "/dev/full: No space left on device");
+  EXPECT_TRUE(write_output("/dev/null", "bytes", false).ok());
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  const int full = ::open("/dev/full", O_WRONLY);
+  std::string error;
+  {
+    const Redirect redirect(STDOUT_FILENO, full);
+    error = error_of(write_output("-", "bytes", false));
+  }
+  ::close(full);
+  EXPECT_EQ(error, "<stdout>: No space left on device");
+}
+
+TEST(WriteOutput, standard_output_and_its_other_names_are_streams) {
+  const TemporaryFolder folder;
+  const int file = ::open((folder / "out").c_str(), O_WRONLY | O_CREAT, 0600);
+  bool all_ok = true;
+  {
+    const Redirect redirect(STDOUT_FILENO, file);
+    for (const char* const name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})
+      all_ok = all_ok && write_output(name, "1", false).ok();
+  }
+  ::close(file);
+  EXPECT_TRUE(all_ok);
+  EXPECT_EQ(read_whole(folder / "out"), "1111");
+}
+
+TEST(WriteOutput, failure_leaves_no_temporary_and_the_old_file) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(error_of(write_output(folder.path(), "x", true)), folder.path() + ": this is a folder, not a file");
+  EXPECT_NE(error_of(write_output(folder / "no/where", "x", false)).find("can not write in its folder"),
+            std::string::npos);
+  EXPECT_NE(error_of(write_output(folder / std::string(300, 'a'), "x", false)), "no error");
+  EXPECT_TRUE(write_output(folder / std::string(255, 'a'), "x", false).ok());
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+// The system refuses bytes beyond a limit, as it would on a full disk.
+TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a", "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{1000, before.rlim_max};
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Status replaced = write_output(path, many_bytes(), true);
+  const Status made = write_output(folder / "b", many_bytes(), false);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(error_of(replaced), path + ": File too large");
+  EXPECT_EQ(error_of(made), folder / "b" + ": File too large");
+  EXPECT_EQ(read_whole(path), "old");
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+}  // namespace
+}  // namespace chronormal

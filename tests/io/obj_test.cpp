@@ -1,0 +1,171 @@
+#include "chronormal/io/obj.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_mesh.h"
+
+namespace chronormal {
+namespace {
+
+constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+MeshFrame read_good(const std::string& bytes) {
+  Result<MeshFrame> result = read_obj(bytes, "walk.obj");
+  if (!result) {
+    ADD_FAILURE() << result.error().text();
+    return {};
+  }
+  return std::move(result).value();
+}
+
+std::string error_of(const std::string& bytes) {
+  const Result<MeshFrame> result = read_obj(bytes, "walk.obj");
+  if (result) return "no error";
+  EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
+  return result.error().text();
+}
+
+std::vector<std::uint32_t> corners_of(const MeshFrame& frame) {
+  return {frame.topology.corners().begin(), frame.topology.corners().end()};
+}
+
+using Corners = std::vector<std::uint32_t>;
+using Positions = std::vector<float>;
+
+TEST(ReadObj, reads_every_form_of_a_corner) {
+  const MeshFrame frame = read_good("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/7/9 2//-8 3/4 4/ -1 1//\nf +1 2 -1\n");
+  EXPECT_EQ(corners_of(frame), (Corners{0, 1, 2, 3, 3, 0, 0, 1, 3}));
+  EXPECT_EQ(frame.topology.face(0).size(), 6U);
+  EXPECT_EQ(frame.topology.face(1).size(), 3U);
+}
+
+TEST(ReadObj, keeps_polygons_before_and_after_triangles) {
+  const MeshFrame frame = read_good("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 1 2 3 4\nf 4 3 2\n");
+  ASSERT_EQ(frame.topology.face_count(), 4U);
+  EXPECT_EQ(frame.topology.face(1)[2], 3U);
+  EXPECT_EQ(frame.topology.face(2).size(), 4U);
+  EXPECT_EQ(frame.topology.face(3)[0], 3U);
+}
+
+TEST(ReadObj, all_line_ends_tabs_comments_and_a_byte_order_mark_change_nothing) {
+  const MeshFrame frame = read_good(kTriangle);
+  for (const char* const bytes :
+       {"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
+        "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "\t v\t0 \t0  0 \n\n  v 1 0 0 #x\nv 0 1 0 # y\n f 1 2 3 #\n",
+        "v 0 0 0\nv 1 \\\n0 \\\r\n 0\nv 0 1 0\nf 1\\\n2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\"}) {
+    const MeshFrame other = read_good(bytes);
+    EXPECT_EQ(other.topology, frame.topology) << bytes;
+    EXPECT_EQ(other.positions, frame.positions) << bytes;
+  }
+}
+
+TEST(ReadObj, comment_is_not_continued_by_a_backslash) {
+  EXPECT_EQ(read_good("v 0 0 0\nv 1 0 0\n# from C:\\models\\\nv 0 1 0\nf 1 2 3\n").positions.size(), 9U);
+}
+
+TEST(ReadObj, other_statements_and_further_numbers_of_a_vertex_are_left_out) {
+  const MeshFrame frame = read_good(
+      "mtllib v.mtl\no v\ng f 1 2\nvt 9 nan\nvn x\nvp 1\nv 1 2 3 1\nv 4 5 6 0.5 0.5 0.5\nv 7 8 9 1 nan 1e99\nusemtl f\n"
+      "s off\nl 1 99\np 77\ncurv 1 2\nv1 2 3\n42\nf 1 2 3\n");
+  EXPECT_EQ(frame.positions, (Positions{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(ReadObj, positive_indices_may_name_vertices_that_follow) {
+  EXPECT_EQ(corners_of(read_good("f 1 2 3\nv 0 0 0\nv 1 0 0\nf -1 -2 3\nv 0 1 0\n")), (Corners{0, 1, 2, 1, 0, 2}));
+}
+
+TEST(ReadObj, numbers_are_rounded_to_the_nearest_float_and_tiny_ones_to_zero) {
+  const MeshFrame frame = read_good(
+      "v .5 -1. +1e+2\nv 1e-50 -1e-400 1e-46\nv 1.4e-45 1e-40 3.4028235e38\nv 0e999 00.1 0.000000000000000001e18\n"
+      "f 1 2 3\n");
+  EXPECT_TRUE(test::same_bits(frame.positions,
+                              {0.5F, -1.0F, 100.0F, 0.0F, -0.0F, 0.0F, std::numeric_limits<float>::denorm_min(), 1e-40F,
+                               std::numeric_limits<float>::max(), 0.0F, 0.1F, 1.0F}));
+}
+
+TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
+  EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"), "walk.obj, line 3: y of vertex 1: 'nan' is not a finite number");
+  EXPECT_EQ(error_of("v 0 0\n"), "walk.obj, line 1: z of vertex 0: a number is missing");
+  EXPECT_EQ(error_of("v 0 0 1.5x\n"), "walk.obj, line 1: z of vertex 0: '1.5x' is not a number");
+  EXPECT_EQ(error_of("v 1e39 0 0\n"), "walk.obj, line 1: x of vertex 0: '1e39' is too large");
+  for (const char* const word : {"inf",
+                                 "-inf",
+                                 "+nan",
+                                 "infinity",
+                                 "nan(1)",
+                                 "1#x",
+                                 "1e400",
+                                 "-1e400",
+                                 "1e999999999999999999999",
+                                 "0x10",
+                                 "1,5",
+                                 "--1",
+                                 "+-1",
+                                 "+",
+                                 "-",
+                                 ".",
+                                 "e5",
+                                 "1e",
+                                 "1.2.3",
+                                 "1.#QNAN",
+                                 "1e5e5",
+                                 "100000000000000000000000000000000000000000.0"}) {
+    const std::string error = error_of(std::string(kTriangle) + "v 0 " + word + " 0\n");
+    EXPECT_TRUE(error.starts_with("walk.obj, line 5: y of vertex 3: ")) << error;
+  }
+  EXPECT_NE(error_of("v 1 2 3 4x\n").find("'4x' is not a number"), std::string::npos);
+}
+
+TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(error_of(three + "f 1 2 3\nf 1 4 2\nf 1 2 3\n"),
+            "walk.obj, line 5: corner 1 of face 1 names vertex 4, but the file has 3 vertices");
+  EXPECT_EQ(error_of(three + "f 1 2 -4\nv 0 0 0"),
+            "walk.obj, line 4: corner 2 of face 0 names vertex -4, but the file has 3 vertices so far");
+  EXPECT_EQ(error_of(three + "f 1 0 2\n"),
+            "walk.obj, line 4: corner 1 of face 0: '0': vertices are counted from 1, not from 0");
+  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: face 0 has 2 corners, but a face needs three or more");
+  EXPECT_EQ(error_of(three + "f\n"), "walk.obj, line 4: face 0 has 0 corners, but a face needs three or more");
+  EXPECT_EQ(error_of(three + "f 1 2 4294967298\n"),
+            "walk.obj, line 4: corner 2 of face 0 names vertex 4294967298, but the file has 3 vertices");
+  EXPECT_EQ(error_of(three + "f 1 2 99999999999999999999\n"),
+            "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is more than a mesh can have");
+  for (const char* const word : {"1.5", "1/x", "1/2/3/4", "/1", "//", "1//1x", "a", "1/2.5", "-", "1-2"})
+    EXPECT_TRUE(error_of(three + "f 1 2 " + word + "\n").starts_with("walk.obj, line 4: corner 2 of face 0: ")) << word;
+}
+
+TEST(ReadObj, place_of_a_statement_of_several_lines_is_its_first_line) {
+  EXPECT_TRUE(error_of("v 0 0 0\nv 0 \\\n0 \\\nx\nf 1 1 1\n").starts_with("walk.obj, line 2: "));
+  EXPECT_TRUE(error_of("v 0 0 0\nv 0 \\\n0 \\\n0\nf 1 1 9\n").starts_with("walk.obj, line 5: "));
+}
+
+TEST(ReadObj, file_without_vertices_or_faces_is_an_error) {
+  EXPECT_EQ(error_of(""), "walk.obj, line 1: the file ends without a vertex (a line that begins with v)");
+  EXPECT_EQ(error_of("v 0 0 0\nl 1 1\n"), "walk.obj, line 2: the file ends without a face (a line that begins with f)");
+}
+
+TEST(ReadObj, strange_bytes_do_not_reach_the_message) {
+  EXPECT_EQ(error_of(std::string("v \x1b[31m\xff 0 0\n")), "walk.obj, line 1: x of vertex 0: '?[31m?' is not a number");
+  EXPECT_LT(error_of("v " + std::string(100000, 'a')).size(), 120U);
+}
+
+RC_GTEST_PROP(WriteObj, what_was_written_reads_back_bit_for_bit, ()) {
+  const MeshFrame frame = test::random_mesh();
+  const Result<MeshFrame> back = read_obj(write_obj(frame.topology, test::positions_of(frame)), "back.obj");
+  RC_ASSERT(back.ok());
+  RC_ASSERT(back.value().topology == frame.topology);
+  RC_ASSERT(test::same_bits(back.value().positions, frame.positions));
+}
+
+TEST(WriteObj, writes_the_fewest_digits) {
+  const MeshFrame frame = read_good("v 0.1 -0 1e20\nv 1 2 3\nv 4 5 16777216\nf 3 1 2\n");
+  EXPECT_EQ(write_obj(frame.topology, test::positions_of(frame)), "v 0.1 -0 1e+20\nv 1 2 3\nv 4 5 16777216\nf 3 1 2\n");
+}
+
+}  // namespace
+}  // namespace chronormal

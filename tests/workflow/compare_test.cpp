@@ -1,0 +1,142 @@
+#include "chronormal/workflow/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chronormal/io/builtin_morphs.h"
+
+namespace chronormal {
+namespace {
+
+const SchemeComparison& row(const Comparison& comparison, const std::string& scheme) {
+  for (const SchemeComparison& r : comparison.schemes) {
+    if (r.scheme == scheme) return r;
+  }
+  ADD_FAILURE() << "no row " << scheme;
+  return comparison.schemes.front();
+}
+
+TEST(Compare, one_face_by_hand) {
+  // From +z to +x by a quarter turn of the frame: linear, halfway at t = 1/2, against the exact cross product.
+  Motion motion;
+  motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
+  motion.connect_as_sequence();
+  CompareOptions options{{"linear", "polynomial"}, 3, {}};
+  const auto comparison = compare(motion, options);
+  ASSERT_TRUE(comparison.ok());
+  // At 1/2 the vertices are (1,1,0)/2 and (0,1,1)/2: n = (1, -1, 1) / 4; linear gives (1, 0, 1).
+  const double expected = std::acos(2 / std::sqrt(2.0) / std::sqrt(3.0));
+  EXPECT_NEAR(row(comparison.value(), "linear").quality.sum, expected, 1e-7);
+  EXPECT_EQ(row(comparison.value(), "linear").quality.count, 3u);
+  EXPECT_EQ(row(comparison.value(), "linear").quality.max_at.t, 0.5);
+  EXPECT_EQ(*row(comparison.value(), "linear").relative_to_linear, 1);
+  EXPECT_LT(row(comparison.value(), "polynomial").quality.sum, 1e-6);
+}
+
+TEST(Compare, the_order_of_table_1_holds_on_every_mild_morph) {
+  for (const char* name : {"cloth", "bend", "twist"}) {
+    const Motion motion = make_builtin_morph(name).value();
+    const auto comparison = compare(motion, {}).value();
+    const auto sum = [&](const char* scheme) { return row(comparison, scheme).quality.sum; };
+    EXPECT_GT(sum("linear"), sum("quadratic"));
+    EXPECT_GT(sum("quadratic"), sum("cubic"));
+    EXPECT_GT(sum("cubic"), sum("polynomial"));
+    EXPECT_GT(sum("slerp"), sum("linear"));
+    EXPECT_LT(sum("quaternion:optimal"), sum("quaternion:matrix"));
+    EXPECT_LT(sum("quaternion:optimal"), sum("slerp"));
+    EXPECT_LT(sum("circle:timed"), sum("quaternion:optimal"));
+    EXPECT_LT(row(comparison, "polynomial").quality.max * kDegreesPerRadian, 1e-4);
+  }
+}
+
+TEST(Compare, relative_to_linear_needs_no_linear_row) {
+  const Motion motion = make_builtin_morph("soup").value();
+  const auto with = compare(motion, {{"linear", "slerp"}, 5, {}}).value();
+  const auto without = compare(motion, {{"slerp"}, 5, {}}).value();
+  ASSERT_EQ(without.schemes.size(), 1u);
+  EXPECT_EQ(*without.schemes[0].relative_to_linear, *row(with, "slerp").relative_to_linear);
+}
+
+TEST(Compare, results_are_the_same_bits_on_every_run) {
+  const Motion motion = make_builtin_morph("eversion").value();
+  const auto a = compare(motion, {}).value(), b = compare(motion, {}).value();
+  for (std::size_t i = 0; i < a.schemes.size(); ++i) {
+    EXPECT_EQ(a.schemes[i].quality.sum, b.schemes[i].quality.sum);
+    EXPECT_EQ(a.schemes[i].quality.max_at.element, b.schemes[i].quality.max_at.element);
+  }
+}
+
+TEST(Compare, a_motion_without_error_has_no_ratio) {
+  Motion motion;
+  motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 1, 1, 0, 1, 0, 1, 1}, 1, ""}};
+  motion.connect_as_sequence();
+  const auto comparison = compare(motion, {}).value();
+  for (const SchemeComparison& r : comparison.schemes) {
+    EXPECT_FALSE(r.relative_to_linear.has_value()) << r.scheme;
+    EXPECT_EQ(r.quality.degenerate, 0u);
+  }
+}
+
+TEST(Compare, a_face_without_area_is_counted_in_every_sample) {
+  Motion motion;
+  motion.topology = Topology::triangles(4, {0, 1, 2, 0, 1, 1}).value();
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0}, 0, ""}, {{0, 0, 1, 1, 0, 2, 0, 1, 1, 0, 0, 0}, 1, ""}};
+  motion.connect_as_sequence();
+  const auto comparison = compare(motion, {}).value();
+  for (const SchemeComparison& r : comparison.schemes) EXPECT_EQ(r.quality.degenerate, 21u) << r.scheme;
+}
+
+TEST(Compare, progress_reaches_its_end) {
+  const Motion motion = make_builtin_morph("soup").value();
+  std::size_t last = 0, total = 0;
+  CompareOptions options{{"linear"}, 2, [&](std::size_t done, std::size_t all) {
+                           EXPECT_GT(done, last);
+                           last = done;
+                           total = all;
+                         }};
+  ASSERT_TRUE(compare(motion, options).ok());
+  EXPECT_GT(total, 0u);
+  EXPECT_EQ(last, total);
+}
+
+TEST(Compare, refuses_what_makes_no_table) {
+  const Motion motion = make_builtin_morph("soup").value();
+  EXPECT_EQ(compare(motion, {{"linear"}, 1, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{}, 21, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{"bicubic"}, 21, {}}).error().code, ErrorCode::kUsage);
+}
+
+TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {
+  for (const BuiltinMorph& morph : builtin_morphs()) {
+    const auto motion = make_builtin_morph(morph.name);
+    ASSERT_TRUE(motion.ok());
+    std::string digits = std::to_string(motion.value().topology.face_count());
+    digits.insert(digits.size() - 3, 1, ',');
+    EXPECT_NE(morph.summary.find(digits + " faces"), std::string::npos) << morph.name << " has " << digits;
+  }
+  const auto unknown = make_builtin_morph("teapot");
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_EQ(unknown.error().code, ErrorCode::kUsage);
+  EXPECT_NE(unknown.error().message.find("eversion"), std::string::npos);
+}
+
+TEST(BuiltinMorphs, eversion_turns_inside_out) {
+  // The volume by the divergence theorem changes its sign.
+  const Motion motion = make_builtin_morph("eversion").value();
+  const auto volume = [&motion](VectorView<const float> p) {
+    double sum = 0;
+    for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
+      const auto face = motion.topology.face(f);
+      sum += dot(to_double(p[face[0]]), cross(to_double(p[face[1]]), to_double(p[face[2]]))) / 6;
+    }
+    return sum;
+  };
+  EXPECT_GT(volume(motion.segment(0).from), 3);
+  EXPECT_LT(volume(motion.segment(0).to), -1);
+}
+
+}  // namespace
+}  // namespace chronormal
