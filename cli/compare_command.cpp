@@ -21,6 +21,16 @@ struct Options {
   bool no_times = false;
 };
 
+std::vector<std::string> split_at_commas(const std::string& list) {
+  std::vector<std::string> parts;
+  for (std::size_t first = 0;;) {
+    const std::size_t comma = list.find(',', first);
+    parts.push_back(list.substr(first, comma - first));
+    if (comma == std::string::npos) return parts;
+    first = comma + 1;
+  }
+}
+
 std::string footer() {
   std::string text = "Schemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
@@ -103,16 +113,17 @@ void add_compare_command(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   options->input.add_to(*command);
   command->add_flag("--each", options->each, "every INPUT and --sample is a motion of its own, side by side");
-  command->add_option("--schemes", options->schemes, "which schemes, in which order (comma-separated)")
-      ->delimiter(',')
-      ->type_name("A,B,...")
-      ->allow_extra_args(false);
+  command
+      ->add_option_function<std::string>(
+          "--schemes", [options](const std::string& list) { options->schemes = split_at_commas(list); },
+          "which schemes, in which order (listed below)")
+      ->type_name("A,B,...");
   command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}));
+      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}).description(""));
   command->add_option("--elements", options->elements, "which normals: faces")
       ->type_name("KIND")
-      ->check(CLI::IsMember({"faces"}));
+      ->check(CLI::IsMember({"faces"}).description(""));
   CLI::Option* json = command->add_flag("--json", options->json, "one JSON object");
   command->add_flag("--csv", options->csv, "comma-separated values, a line per scheme")->excludes(json);
   command->add_flag("--no-times", options->no_times, "leave out measured times: the same output on every run");

@@ -3,27 +3,33 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
+#include "chronormal/core/parallel.h"      // one loop over all cores
+#include "chronormal/core/polynomial.h"    // small polynomials: Bernstein and power form, roots, restriction
+#include "chronormal/core/result.h"        // errors as values: code, place, message
+#include "chronormal/core/trigonometry.h"  // sine, cosine, arc tangent with the same bits everywhere
+#include "chronormal/core/vec3.h"          // three-component vectors over any scalar
+#include "chronormal/core/views.h"         // vectors in the caller's memory, as planes or packed
+
+#include "chronormal/motion/motion.h"    // keyframes, and the straight segments between them
+#include "chronormal/motion/topology.h"  // which vertices make which face
+#include "chronormal/motion/validate.h"  // the check between data from outside and everything that computes
+
+#include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
+#include "chronormal/normals/evaluate.h"         // curves of normals: prepared once, evaluated at any t in float32
+
+#include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
+
 #include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
-#include "chronormal/core/parallel.h"               // one loop over all cores
-#include "chronormal/core/polynomial.h"             // small polynomials: Bernstein and power form, roots, restriction
-#include "chronormal/core/result.h"                 // errors as values: code, place, message
-#include "chronormal/core/trigonometry.h"           // sine, cosine, arc tangent with the same bits everywhere
-#include "chronormal/core/vec3.h"                   // three-component vectors over any scalar
-#include "chronormal/core/views.h"                  // vectors in the caller's memory, as planes or packed
-#include "chronormal/io/builtin_morphs.h"           // morphs that need no file
-#include "chronormal/io/file.h"                     // whole files in, and out without ever half a one
-#include "chronormal/io/mesh_frame.h"               // one keyframe as read from one file
-#include "chronormal/io/obj.h"                      // Wavefront OBJ
-#include "chronormal/io/ply.h"                      // PLY: ascii and binary
-#include "chronormal/io/readers.h"                  // the list of mesh formats
-#include "chronormal/io/sequence.h"                 // files, patterns and folders as one motion
-#include "chronormal/motion/motion.h"               // keyframes, and the straight segments between them
-#include "chronormal/motion/topology.h"             // which vertices make which face
-#include "chronormal/motion/validate.h"             // the check between data from outside and everything that computes
-#include "chronormal/normals/control_normals.h"     // n(t) as three control normals, in double
-#include "chronormal/normals/evaluate.h"            // curves of normals: prepared once, evaluated at any t in float32
-#include "chronormal/schemes/scheme.h"              // the ways to interpolate, by name
-#include "chronormal/workflow/compare.h"            // the paper's Table 1 for any motion
+
+#include "chronormal/io/builtin_morphs.h"  // morphs that need no file
+#include "chronormal/io/file.h"            // whole files in, and out without ever half a one
+#include "chronormal/io/mesh_frame.h"      // one keyframe as read from one file
+#include "chronormal/io/obj.h"             // Wavefront OBJ
+#include "chronormal/io/ply.h"             // PLY: ascii and binary
+#include "chronormal/io/readers.h"         // the list of mesh formats
+#include "chronormal/io/sequence.h"        // files, patterns and folders as one motion
+
+#include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

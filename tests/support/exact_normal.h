@@ -26,7 +26,7 @@ struct ControlNormals {
   Vector n0, m, n1;
 };
 
-/// Any three finite floats or doubles, as they are.
+/// Any three finite floats or doubles, as they are. (Rationals know no NaN: GMP would divide by zero.)
 template <class S>
 [[nodiscard]] Vector vector(S x, S y, S z) {
   return {Rational(static_cast<double>(x)), Rational(static_cast<double>(y)), Rational(static_cast<double>(z))};
@@ -98,9 +98,10 @@ template <class S>
 
 /// Angle in radians between a direction, taken as it is to the last bit, and an exact vector: right to 1e-15 relative,
 /// so that it tells 1e-12 from 1e-13. Cross and dot product are exact; both are divided by the lengths' scales, exactly
-/// again, before they become doubles. NaN if one of the two is zero.
+/// again, before they become doubles. NaN if one of the two is zero, or the direction not finite.
 template <class S>
 [[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
+  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nan("");
   const Vector candidate = vector(x, y, z);
   const Rational scale = max_abs(candidate) * max_abs(exact);
   if (scale == 0) return std::nan("");

@@ -98,8 +98,8 @@ class Random {
       const double y = 2 * static_cast<double>(j) / static_cast<double>(cells) - 1;
       from.push_back(snapped({x, y, 0.15 * std::sin(4 * x + 1) * std::cos(3 * y)}));
       const double wave = 0.2 * std::cos(3 * x - 0.5) * std::sin(5 * y + 2);
-      const double twist = 0.3 + 0.9 * x;                  // about the x axis
-      const double bend = 0.8 * x + 0.2 * y;               // about the y axis, on a cylinder
+      const double twist = 0.3 + 0.9 * x;     // about the x axis
+      const double bend = 0.8 * x + 0.2 * y;  // about the y axis, on a cylinder
       const double ty = y * std::cos(twist) - wave * std::sin(twist);
       const double tz = y * std::sin(twist) + wave * std::cos(twist);
       to.push_back(snapped({1.25 * std::sin(bend) + 0.3 * tz * std::sin(bend), 1.1 * ty + 0.4,
@@ -122,10 +122,10 @@ class Random {
 struct SoupOptions {
   std::size_t face_count = 1000;
   std::uint64_t seed = 1;
-  double size = 1;          ///< corners lie in a cube of this edge
-  double motion = -1;       ///< corners move by up to motion x size in each coordinate; negative: ends are independent
-  double offset = 0;        ///< in x, y and z, of both ends
-  double needle = 0;        ///< c is put on the line through a and b, this far beside it; 0: anywhere
+  double size = 1;     ///< corners lie in a cube of this edge
+  double motion = -1;  ///< corners move by up to motion x size in each coordinate; negative: ends are independent
+  double offset = 0;   ///< in x, y and z, of both ends
+  double needle = 0;   ///< c is put on the line through a and b, this far beside it; 0: anywhere
 };
 
 /// Random triangles that share nothing.
@@ -218,6 +218,61 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
+/// Triangles that move by every order of magnitude from 1e-9 to 1 of their size: their normals have every degree, and
+/// coefficients of every size.
+[[nodiscard]] inline Motion graded_soup(std::size_t face_count = 1000, std::uint64_t seed = 10) {
+  Random random(seed);
+  std::vector<Point> from, to;
+  for (std::size_t f = 0; f < face_count; ++f) {
+    const auto place = static_cast<double>(f) / static_cast<double>(face_count);
+    const double step = std::ldexp(1.0, -static_cast<int>(30 * place));
+    for (int corner = 0; corner < 3; ++corner) {
+      // Close to the origin, floats are dense enough to tell small steps from none.
+      const Point start = random.in_cube(0.5), by = random.in_cube(0.5);
+      from.push_back(start);
+      to.push_back({start[0] + step * by[0], start[1] + step * by[1], start[2] + step * by[2]});
+    }
+  }
+  return make_motion(make_soup(face_count), from, to);
+}
+
+/// Needles as thin as coordinates of 20 bits can make them: two edges of about 2^20 each with integer coordinates that
+/// span an area of 1 in one of the coordinate planes. They lie in that plane, or else anywhere across it.
+[[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
+  Random random(seed);
+  const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };
+  const auto append = [&](std::vector<Point>& points, std::size_t axis) {
+    std::int64_t p = 0, q = 0, r = 0, s = 0;
+    for (std::int64_t divisor = 0; divisor != 1;) {  // p s - q r = 1 by Euclid's algorithm, for p and q without divisor
+      p = some();
+      q = some();
+      std::int64_t a = p, b = q, ar = 1, as = 0, br = 0, bs = 1;  // a = ar p + as q, b = br p + bs q
+      while (b != 0) {
+        const std::int64_t times = a / b;
+        a = std::exchange(b, a - times * b);
+        ar = std::exchange(br, ar - times * br);
+        as = std::exchange(bs, as - times * bs);
+      }
+      divisor = a;
+      s = ar;
+      r = -as;
+    }
+    std::array<Point, 3> corners{};
+    corners[1][axis] = static_cast<double>(p);
+    corners[1][(axis + 1) % 3] = static_cast<double>(q);
+    corners[2][axis] = static_cast<double>(r);
+    corners[2][(axis + 1) % 3] = static_cast<double>(s);
+    for (Point& corner : corners) corner[(axis + 2) % 3] = in_plane ? 0 : static_cast<double>(some());
+    points.insert(points.end(), corners.begin(), corners.end());
+  };
+  std::vector<Point> from, to;
+  for (std::size_t f = 0; f < face_count; ++f) {
+    append(from, f % 3);
+    append(to, f % 3);
+  }
+  return make_motion(make_soup(face_count), from, to);
+}
+
 /// Triangles that end as their own mirror image, b and c swapped: antipodal ends, and no normal half way through.
 [[nodiscard]] inline Motion inside_out_soup(std::size_t face_count = 1000, std::uint64_t seed = 8) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
@@ -225,6 +280,13 @@ struct SoupOptions {
   for (std::size_t f = 0; f < face_count; ++f) {
     for (std::size_t k = 0; k < 3; ++k) std::swap(to[9 * f + 3 + k], to[9 * f + 6 + k]);
   }
+  return motion;
+}
+
+/// Triangles that shrink to a point and grow out of it again, inside out twice: n(t) = (1 - 2 t)^2 n0.
+[[nodiscard]] inline Motion point_reflected_soup(std::size_t face_count = 1000, std::uint64_t seed = 14) {
+  Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
+  for (float& c : motion.keyframes[1].positions) c = -c;
   return motion;
 }
 
@@ -266,11 +328,11 @@ struct ClosedMesh {
 /// A sphere of 20 x 4^subdivisions triangles, not to the last bit round.
 [[nodiscard]] inline ClosedMesh icosphere(int subdivisions = 2) {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Point> points{{-1, g, 0}, {1, g, 0},   {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+  std::vector<Point> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                             {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::uint32_t> corners{0, 11, 5, 0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
-                                     4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3, 9,  4, 3,  4,  2, 3, 2, 6, 3,
-                                     6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6, 2, 10, 8,  6, 7, 9, 8, 1};
+  std::vector<std::uint32_t> corners{0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                                     4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                                     6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
   for (int round = 0; round < subdivisions; ++round) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {

@@ -138,7 +138,7 @@ template <class S>
       edge = std::max(edge, length(subtract(corners[i], corners[(i + 1) % 3])));
     }
   }
-  if (!(length(normal) > 1e-16L * edge * edge)) return std::nullopt;
+  if (!(length(normal) > 1e-18L * edge * edge)) return std::nullopt;
   return normalised(normal);
 }
 
@@ -396,10 +396,10 @@ template <std::size_t N>
 
 /// The circle through three points, walked from the first past the second to the third.
 struct Circle {
-  Vector centre, x, y;    ///< x points to the first point; the walk sets out along y; both of length 1
+  Vector centre, x, y;  ///< x points to the first point; the walk sets out along y; both of length 1
   Real radius = 0;
-  Real middle = 0;        ///< angle at which the second point is met
-  Real end = 0;           ///< angle at which the third point is met; 0 < middle < end < 2 pi
+  Real middle = 0;  ///< angle at which the second point is met
+  Real end = 0;     ///< angle at which the third point is met; 0 < middle < end < 2 pi
 
   [[nodiscard]] Vector at(Real turn) const {
     return add(centre, add(scaled(radius * std::cos(turn), x), scaled(radius * std::sin(turn), y)));
@@ -414,8 +414,8 @@ struct Circle {
   }
   const Vector normal = cross(p, q);
   // Circumcentre of the triangle of the three points.
-  const Vector arm = scaled(1 / (2 * dot(normal, normal)), add(scaled(dot(q, q), cross(normal, p)),
-                                                              scaled(dot(p, p), cross(q, normal))));
+  const Vector arm = scaled(1 / (2 * dot(normal, normal)),
+                            add(scaled(dot(q, q), cross(normal, p)), scaled(dot(p, p), cross(q, normal))));
   Circle circle;
   circle.centre = add(first, arm);
   circle.radius = length(arm);
@@ -466,9 +466,9 @@ struct SchemeName {
 /// Takes a name apart; nothing if this oracle does not know it.
 [[nodiscard]] inline std::optional<SchemeName> parse_scheme(std::string_view name) {
   static constexpr std::array<std::string_view, 14> kPlain{
-      "recompute",         "polynomial",      "rational",         "linear", "quadratic",    "cubic",        "slerp",
-      "quaternion:matrix", "quaternion:edge", "quaternion:polar", "circle", "circle:timed", "linear:scaled",
-      "quaternion:optimal"};
+      "recompute",     "polynomial",        "rational",        "linear",           "quadratic", "cubic",
+      "slerp",         "quaternion:matrix", "quaternion:edge", "quaternion:polar", "circle",    "circle:timed",
+      "linear:scaled", "quaternion:optimal"};
   for (const auto plain : kPlain) {
     if (name == plain) return SchemeName{plain, 0};
   }
@@ -612,15 +612,14 @@ template <class Coarse, class Fine>
 /// One circle of eq. 6 through u0 and u1: the angle phi of its axis picks it.
 [[nodiscard]] inline double circle_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double phi, std::size_t stride = 1) {
-  const VectorD axis = add(scaled(std::cos(phi), normalised(cross(u0, u1))),
-                           scaled(std::sin(phi), normalised(add(u0, u1))));
+  const VectorD axis =
+      add(scaled(std::cos(phi), normalised(cross(u0, u1))), scaled(std::sin(phi), normalised(add(u0, u1))));
   const VectorD w = scaled(dot(axis, u0), axis);
   const VectorD p = subtract(u0, w), q = cross(axis, u0), p1 = subtract(u1, w);
   double arc = std::atan2(dot(p1, q), dot(p1, p));
   if (arc < 0) arc += 2 * static_cast<double>(kPi);
   return mean_error(
-      exact,
-      [&](double t) { return add(w, add(scaled(std::cos(t * arc), p), scaled(std::sin(t * arc), q))); }, stride);
+      exact, [&](double t) { return add(w, add(scaled(std::cos(t * arc), p), scaled(std::sin(t * arc), q))); }, stride);
 }
 
 /// What a dense search over all pairs of frames finds: the smallest mean error in radians, over `exact`, of any

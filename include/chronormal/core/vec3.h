@@ -21,7 +21,7 @@ struct Vec3 {
   friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
   friend constexpr Vec3 operator*(const S& s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
-  friend constexpr bool operator==(const Vec3& a, const Vec3& b) = default;
+  friend bool operator==(const Vec3& a, const Vec3& b) = default;
 };
 
 using Vec3f = Vec3<float>;
