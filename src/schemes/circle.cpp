@@ -34,9 +34,10 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     const double middle_angle = angle_along(arc, middle);
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
+  // A turn that float32 cannot show is no loss; every other case is a stated fallback.
+  constexpr double kInvisibleTurn = 1e-7;
+  if (std::fmax(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);
-  // Ends that differ by rounding only are no loss; everything else is a stated fallback.
-  if (circles.kind != CircleFamily::Kind::kEqual || length(to_middle) > 1e-7) element.use_fallback();
   return {circles.great_arc(), 0.5};
 }
 
