@@ -15,6 +15,7 @@ struct Options {
   std::vector<std::string> schemes = default_schemes();
   std::size_t samples = 21;
   std::string elements = "faces";
+  std::string access = "random";
   bool each = false;
   bool json = false;
   bool csv = false;
@@ -44,7 +45,9 @@ std::string footer() {
 }
 
 Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
-  CompareOptions compare_options{options.schemes, options.samples, progress.callback("comparing")};
+  const CompareOptions compare_options{options.schemes, options.samples,
+                                       options.access == "sequential" ? Access::kSequential : Access::kRandom,
+                                       progress.callback("comparing")};
   auto comparison = compare(input.motion, compare_options);
   progress.clear();
   if (!comparison) return comparison.error();
@@ -124,6 +127,9 @@ void add_compare_command(CLI::App& program, int& exit_code) {
   command->add_option("--elements", options->elements, "which normals: faces")
       ->type_name("KIND")
       ->check(CLI::IsMember({"faces"}).description(""));
+  command->add_option("--access", options->access, "random (default), or sequential: played step by step")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"random", "sequential"}).description(""));
   CLI::Option* json = command->add_flag("--json", options->json, "one JSON object");
   command->add_flag("--csv", options->csv, "comma-separated values, a line per scheme")->excludes(json);
   command->add_flag("--no-times", options->no_times, "leave out measured times: the same output on every run");

@@ -36,6 +36,8 @@ Json input_json(const NamedComparison& input) {
   return {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
 }
 
+const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
+
 Json scheme_json(const SchemeComparison& row, bool with_times) {
   const Quality& q = row.quality;
   Json json = {{"scheme", row.scheme},
@@ -53,6 +55,7 @@ Json scheme_json(const SchemeComparison& row, bool with_times) {
     json["evaluate_ns"] = row.evaluate_ns;
   }
   json["bytes"] = row.bytes;
+  json["access"] = access_name(row);
   json["operations"] = {{"add", row.operations.add},
                         {"multiply", row.operations.multiply},
                         {"divide", row.operations.divide},
@@ -100,7 +103,7 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   }
 
   std::size_t degenerate = 0;
-  std::string notes;
+  std::string notes, played;
   const std::size_t elements = input.comparison.faces * input.comparison.segments;
   const auto share = [elements](std::size_t count) {
     return fmt::format("{} of {} faces ({:.2f} %)", grouped(count), grouped(elements),
@@ -125,9 +128,11 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
     table.add_row(std::move(cells));
 
     degenerate = std::max(degenerate, q.degenerate);
+    if (row.sequential) played += (played.empty() ? "" : ", ") + row.scheme;
     if (row.flagged > 0) notes += fmt::format("{}: {} evaluated in double\n", row.scheme, share(row.flagged));
     if (row.fallbacks > 0) notes += fmt::format("{}: {} with a stated fallback\n", row.scheme, share(row.fallbacks));
   }
+  if (!played.empty()) notes += fmt::format("played step by step: {}\n", played);
   if (degenerate > 0)
     notes += fmt::format("degenerate: {} without an exact normal left out\n",
                          counted(degenerate, "(face, sample) pair", "(face, sample) pairs"));
@@ -177,7 +182,7 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
       "input,vertices,faces,segments,elements,samples,scheme,sum_degrees,relative_to_linear,mean_degrees,rms_degrees,"
       "max_degrees,max_segment,max_element,max_t,degenerate,fallbacks,flagged,";
   if (with_times) text += "prepare_ns,evaluate_ns,";
-  text += "bytes,add,multiply,divide,sqrt,trigonometric\n";
+  text += "bytes,access,add,multiply,divide,sqrt,trigonometric\n";
   for (const NamedComparison& input : inputs) {
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
@@ -189,7 +194,8 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
                           q.degenerate, row.fallbacks, row.flagged);
       if (with_times) text += fmt::format("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
-      text += fmt::format("{},{},{},{},{},{}\n", row.bytes, o.add, o.multiply, o.divide, o.sqrt, o.trigonometric);
+      text += fmt::format("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
+                          o.trigonometric);
     }
   }
   return text;

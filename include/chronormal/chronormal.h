@@ -16,6 +16,7 @@
 
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
 #include "chronormal/normals/evaluate.h"         // curves of normals: prepared once, evaluated at any t in float32
+#include "chronormal/normals/playback.h"         // the same, played at equal steps
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 

@@ -28,12 +28,27 @@ template <class S>
   return w.w0 * n0 + w.w1 * m + w.w2 * n1;
 }
 
+/// A quadratic at one of equidistant t, with its first and second forward difference.
+template <class S>
+struct QuadraticState {
+  Vec3<S> n, first, second;
+
+  /// To the next t: two additions per component.
+  [[nodiscard]] QuadraticState next() const { return {n + first, first + second, second}; }
+};
+
 /// v scaled to length 1. Precondition: v is not zero and |v|^2 neither overflows nor underflows.
 template <class S>
 [[nodiscard]] Vec3<S> normalized(const Vec3<S>& v) {
   using std::sqrt;
   const S scale = S(1) / sqrt(dot(v, v));
   return scale * v;
+}
+
+/// The vectors of three neighbouring planes, as control normals of a run are kept.
+template <class T>
+[[nodiscard]] VectorView<T> three_planes(T* first, std::size_t count) {
+  return VectorView<T>::planes(first, first + count, first + 2 * count, count);
 }
 
 /// Writes element(i) to every result[i]. Separate loops for the two layouts, so that the compiler can vectorise the one

@@ -145,15 +145,6 @@ NormalCurves::NormalCurves(std::span<const ControlNormals> normals) : size_(norm
   }
 }
 
-namespace {
-
-// The vectors of one control normal of a run.
-VectorView<const float> run_planes(const float* first, std::size_t count) {
-  return VectorView<const float>::planes(first, first + count, first + 2 * count, count);
-}
-
-}  // namespace
-
 std::size_t NormalCurves::unit_normals(double t, VectorView<float> result) const noexcept {
   assert(result.count == size_);
   const auto weights = QuadraticWeights<float>::at(t);
@@ -161,20 +152,24 @@ std::size_t NormalCurves::unit_normals(double t, VectorView<float> result) const
 
   for (const Run& run : runs_) {
     const VectorView<float> part = result.part({run.first, run.count});
-    const auto c0 = run_planes(values_.data() + run.offset, run.count);
+    const auto c0 = three_planes(values_.data() + run.offset, run.count);
     if (run.degree == 0) {
       fill(part, [c0](std::size_t i) { return c0[i]; });
       continue;
     }
-    const auto c1 = run_planes(c0.z + run.count, run.count);
+    const auto c1 = three_planes(c0.z + run.count, run.count);
     if (run.degree == 1) {
       fill(part, [=](std::size_t i) { return normalized(start_weight * c0[i] + end_weight * c1[i]); });
       continue;
     }
-    const auto c2 = run_planes(c1.z + run.count, run.count);
+    const auto c2 = three_planes(c1.z + run.count, run.count);
     fill(part, [=](std::size_t i) { return normalized(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
   }
 
+  return flagged_unit_normals(t, result);
+}
+
+std::size_t NormalCurves::flagged_unit_normals(double t, VectorView<float> result) const noexcept {
   std::size_t without_direction = 0;
   for (const Flagged& flagged : flagged_) {
     const UnitNormal u = unit_normal_at(flagged.exact, t);
@@ -193,18 +188,18 @@ void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
 
   for (const Run& run : runs_) {
     const VectorView<float> part = result.part({run.first, run.count});
-    const auto c0 = run_planes(values_.data() + run.offset, run.count);
+    const auto c0 = three_planes(values_.data() + run.offset, run.count);
     if (run.degree == 0) {
       const float* lengths = c0.z + run.count;
       fill(part, [=](std::size_t i) { return unscaled(lengths[i] * c0[i]); });
       continue;
     }
-    const auto c1 = run_planes(c0.z + run.count, run.count);
+    const auto c1 = three_planes(c0.z + run.count, run.count);
     if (run.degree == 1) {
       fill(part, [=](std::size_t i) { return unscaled(start_weight * c0[i] + end_weight * c1[i]); });
       continue;
     }
-    const auto c2 = run_planes(c1.z + run.count, run.count);
+    const auto c2 = three_planes(c1.z + run.count, run.count);
     fill(part, [=](std::size_t i) { return unscaled(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
   }
   for (const Flagged& flagged : flagged_) result.set(flagged.element, clamped_to_float(normal_at(flagged.exact, t)));

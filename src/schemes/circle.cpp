@@ -65,7 +65,7 @@ struct TimedCircle {
     const S numerator = share * t, rest = (S(1) - share) * (S(1) - t);
     const S sum = numerator + rest;
     const S warped = numerator / (sum > S(0) ? sum : S(1));
-    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), warped * c[9]);
+    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), sin_cos(warped * c[9]));
   }
 };
 

@@ -8,6 +8,12 @@
 ///     auto at<S>(double t) const                         what all elements share at t
 ///     Vec3<S> evaluate<S>(Coefficients<S> c, shared)     the unit normal of one element
 ///
+/// and, where the scheme can be played step by step,
+///
+///     std::size_t state_planes() const                       how many floats the state of an element has
+///     void anchor(Coefficients<float> c, double t, double step, double* state)  the state at t
+///     Vec3<S> advance<S>(Coefficients<S> c, State<S> state)  the unit normal of the state, which moves on by a step
+///
 /// `evaluate` is a template on the scalar: float runs, Counting counts. An element that has no direction at all is not
 /// fitted: its coefficients are zero, and `evaluate` must turn them into (0, 0, 0).
 #ifndef CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
@@ -73,6 +79,28 @@ struct Coefficients {
   }
 };
 
+/// The state of one element that is being played, one value per plane.
+template <class S>
+struct State {
+  S* first;
+  std::size_t stride;
+
+  S& operator[](std::size_t plane) const { return first[plane * stride]; }
+  [[nodiscard]] Vec3<S> vector(std::size_t k) const { return Coefficients<S>{first, stride}.vector(k); }
+  void set_vector(std::size_t k, const Vec3<S>& v) const {
+    S* p = first + 3 * k * stride;
+    p[0] = v.x;
+    p[stride] = v.y;
+    p[2 * stride] = v.z;
+  }
+};
+
+/// Whether a policy can be played.
+template <class Policy>
+concept Playable = requires(const Policy& policy) {
+  policy.state_planes();
+};
+
 /// Writes a vector into the planes 3k, 3k + 1, 3k + 2 of one element that is being fitted.
 inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k] = v.x;
@@ -90,6 +118,54 @@ template <class S>
   const Vec3<S> u = scale * v;
   return {vanished ? fallback.x : u.x, vanished ? fallback.y : u.y, vanished ? fallback.z : u.z};
 }
+
+/// Plays the coefficients of a CurveScheme.
+template <Playable Policy>
+class CurvePlayback final : public Playback {
+ public:
+  CurvePlayback(const Policy& policy, const std::vector<float>& planes, std::size_t count,
+                std::size_t without_direction, double start, double step, std::size_t anchor_interval)
+      : policy_(policy),
+        planes_(planes),
+        count_(count),
+        without_direction_(without_direction),
+        start_(start),
+        step_(step),
+        anchor_interval_(anchor_interval),
+        state_(policy.state_planes() * count),
+        exact_state_(policy.state_planes()) {}
+
+  std::size_t next(VectorView<float> result) noexcept override {
+    assert(result.count == count_);
+    if (index_ == 0 || (anchor_interval_ != 0 && index_ % anchor_interval_ == 0))
+      anchor(start_ + static_cast<double>(index_) * step_);
+    ++index_;
+    const float* planes = planes_.data();
+    float* state = state_.data();
+    fill(result, [this, planes, state](std::size_t i) {
+      return policy_.template advance<float>(Coefficients<float>{planes + i, count_}, State<float>{state + i, count_});
+    });
+    return without_direction_;
+  }
+
+ private:
+  void anchor(double t) noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      policy_.anchor(Coefficients<float>{planes_.data() + i, count_}, t, step_, exact_state_.data());
+      for (std::size_t k = 0; k < exact_state_.size(); ++k)
+        state_[k * count_ + i] = static_cast<float>(exact_state_[k]);
+    }
+  }
+
+  const Policy& policy_;
+  const std::vector<float>& planes_;
+  std::size_t count_, without_direction_;
+  double start_, step_;
+  std::size_t anchor_interval_;
+  std::size_t index_ = 0;
+  std::vector<float> state_;
+  std::vector<double> exact_state_;  // of one element
+};
 
 template <class Policy>
 class CurveScheme final : public Scheme {
@@ -129,22 +205,58 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return fallbacks_; }
   [[nodiscard]] std::size_t bytes() const noexcept override { return planes_.size() * sizeof(float); }
 
+  [[nodiscard]] std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const override {
+    if constexpr (Playable<Policy>) {
+      return std::make_unique<CurvePlayback<Policy>>(policy_, planes_, count_, without_direction_, start, step,
+                                                     anchor_interval);
+    } else {
+      return Scheme::play(start, step, anchor_interval);
+    }
+  }
+
   [[nodiscard]] OperationCounts operations() const override {
-    // A face that turns from +x to +y, so that no formula takes a short cut.
+    const auto coefficients = counting(example_coefficients());
+    const auto shared = policy_.template at<Counting>(kExampleTime);
+    Counting::reset();
+    (void)policy_.template evaluate<Counting>(Coefficients<Counting>{coefficients.data(), 1}, shared);
+    return Counting::counts();
+  }
+
+  [[nodiscard]] std::optional<OperationCounts> sequential_operations() const override {
+    if constexpr (Playable<Policy>) {
+      const std::vector<float> values = example_coefficients();
+      std::vector<double> exact_state(policy_.state_planes());
+      policy_.anchor(Coefficients<float>{values.data(), 1}, kExampleTime, 0.125, exact_state.data());
+      const auto coefficients = counting(values);
+      auto state = counting({exact_state.begin(), exact_state.end()});
+      Counting::reset();
+      (void)policy_.template advance<Counting>(Coefficients<Counting>{coefficients.data(), 1},
+                                               State<Counting>{state.data(), 1});
+      return Counting::counts();
+    } else {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  static constexpr double kExampleTime = 0.375;
+
+  [[nodiscard]] static std::vector<Counting> counting(const std::vector<float>& values) {
+    std::vector<Counting> result;
+    for (const float value : values) result.emplace_back(value);
+    return result;
+  }
+
+  // Of a face that turns from +x to +y, so that no formula takes a short cut.
+  [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
     ElementMotion element(segment, 0, turning);
     std::vector<double> c(policy_.plane_count());
     policy_.fit(element, c.data());
-    std::vector<Counting> counting;
-    for (const double value : c) counting.emplace_back(static_cast<float>(value));
-    const auto shared = policy_.template at<Counting>(0.375);
-    Counting::reset();
-    (void)policy_.template evaluate<Counting>(Coefficients<Counting>{counting.data(), 1}, shared);
-    return Counting::counts();
+    return {c.begin(), c.end()};
   }
 
- private:
   // A triangle with edges to go with those control normals, for schemes that look at the face itself.
   [[nodiscard]] static Segment example_segment() {
     static const Topology topology = Topology::triangles(3, {0, 1, 2}).value();

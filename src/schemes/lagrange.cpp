@@ -26,15 +26,9 @@ class Lagrange {
 
   template <class S>
   [[nodiscard]] std::array<S, kMaxLagrangeDegree + 1> at(double t) const {
+    const auto exact = weights_at(t);
     std::array<S, kMaxLagrangeDegree + 1> weights;
-    const double x = t * static_cast<double>(degree_);  // the nodes are 0, 1, ..., degree
-    for (std::size_t k = 0; k <= degree_; ++k) {
-      double weight = 1;
-      for (std::size_t j = 0; j <= degree_; ++j) {
-        if (j != k) weight *= (x - static_cast<double>(j)) / (static_cast<double>(k) - static_cast<double>(j));
-      }
-      weights[k] = S(static_cast<float>(weight));
-    }
+    for (std::size_t k = 0; k <= degree_; ++k) weights[k] = S(static_cast<float>(exact[k]));
     return weights;
   }
 
@@ -46,7 +40,42 @@ class Lagrange {
     return normalized_or(sum, c.vector(0));
   }
 
+  // Played by forward differences: K additions per component and step.
+  [[nodiscard]] std::size_t state_planes() const { return 3 * (degree_ + 1); }
+
+  void anchor(Coefficients<float> c, double t, double step, double* state) const {
+    std::array<Vec3d, kMaxLagrangeDegree + 1> differences;
+    for (std::size_t j = 0; j <= degree_; ++j) {
+      const auto weights = weights_at(t + static_cast<double>(j) * step);
+      differences[j] = {};
+      for (std::size_t k = 0; k <= degree_; ++k) differences[j] = differences[j] + weights[k] * to_double(c.vector(k));
+    }
+    for (std::size_t level = 0; level <= degree_; ++level) {
+      put_vector(state, level, differences[0]);
+      for (std::size_t j = 0; j + level < degree_; ++j) differences[j] = differences[j + 1] - differences[j];
+    }
+  }
+
+  template <class S>
+  [[nodiscard]] Vec3<S> advance(Coefficients<S> c, State<S> state) const {
+    const Vec3<S> here = state.vector(0);
+    for (std::size_t k = 0; k < degree_; ++k) state.set_vector(k, state.vector(k) + state.vector(k + 1));
+    return normalized_or(here, c.vector(0));
+  }
+
  private:
+  [[nodiscard]] std::array<double, kMaxLagrangeDegree + 1> weights_at(double t) const {
+    std::array<double, kMaxLagrangeDegree + 1> weights;
+    const double x = t * static_cast<double>(degree_);  // the nodes are 0, 1, ..., degree
+    for (std::size_t k = 0; k <= degree_; ++k) {
+      weights[k] = 1;
+      for (std::size_t j = 0; j <= degree_; ++j) {
+        if (j != k) weights[k] *= (x - static_cast<double>(j)) / (static_cast<double>(k) - static_cast<double>(j));
+      }
+    }
+    return weights;
+  }
+
   [[nodiscard]] double node_time(std::size_t k) const { return static_cast<double>(k) / static_cast<double>(degree_); }
 
   std::size_t degree_;

@@ -1,4 +1,5 @@
-// The t-variant cross product, eq. 5: exact. Thin: the work is NormalCurves (normals/evaluate.h).
+// The t-variant cross product, eq. 5: exact. Thin: the work is NormalCurves (normals/evaluate.h) and
+// NormalPlayback (normals/playback.h).
 
 #include "chronormal/normals/evaluate.h"
 #include "normals/curve_elements.h"
@@ -7,6 +8,17 @@
 
 namespace chronormal {
 namespace {
+
+class PolynomialPlayback final : public Playback {
+ public:
+  PolynomialPlayback(const NormalCurves& curves, double start, double step, std::size_t anchor_interval)
+      : playback_(curves, start, step, anchor_interval) {}
+
+  std::size_t next(VectorView<float> result) noexcept override { return playback_.next(result); }
+
+ private:
+  NormalPlayback playback_;
+};
 
 class Polynomial final : public Scheme {
  public:
@@ -20,6 +32,10 @@ class Polynomial final : public Scheme {
   [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
   [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }
 
+  [[nodiscard]] std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const override {
+    return std::make_unique<PolynomialPlayback>(curves_, start, step, anchor_interval);
+  }
+
   // Of an element of degree 2, evaluated in float32.
   [[nodiscard]] OperationCounts operations() const override {
     using C = Counting;
@@ -27,6 +43,15 @@ class Polynomial final : public Scheme {
     const auto weights = QuadraticWeights<C>::at(0.375);
     C::reset();
     (void)normalized(quadratic_normal(n0, m, n1, weights));
+    return C::counts();
+  }
+
+  [[nodiscard]] std::optional<OperationCounts> sequential_operations() const override {
+    using C = Counting;
+    const QuadraticState<C> state{{C(1), C(0), C(0)}, {C(0.1f), C(0.1f), C(0)}, {C(0.1f), C(0), C(0.1f)}};
+    C::reset();
+    const QuadraticState<C> next = state.next();
+    (void)normalized(next.n);
     return C::counts();
   }
 

@@ -24,17 +24,26 @@ double nanoseconds_since(Clock::time_point start) {
 struct Tally {
   Quality quality;
   std::size_t fallbacks = 0, flagged = 0;
-  double prepare_ns = 0, evaluate_ns = 0, bytes = 0;
+  double bytes = 0;
+  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
 
   void add(const Tally& other) {
     quality.add(other.quality);
     fallbacks += other.fallbacks;
     flagged += other.flagged;
-    prepare_ns += other.prepare_ns;
-    evaluate_ns += other.evaluate_ns;
     bytes += other.bytes;
+    prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
+    evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
   }
 };
+
+// The median, which a thread that was interrupted does not move.
+double median(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 double time_of_sample(std::size_t i, std::size_t samples) {
   return static_cast<double>(i) / static_cast<double>(samples - 1);
@@ -42,12 +51,13 @@ double time_of_sample(std::size_t i, std::size_t samples) {
 
 // Prepares every scheme on one block of faces, evaluates it at every sample, and holds it against the exact normals.
 std::vector<Tally> compare_block(const Segment& segment, IndexRange faces, const std::vector<std::string>& names,
-                                 std::size_t samples) {
+                                 std::size_t samples, Access access) {
   std::vector<ControlNormals> control_normals(faces.count);
   const auto control_start = Clock::now();
   face_control_normals(segment, faces, control_normals);
   const double control_ns = nanoseconds_since(control_start);
 
+  const double elements = static_cast<double>(faces.count);
   std::vector<std::unique_ptr<Scheme>> schemes;
   std::vector<Tally> tallies(names.size());
   for (std::size_t s = 0; s < names.size(); ++s) {
@@ -55,7 +65,8 @@ std::vector<Tally> compare_block(const Segment& segment, IndexRange faces, const
     Scheme& scheme = *schemes[s];
     const auto start = Clock::now();
     scheme.prepare({&segment, faces, control_normals});
-    tallies[s].prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
+    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
+    tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
     tallies[s].fallbacks = scheme.fallback_count();
     tallies[s].flagged = scheme.flagged_count();
     tallies[s].bytes = static_cast<double>(scheme.bytes());
@@ -65,16 +76,27 @@ std::vector<Tally> compare_block(const Segment& segment, IndexRange faces, const
   std::vector<float> planes(3 * faces.count);
   float* const first = planes.data();
   const auto result = VectorView<float>::planes(first, first + faces.count, first + 2 * faces.count, faces.count);
+  std::vector<std::unique_ptr<Playback>> playbacks(schemes.size());
+  if (access == Access::kSequential) {
+    const double step = time_of_sample(1, samples);
+    for (std::size_t s = 0; s < schemes.size(); ++s) playbacks[s] = schemes[s]->play(0, step, kDefaultAnchorInterval);
+  }
+  std::vector<double> evaluate_ns(schemes.size(), 0);
   for (std::size_t i = 0; i < samples; ++i) {
     const double t = time_of_sample(i, samples);
     reference_normals(segment, faces, t, exact);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
       const auto start = Clock::now();
-      schemes[s]->evaluate(t, result);
-      tallies[s].evaluate_ns += nanoseconds_since(start);
+      if (playbacks[s])
+        playbacks[s]->next(result);
+      else
+        schemes[s]->evaluate(t, result);
+      evaluate_ns[s] += nanoseconds_since(start);
       tallies[s].quality.add(exact, result, {segment.index, faces.first, t});
     }
   }
+  for (std::size_t s = 0; s < schemes.size(); ++s)
+    tallies[s].evaluate_ns.push_back(static_cast<float>(evaluate_ns[s] / elements / static_cast<double>(samples)));
   return tallies;
 }
 
@@ -98,11 +120,16 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
 
   // Linear is the measure of the others, so it takes part even where it is not a row.
   std::vector<std::string> names = options.schemes;
-  std::vector<OperationCounts> operations;
+  std::vector<SchemeComparison> rows;
   for (const std::string& name : names) {
     auto scheme = make_scheme(name);
     if (!scheme) return scheme.error();
-    operations.push_back(scheme.value()->operations());
+    const auto sequential = scheme.value()->sequential_operations();
+    SchemeComparison row;
+    row.scheme = name;
+    row.sequential = options.access == Access::kSequential && sequential.has_value();
+    row.operations = row.sequential ? *sequential : scheme.value()->operations();
+    rows.push_back(std::move(row));
   }
   std::size_t linear = static_cast<std::size_t>(std::find(names.begin(), names.end(), "linear") - names.begin());
   if (linear == names.size()) names.emplace_back("linear");
@@ -118,7 +145,7 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_face = (first + i) % blocks_per_segment * kBlockSize;
       const IndexRange range{first_face, std::min(kBlockSize, faces - first_face)};
-      wave[i] = compare_block(segment, range, names, options.samples);
+      wave[i] = compare_block(segment, range, names, options.samples, options.access);
     });
     // In order, so that sums do not depend on the threads.
     for (std::size_t i = 0; i < count; ++i) {
@@ -132,16 +159,14 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
   const double linear_sum = totals[linear].quality.sum;
   for (std::size_t s = 0; s < options.schemes.size(); ++s) {
     const Tally& total = totals[s];
-    SchemeComparison row;
-    row.scheme = names[s];
+    SchemeComparison& row = rows[s];
     row.quality = total.quality;
     if (linear_sum > 0) row.relative_to_linear = total.quality.sum / linear_sum;
     row.fallbacks = total.fallbacks;
     row.flagged = total.flagged;
-    row.prepare_ns = total.prepare_ns / elements;
-    row.evaluate_ns = total.evaluate_ns / elements / static_cast<double>(options.samples);
+    row.prepare_ns = median(total.prepare_ns);
+    row.evaluate_ns = median(total.evaluate_ns);
     row.bytes = total.bytes / elements;
-    row.operations = operations[s];
     comparison.schemes.push_back(std::move(row));
   }
   return comparison;

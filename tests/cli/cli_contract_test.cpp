@@ -168,6 +168,21 @@ TEST_F(Cli, schemes_are_selected_and_ordered) {
   EXPECT_EQ(json["schemes"][1]["scheme"], "linear");
 }
 
+TEST_F(Cli, sequential_access_is_nearly_random_access_and_says_who_has_it) {
+  const std::string arguments = "compare --sample twist --schemes slerp,circle:timed,polynomial --json --no-times";
+  const Json random = Json::parse(run(arguments).out),
+             played = Json::parse(run(arguments + " --access sequential").out);
+  for (const Json& row : random["schemes"]) EXPECT_EQ(row["access"], "random");
+  EXPECT_EQ(played["schemes"][0]["access"], "sequential");
+  EXPECT_EQ(played["schemes"][1]["access"], "random");
+  EXPECT_EQ(played["schemes"][0]["operations"]["trigonometric"], 0);
+  EXPECT_NEAR(played["schemes"][0]["mean_degrees"], random["schemes"][0]["mean_degrees"].get<double>(), 1e-4);
+  EXPECT_LT(played["schemes"][2]["max_degrees"], 5e-6 * 57.3);
+  EXPECT_NE(run("compare --sample twist --access sequential").out.find("played step by step: linear"),
+            std::string::npos);
+  expect_error(run("compare --sample twist --access reverse"), 2, {"--access"});
+}
+
 TEST_F(Cli, csv_has_a_line_per_scheme_and_as_many_fields_as_the_header) {
   write_two_frames();
   const ProcessResult result = run("compare a.obj b.obj --csv");

@@ -23,7 +23,7 @@ TEST(Compare, one_face_by_hand) {
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
   motion.connect_as_sequence();
-  CompareOptions options{{"linear", "polynomial"}, 3, {}};
+  CompareOptions options{{"linear", "polynomial"}, 3, Access::kRandom, {}};
   const auto comparison = compare(motion, options);
   ASSERT_TRUE(comparison.ok());
   // At 1/2 the vertices are (1,1,0)/2 and (0,1,1)/2: n = (1, -1, 1) / 4; linear gives (1, 0, 1).
@@ -53,8 +53,8 @@ TEST(Compare, the_order_of_table_1_holds_on_every_mild_morph) {
 
 TEST(Compare, relative_to_linear_needs_no_linear_row) {
   const Motion motion = make_builtin_morph("soup").value();
-  const auto with = compare(motion, {{"linear", "slerp"}, 5, {}}).value();
-  const auto without = compare(motion, {{"slerp"}, 5, {}}).value();
+  const auto with = compare(motion, {{"linear", "slerp"}, 5, Access::kRandom, {}}).value();
+  const auto without = compare(motion, {{"slerp"}, 5, Access::kRandom, {}}).value();
   ASSERT_EQ(without.schemes.size(), 1u);
   EXPECT_EQ(*without.schemes[0].relative_to_linear, *row(with, "slerp").relative_to_linear);
 }
@@ -92,7 +92,7 @@ TEST(Compare, a_face_without_area_is_counted_in_every_sample) {
 TEST(Compare, progress_reaches_its_end) {
   const Motion motion = make_builtin_morph("soup").value();
   std::size_t last = 0, total = 0;
-  CompareOptions options{{"linear"}, 2, [&](std::size_t done, std::size_t all) {
+  CompareOptions options{{"linear"}, 2, Access::kRandom, [&](std::size_t done, std::size_t all) {
                            EXPECT_GT(done, last);
                            last = done;
                            total = all;
@@ -104,9 +104,9 @@ TEST(Compare, progress_reaches_its_end) {
 
 TEST(Compare, refuses_what_makes_no_table) {
   const Motion motion = make_builtin_morph("soup").value();
-  EXPECT_EQ(compare(motion, {{"linear"}, 1, {}}).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(compare(motion, {{}, 21, {}}).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(compare(motion, {{"bicubic"}, 21, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{"linear"}, 1, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{"bicubic"}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
 }
 
 TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {

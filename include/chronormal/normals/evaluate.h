@@ -55,6 +55,8 @@ class NormalCurves {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  friend class NormalPlayback;
+
   struct Run {
     std::size_t first = 0;   // element
     std::size_t count = 0;   // elements
@@ -65,6 +67,9 @@ class NormalCurves {
     std::size_t element = 0;
     ControlNormals exact;
   };
+
+  // Writes the flagged elements, in double; returns how many have no direction.
+  std::size_t flagged_unit_normals(double t, VectorView<float> result) const noexcept;
 
   std::size_t size_ = 0;
   std::array<std::size_t, 3> degree_counts_{};

@@ -20,6 +20,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/playback.h"
 
 namespace chronormal {
 
@@ -38,7 +40,7 @@ struct ElementBlock {
   std::span<const ControlNormals> normals;  ///< one per element; may be empty for `recompute`
 };
 
-/// Elementary operations of one evaluation of one element at random t. What all elements of a block share at one t
+/// Elementary operations of one evaluation of one element. What all elements of a block share at one t
 /// (powers of t, Bernstein or Lagrange weights) is computed once per block and not counted. A sine with its cosine
 /// counts as one trigonometric operation, and so does an arc tangent.
 struct OperationCounts {
@@ -49,6 +51,19 @@ struct OperationCounts {
   int trigonometric = 0;
 
   friend bool operator==(const OperationCounts&, const OperationCounts&) = default;
+};
+
+/// Sequential access: a scheme that is played at equal steps of t, each made from the one before.
+class Playback {
+ public:
+  Playback() = default;
+  Playback(const Playback&) = delete;
+  Playback& operator=(const Playback&) = delete;
+  virtual ~Playback() = default;
+
+  /// Writes the unit normals at the current t, and steps on. Returns how many (0, 0, 0) were written.
+  /// result must have as many vectors as the block has elements
+  virtual std::size_t next(VectorView<float> result) noexcept = 0;
 };
 
 class Scheme {
@@ -68,14 +83,24 @@ class Scheme {
 
   /// Whether prepare() reads the control normals of the block.
   [[nodiscard]] virtual bool uses_control_normals() const noexcept { return true; }
+  /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials by forward differences, arcs by a
+  /// rotation per step. The state drifts with every step and is made anew every anchor_interval steps (0: never).
+  /// Returns nothing where the scheme has no incremental form. The scheme must outlive the playback, unprepared anew.
+  [[nodiscard]] virtual std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const {
+    (void)start, (void)step, (void)anchor_interval;
+    return nullptr;
+  }
+
   /// How many elements of the block needed a stated fallback when they were prepared.
   [[nodiscard]] virtual std::size_t fallback_count() const noexcept = 0;
   /// How many elements of the block are evaluated in double, to keep the promised accuracy.
   [[nodiscard]] virtual std::size_t flagged_count() const noexcept { return 0; }
   /// Memory that an evaluation of the block reads, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
-  /// Operations per element and evaluation, counted on the code that runs.
+  /// Operations per element and evaluation at random t, counted on the code that runs.
   [[nodiscard]] virtual OperationCounts operations() const = 0;
+  /// Operations per element and step of a playback, counted likewise; nothing where there is no incremental form.
+  [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
 };
 
 /// Makes a scheme from its name. Errors: kUsage with the names that there are, or the range of a parameter.

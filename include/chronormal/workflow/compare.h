@@ -18,24 +18,33 @@ namespace chronormal {
 /// The rows of the paper's table, and ours.
 [[nodiscard]] std::vector<std::string> default_schemes();
 
+/// How the samples of a segment are visited (section 3 of the paper).
+enum class Access {
+  kRandom,      ///< each on its own
+  kSequential,  ///< each from the one before, by the schemes that can; the others as in kRandom
+};
+
 struct CompareOptions {
   std::vector<std::string> schemes = default_schemes();  ///< names, in the order of the rows
   std::size_t samples = 21;                              ///< per segment, ends included; 2 or more
+  Access access = Access::kRandom;
   /// Told how much of the work is done, from the calling thread; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// One scheme on one motion. Costs are per element: time is the sum over threads, on blocks that stay in cache.
+/// One scheme on one motion. Costs are per element; times are of one thread, the median over blocks that
+/// stay in cache.
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
   std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing where linear has no error at all
   std::size_t fallbacks = 0;                 ///< (element, segment) pairs prepared with a stated fallback
   std::size_t flagged = 0;                   ///< (element, segment) pairs evaluated in double
+  bool sequential = false;                   ///< whether the scheme was played step by step
   double prepare_ns = 0;                     ///< control normals included, where the scheme uses them
   double evaluate_ns = 0;                    ///< per sample
   double bytes = 0;                          ///< read by an evaluation
-  OperationCounts operations;
+  OperationCounts operations;                ///< of the access that was measured
 };
 
 struct Comparison {
@@ -50,7 +59,7 @@ struct Comparison {
 ///
 /// Errors     kUsage for a scheme that does not exist or fewer than 2 samples.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
-/// Memory     a few MB beyond the motion, whatever its size.
+/// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 faces for the times.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (motion/validate.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);

@@ -1,0 +1,186 @@
+// Sequential access: playback of curves and of every scheme that can be played.
+
+#include "chronormal/normals/playback.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/schemes/scheme.h"
+#include "schemes/arc.h"
+#include "schemes/curve_scheme.h"
+
+namespace chronormal {
+namespace {
+
+struct Prepared {
+  Motion motion;
+  Segment segment;
+  IndexRange faces;
+  std::vector<ControlNormals> normals;
+
+  explicit Prepared(const char* morph, std::size_t count = 600)
+      : motion(make_builtin_morph(morph).value()), segment(motion.segment(0)), faces{1000, count}, normals(count) {
+    face_control_normals(segment, faces, normals);
+  }
+  Prepared(const Prepared&) = delete;
+};
+
+// The largest angle between what is played and what random access gives, over all steps.
+template <class Next, class At>
+double largest_drift(std::size_t count, std::size_t steps, Next next, At at) {
+  std::vector<float> played(3 * count), exact(3 * count);
+  const auto a = VectorView<float>::packed(played.data(), count), b = VectorView<float>::packed(exact.data(), count);
+  double largest = 0;
+  for (std::size_t k = 0; k <= steps; ++k) {
+    next(a);
+    at(static_cast<double>(k) / static_cast<double>(steps), b);
+    for (std::size_t i = 0; i < count; ++i)
+      largest = std::max(largest, angle_between(to_double(a[i]), to_double(b[i])));
+  }
+  return largest;
+}
+
+double drift_of_curves(const Prepared& prepared, std::size_t steps, std::size_t anchor_interval) {
+  const NormalCurves curves(prepared.normals);
+  NormalPlayback playback(curves, 0, 1.0 / static_cast<double>(steps), anchor_interval);
+  return largest_drift(
+      curves.size(), steps, [&](VectorView<float> out) { (void)playback.next(out); },
+      [&](double t, VectorView<float> out) { (void)curves.unit_normals(t, out); });
+}
+
+double drift_of_scheme(const char* name, const Prepared& prepared, std::size_t steps, std::size_t anchor_interval) {
+  const auto scheme = make_scheme(name).value();
+  scheme->prepare({&prepared.segment, prepared.faces, prepared.normals});
+  const auto playback = scheme->play(0, 1.0 / static_cast<double>(steps), anchor_interval);
+  return largest_drift(
+      prepared.faces.count, steps, [&](VectorView<float> out) { playback->next(out); },
+      [&](double t, VectorView<float> out) { scheme->evaluate(t, out); });
+}
+
+constexpr const char* kPlayed[] = {"linear",
+                                   "quadratic",
+                                   "cubic",
+                                   "polynomial",
+                                   "slerp",
+                                   "quaternion:matrix",
+                                   "quaternion:edge",
+                                   "quaternion:polar",
+                                   "quaternion:random:1",
+                                   "quaternion:optimal",
+                                   "circle"};
+
+TEST(Playback, anchored_curves_stay_within_the_stated_drift) {
+  for (const char* morph : {"cloth", "bend", "twist", "eversion", "soup"})
+    EXPECT_LT(drift_of_curves(Prepared(morph), 2000, kDefaultAnchorInterval), 5e-6) << morph;
+}
+
+TEST(Playback, anchored_schemes_stay_within_the_stated_drift) {
+  for (const char* morph : {"bend", "twist"}) {
+    const Prepared prepared(morph);
+    for (const char* name : kPlayed)
+      EXPECT_LT(drift_of_scheme(name, prepared, 2000, kDefaultAnchorInterval), 5e-6) << name << " on " << morph;
+  }
+}
+
+TEST(Playback, drift_is_real_and_anchors_remove_it) {
+  const Prepared twist("twist");
+  const double without = drift_of_curves(twist, 5000, 0), with = drift_of_curves(twist, 5000, 32);
+  EXPECT_GT(without, 4 * with);
+  EXPECT_GT(drift_of_scheme("circle", twist, 5000, 0), 2 * drift_of_scheme("circle", twist, 5000, 32));
+}
+
+TEST(Playback, one_anchor_per_step_is_random_access) {
+  const Prepared twist("twist");
+  EXPECT_LT(drift_of_curves(twist, 50, 1), 3e-7);
+  for (const char* name : kPlayed) EXPECT_LT(drift_of_scheme(name, twist, 50, 1), 6e-7) << name;
+}
+
+TEST(Playback, a_part_of_the_segment_can_be_played_backwards) {
+  const Prepared twist("twist");
+  const NormalCurves curves(twist.normals);
+  NormalPlayback playback(curves, 0.75, -0.01, 16);
+  std::vector<float> played(3 * curves.size()), exact(3 * curves.size());
+  const auto a = VectorView<float>::packed(played.data(), curves.size());
+  const auto b = VectorView<float>::packed(exact.data(), curves.size());
+  for (int k = 0; k <= 50; ++k) {
+    (void)playback.next(a);
+    (void)curves.unit_normals(0.75 - 0.01 * k, b);
+    for (std::size_t i = 0; i < curves.size(); ++i) ASSERT_LT(angle_between(to_double(a[i]), to_double(b[i])), 3e-6);
+  }
+}
+
+TEST(Playback, mixed_degrees_and_degenerate_elements_are_played_too) {
+  std::vector<ControlNormals> normals;
+  const auto add = [&normals](const ControlNormals& c, int count) {
+    normals.insert(normals.end(), static_cast<std::size_t>(count), c);
+  };
+  add({{0, 0, 2}, {0, 0, 2}, {0, 0, 2}}, 11);      // constant
+  add({{0, 0, 2}, {0, 0.5, 1.5}, {0, 1, 1}}, 13);  // linear
+  add({{0, 0, 1}, {0.5, 0, 1}, {1, 0, 0.2}}, 9);   // quadratic
+  add({}, 2);                                      // nothing
+  add({{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, 1);      // through zero at 1/2
+  const NormalCurves curves(normals);
+  NormalPlayback playback(curves, 0, 0.1);
+  std::vector<float> played(3 * normals.size());
+  const auto result = VectorView<float>::packed(played.data(), normals.size());
+  for (int k = 0; k <= 10; ++k) {
+    EXPECT_EQ(playback.next(result), 2u);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      EXPECT_LT(angle_between(to_double(result[i]), unit_normal_at(normals[i], 0.1 * k).vector), 2e-6) << i << " " << k;
+  }
+}
+
+TEST(Playback, schemes_without_an_incremental_form_say_so) {
+  for (const char* name : {"recompute", "rational", "decasteljau:4", "circle:timed", "linear:scaled"}) {
+    const auto scheme = make_scheme(name).value();
+    EXPECT_EQ(scheme->play(0, 0.1, 0), nullptr) << name;
+    EXPECT_FALSE(scheme->sequential_operations().has_value()) << name;
+  }
+  for (const char* name : kPlayed) EXPECT_TRUE(make_scheme(name).value()->sequential_operations().has_value()) << name;
+}
+
+TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
+  // The rest is the normalisation: 2 additions, 6 products, a quotient and a root.
+  EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
+  EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
+  EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));
+  EXPECT_EQ(make_scheme("slerp").value()->sequential_operations()->trigonometric, 0);
+}
+
+// Counting sees the code that runs: one multiplication more in a scheme is one more in the table.
+struct PlainArc : UniformArc {
+  void fit(ElementMotion& element, double* c) const {
+    put_arc(c, CircleFamily(element.start().vector, element.end().vector).great_arc());
+  }
+};
+
+struct ArcWithOneMore : PlainArc {
+  template <class S>
+  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
+    return PlainArc::evaluate(c, S(1) * t);
+  }
+  template <class S>
+  [[nodiscard]] Vec3<S> advance(Coefficients<S> c, State<S> state) const {
+    Vec3<S> u = PlainArc::advance(c, state);
+    u.x = u.x * S(1);
+    return u;
+  }
+};
+
+TEST(Operations, one_more_multiplication_changes_the_count) {
+  const CurveScheme<PlainArc> plain{PlainArc{}};
+  const CurveScheme<ArcWithOneMore> more{ArcWithOneMore{}};
+  OperationCounts expected = plain.operations();
+  ++expected.multiply;
+  EXPECT_EQ(more.operations(), expected);
+  expected = *plain.sequential_operations();
+  ++expected.multiply;
+  EXPECT_EQ(*more.sequential_operations(), expected);
+}
+
+}  // namespace
+}  // namespace chronormal
