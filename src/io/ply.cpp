@@ -149,7 +149,7 @@ class BinarySource {
     if (ply::byte_size(type) > bytes_left()) return fail_at_end();
     switch (type) {
       case Scalar::kInt8:
-        whole = take<std::int8_t>();
+        whole = std::int64_t{take<std::int8_t>()};
         break;
       case Scalar::kUint8:
         whole = take<std::uint8_t>();

@@ -19,6 +19,7 @@
 #ifndef CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 #define CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 #include <vector>
@@ -242,8 +243,8 @@ class CurveScheme final : public Scheme {
   static constexpr double kExampleTime = 0.375;
 
   [[nodiscard]] static std::vector<Counting> counting(const std::vector<float>& values) {
-    std::vector<Counting> result;
-    for (const float value : values) result.emplace_back(value);
+    std::vector<Counting> result(values.size());
+    std::transform(values.begin(), values.end(), result.begin(), [](float value) { return Counting(value); });
     return result;
   }
 

@@ -56,7 +56,7 @@ class Rational {
     S square = weights.quartic[0] * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + weights.quartic[k] * c[9 + k];
     // Below this share of the largest coefficient the quartic has lost its digits: measure n instead.
-    if (!(square > S(1e-3f))) {
+    if (!(square > S(0.1f))) {
       const Vec3<S> start = normalized_or(c.vector(0), c.vector(0));
       return normalized_or(n, start);
     }

@@ -153,7 +153,7 @@ Judgement judge(const NormalCurves& curves, std::size_t element, bool is_flagged
   return judgement;
 }
 
-TEST(exact_normals, agree_between_eq_1_and_eq_5) {
+TEST(ExactNormals, agree_between_eq_1_and_eq_5) {
   fixtures::Random random(51);
   const Motion motion = fixtures::large_soup(50, 52);
   for (std::size_t f = 0; f < 50; ++f) {
@@ -166,7 +166,7 @@ TEST(exact_normals, agree_between_eq_1_and_eq_5) {
   }
 }
 
-TEST(exact_angle, tells_the_smallest_angles_apart) {
+TEST(ExactAngle, tells_the_smallest_angles_apart) {
   const exact::Vector x = exact::vector(1e-30, 0.0, 0.0);
   EXPECT_EQ(exact::angle(3.0, 0.0, 0.0, x), 0);
   EXPECT_NEAR(exact::angle(1.0, 1e-12, 0.0, x), 1e-12, 1e-26);
@@ -177,7 +177,7 @@ TEST(exact_angle, tells_the_smallest_angles_apart) {
 
 // Each component of a control normal is a sum of a few products of edges: its error is a few roundings of the largest
 // product, which may be much larger than the component itself.
-TEST(face_control_normals, are_within_a_few_roundings_of_exact_arithmetic) {
+TEST(FaceControlNormals, are_within_a_few_roundings_of_exact_arithmetic) {
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
     const Motion motion = family.make();
@@ -210,7 +210,7 @@ TEST(face_control_normals, are_within_a_few_roundings_of_exact_arithmetic) {
   }
 }
 
-TEST(normal_curves, are_within_a_millionth_of_a_radian_of_exact_arithmetic) {
+TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmetic) {
   fixtures::Random random(53);
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
@@ -243,7 +243,7 @@ TEST(normal_curves, are_within_a_millionth_of_a_radian_of_exact_arithmetic) {
 }
 
 // All elements share one block of float32 with one exponent: neighbours of another size must not cost accuracy.
-TEST(normal_curves, keep_their_accuracy_among_neighbours_of_any_size_and_degree) {
+TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_degree) {
   fixtures::Random random(54);
   std::vector<ControlNormals> normals;
   std::vector<exact::Triangle> triangles;
@@ -307,7 +307,7 @@ void expect_direction(const Motion& motion, double t, Direction direction,
   }
 }
 
-TEST(vanishing_normal, has_its_limit_at_the_ends_of_a_segment) {
+TEST(VanishingNormal, has_its_limit_at_the_ends_of_a_segment) {
   using fixtures::degenerate_soup;
   using fixtures::Shape;
   for (const Shape shape : {Shape::kLine, Shape::kPoint}) {
@@ -320,16 +320,16 @@ TEST(vanishing_normal, has_its_limit_at_the_ends_of_a_segment) {
   expect_direction(degenerate_soup(Shape::kLine, Shape::kLine), 1, Direction::kLimit, limit_before);
 }
 
-TEST(vanishing_normal, keeps_its_direction_through_a_double_zero) {
+TEST(VanishingNormal, keeps_its_direction_through_a_double_zero) {
   expect_direction(fixtures::point_reflected_soup(200), 0.5, Direction::kLimit, limit_after);
 }
 
-TEST(vanishing_normal, has_the_direction_from_before_where_the_two_sides_are_antipodal) {
+TEST(VanishingNormal, has_the_direction_from_before_where_the_two_sides_are_antipodal) {
   expect_direction(fixtures::inside_out_soup(200), 0.5, Direction::kDiscontinuous, limit_after);
 }
 
 // The same elements one by one, all together, in planes and packed.
-TEST(normal_curves, give_the_same_direction_in_any_layout) {
+TEST(NormalCurvesAccuracy, give_the_same_direction_in_any_layout) {
   const Motion motion = mixed_degrees();
   const auto normals = control_normals(motion.segment(0));
   const NormalCurves curves(normals);

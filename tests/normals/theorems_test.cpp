@@ -125,7 +125,7 @@ Motion reordered(const Motion& motion, const std::array<std::size_t, 3>& order) 
 
 // ---- perpendicular -------------------------------------------------------------------------------------------------
 
-RC_GTEST_PROP(normals, are_perpendicular_to_both_edges_at_every_time, ()) {
+RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, ()) {
   const Motion motion = any_soup(1);
   const ControlNormals normals = control_normals(motion)[0];
   const double t = *rc::gen::inRange(0, 1025) / 1024.0;
@@ -149,7 +149,7 @@ Motion snapped_to_grid(const Motion& motion) {
   });
 }
 
-RC_GTEST_PROP(closed_mesh_normals, sum_to_zero_in_every_coefficient, ()) {
+RC_GTEST_PROP(Theorems, closed_mesh_normals_sum_to_zero_in_every_coefficient, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const bool of_polygons = *rc::gen::arbitrary<bool>();
   const fixtures::ClosedMesh mesh = of_polygons ? fixtures::box_grid(3) : fixtures::icosphere(1);
@@ -167,7 +167,7 @@ RC_GTEST_PROP(closed_mesh_normals, sum_to_zero_in_every_coefficient, ()) {
 
 // ---- similarities --------------------------------------------------------------------------------------------------
 
-RC_GTEST_PROP(scaled_mesh, has_normals_times_the_square, ()) {
+RC_GTEST_PROP(Theorems, scaled_mesh_has_normals_times_the_square, ()) {
   const Motion motion = any_soup();
   const double scale = *rc::gen::inRange(1, 1000) / 37.0;
   const auto before = control_normals(motion);
@@ -191,7 +191,7 @@ RC_GTEST_PROP(scaled_mesh, has_normals_times_the_square, ()) {
   }
 }
 
-RC_GTEST_PROP(mesh_scaled_by_a_power_of_two, has_the_same_bits_but_for_the_exponent, ()) {
+RC_GTEST_PROP(Theorems, mesh_scaled_by_a_power_of_two_has_the_same_bits_but_for_the_exponent, ()) {
   const Motion motion = any_soup(12);
   const int exponent = *around_zero(30);
   const double scale = std::ldexp(1.0, exponent);
@@ -212,7 +212,7 @@ RC_GTEST_PROP(mesh_scaled_by_a_power_of_two, has_the_same_bits_but_for_the_expon
   }
 }
 
-RC_GTEST_PROP(translated_mesh, has_the_same_normals_bit_for_bit, ()) {
+RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   const Motion motion = grid_soup();
   // Each end by an amount of its own, as long as the grid still represents it.
   const auto step0 = *grid_point(1000), step1 = *grid_point(1000);
@@ -239,7 +239,7 @@ Vec3d rotated(const IntegerMatrix& r, double divisor, const V& v) {
   return {row(0), row(1), row(2)};
 }
 
-RC_GTEST_PROP(rigidly_moved_mesh, has_rotated_normals, ()) {
+RC_GTEST_PROP(Theorems, rigidly_moved_mesh_has_rotated_normals, ()) {
   const auto q = *rc::gen::suchThat(rc::gen::container<std::array<int, 4>>(around_zero(3)),
                                     [](const auto& c) { return c != std::array<int, 4>{}; });
   const int divisor = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
@@ -266,7 +266,7 @@ RC_GTEST_PROP(rigidly_moved_mesh, has_rotated_normals, ()) {
 
 // ---- time ----------------------------------------------------------------------------------------------------------
 
-RC_GTEST_PROP(reversed_motion, swaps_the_end_normals_and_keeps_the_middle, ()) {
+RC_GTEST_PROP(Theorems, reversed_motion_swaps_the_end_normals_and_keeps_the_middle, ()) {
   const Motion motion = any_soup();
   Motion reversed = motion;
   std::swap(reversed.keyframes[0].positions, reversed.keyframes[1].positions);
@@ -276,7 +276,7 @@ RC_GTEST_PROP(reversed_motion, swaps_the_end_normals_and_keeps_the_middle, ()) {
   }
 }
 
-RC_GTEST_PROP(split_segment, gives_the_same_curve, ()) {
+RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   const Motion motion = grid_soup();
   Motion split = motion;  // 0 -> 1/2 and 1/2 -> 1
   Motion::Keyframe half = motion.keyframes[0];
@@ -308,7 +308,7 @@ RC_GTEST_PROP(split_segment, gives_the_same_curve, ()) {
 
 // ---- corners -------------------------------------------------------------------------------------------------------
 
-RC_GTEST_PROP(swapped_corners, negate_bit_for_bit, ()) {
+RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
   const Motion on_grid_motion = grid_soup(), motion = any_soup();
   const auto expect_negated = [](const Motion& one, const Motion& other) {
     const auto left = control_normals(one), right = control_normals(other);
@@ -320,7 +320,7 @@ RC_GTEST_PROP(swapped_corners, negate_bit_for_bit, ()) {
   expect_negated(on_grid_motion, reordered(on_grid_motion, {2, 1, 0}));
 }
 
-RC_GTEST_PROP(negated_normals, have_negated_directions_bit_for_bit, ()) {
+RC_GTEST_PROP(Theorems, negated_normals_have_negated_directions_bit_for_bit, ()) {
   const Motion motion = any_soup(10);
   const auto normals = control_normals(motion);
   const auto turned = control_normals(reordered(motion, {0, 2, 1}));
@@ -330,7 +330,7 @@ RC_GTEST_PROP(negated_normals, have_negated_directions_bit_for_bit, ()) {
   }
 }
 
-RC_GTEST_PROP(polygon_normals, are_the_sum_of_any_fan_of_their_triangles, ()) {
+RC_GTEST_PROP(Theorems, polygon_normals_are_the_sum_of_any_fan_of_their_triangles, ()) {
   const auto corner_count = *rc::gen::inRange<std::size_t>(3, 9);
   const auto from = points(corner_count), to = points(corner_count);
   const auto start = *rc::gen::inRange<std::size_t>(0, corner_count);
@@ -357,7 +357,7 @@ RC_GTEST_PROP(polygon_normals, are_the_sum_of_any_fan_of_their_triangles, ()) {
   RC_ASSERT(polygon == turned);
 }
 
-RC_GTEST_PROP(polygon_of_three_corners, is_a_triangle_bit_for_bit, ()) {
+RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) {
   const Motion motion = any_soup(1);
   Motion mixed = motion;  // a quad beside it keeps the topology from being all triangles
   mixed.topology = fixtures::make_polygons(3, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 1});
@@ -377,12 +377,12 @@ ControlNormals moved_triangle(const std::array<Point, 3>& start, const std::arra
 
 std::array<Point, 3> some_triangle() { return *rc::gen::container<std::array<Point, 3>>(grid_point()); }
 
-RC_GTEST_PROP(translated_face, has_degree_0, ()) {
+RC_GTEST_PROP(Theorems, translated_face_has_degree_0, ()) {
   const auto step = *grid_point();
   RC_ASSERT(degree(moved_triangle(some_triangle(), {step, step, step})) == 0);
 }
 
-RC_GTEST_PROP(face_of_which_two_vertices_move_alike, has_degree_1_at_most, ()) {
+RC_GTEST_PROP(Theorems, face_of_which_two_vertices_move_alike_has_degree_1_at_most, ()) {
   const auto step = *grid_point(), other = *grid_point();
   const auto which = *rc::gen::inRange<std::size_t>(0, 3);
   std::array<Point, 3> steps{step, step, step};
@@ -392,7 +392,7 @@ RC_GTEST_PROP(face_of_which_two_vertices_move_alike, has_degree_1_at_most, ()) {
   RC_ASSERT(normals.m == 0.5 * (normals.n0 + normals.n1));
 }
 
-RC_GTEST_PROP(face_whose_edges_change_in_parallel, has_degree_1_at_most, ()) {
+RC_GTEST_PROP(Theorems, face_whose_edges_change_in_parallel_has_degree_1_at_most, ()) {
   const auto step = *grid_point(), change = *grid_point(16);
   const int p = *around_zero(3), q = *around_zero(3);
   std::array<Point, 3> steps{step, step, step};
@@ -403,7 +403,7 @@ RC_GTEST_PROP(face_whose_edges_change_in_parallel, has_degree_1_at_most, ()) {
   RC_ASSERT(degree(moved_triangle(some_triangle(), steps)) <= 1);
 }
 
-TEST(degree_of, faces_made_for_it) {
+TEST(Theorems, degree_of_faces_made_for_it) {
   const std::array<Point, 3> face{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}};
   const Point none{0, 0, 0};
   EXPECT_EQ(degree(moved_triangle(face, {none, none, none})), 0) << "stands still";
@@ -415,7 +415,7 @@ TEST(degree_of, faces_made_for_it) {
   EXPECT_EQ(degree(ControlNormals{}), 0) << "no normal at all";
 }
 
-RC_GTEST_PROP(general_face, has_degree_2_where_its_edges_do_not_change_in_parallel, ()) {
+RC_GTEST_PROP(Theorems, general_face_has_degree_2_where_its_edges_do_not_change_in_parallel, ()) {
   const auto start = some_triangle();
   const auto steps = *rc::gen::container<std::array<Point, 3>>(grid_point());
   const auto edge_change = [&](std::size_t i) {

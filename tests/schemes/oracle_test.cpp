@@ -31,7 +31,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 // How far from 1 a length may be. `rational` alone divides by a length that is not measured but evaluated, as a quartic
 // in float32 that loses digits where n(t) is small against its control normals: its direction is as good as any.
-double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 1e-4 : 1e-6; }
+double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
 // All names that make_scheme() knows, with numbers for K and SEED.
 std::vector<std::string> scheme_names() {
@@ -281,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
 });
 
 // The turn of a random frame depends on the segment too.
-TEST(scheme_oracle, agrees_with_random_frames_in_a_second_segment) {
+TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   Motion motion = fixtures::large_soup(50, 36);
   motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);
   motion.keyframes[0].time = -1;
@@ -305,7 +305,7 @@ TEST(scheme_oracle, agrees_with_random_frames_in_a_second_segment) {
   }
 }
 
-TEST(scheme_oracle, knows_every_scheme_that_there_is) {
+TEST(Oracle, knows_every_scheme_that_there_is) {
   EXPECT_FALSE(scheme_descriptions().empty());
   for (const std::string& name : scheme_names()) {
     EXPECT_TRUE(reference::parse_scheme(name)) << name << " has no oracle";
@@ -313,7 +313,7 @@ TEST(scheme_oracle, knows_every_scheme_that_there_is) {
   }
 }
 
-TEST(scheme_oracle, does_not_know_what_is_not_there) {
+TEST(Oracle, does_not_know_what_is_not_there) {
   for (const char* name : {"", "spline", "lagrange", "lagrange:", "lagrange:x", "quaternion", "quaternion:random"}) {
     EXPECT_FALSE(reference::parse_scheme(name)) << name;
   }
@@ -321,7 +321,7 @@ TEST(scheme_oracle, does_not_know_what_is_not_there) {
 
 // ---- the oracle against itself -------------------------------------------------------------------------------------
 
-TEST(scheme_oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) {
+TEST(Oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) {
   const Subject subject(fixtures::large_soup(200, 21));
   std::size_t judged = 0;
   for (const char* name : {"quaternion:matrix", "quaternion:edge", "quaternion:polar", "quaternion:random:3"}) {
@@ -341,7 +341,7 @@ TEST(scheme_oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) 
   EXPECT_GT(judged, 2000U);
 }
 
-TEST(scheme_oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
+TEST(Oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
   const Subject subject(fixtures::large_soup(40, 22));
   for (std::size_t f = 0; f < subject.faces().count; ++f) {
     const reference::Triangle triangle = subject.triangle(f);
@@ -405,13 +405,13 @@ void expect_nearly_optimal(const std::string& name, const std::vector<std::strin
   }
 }
 
-TEST(quaternion_optimal, is_within_a_few_thousandths_of_a_dense_search_and_beats_every_other_frame) {
+TEST(QuaternionOptimal, is_within_a_few_thousandths_of_a_dense_search_and_beats_every_other_frame) {
   expect_nearly_optimal(
       "quaternion:optimal", {"slerp", "quaternion:matrix", "quaternion:edge", "quaternion:polar"},
       [](const auto& triangle, const auto& exact) { return reference::optimal_circle_error(triangle, exact); });
 }
 
-TEST(linear_scaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse_than_linear) {
+TEST(LinearScaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse_than_linear) {
   expect_nearly_optimal("linear:scaled", {"linear"}, [](const auto& triangle, const auto& exact) {
     return reference::scaled_linear_error(triangle, exact);
   });
@@ -419,7 +419,7 @@ TEST(linear_scaled, is_within_a_few_thousandths_of_a_dense_search_and_never_wors
 
 // ---- the exact curve in float32 ------------------------------------------------------------------------------------
 
-TEST(polynomial, has_an_error_above_zero_and_below_a_ten_thousandth_of_a_degree_on_large_motion) {
+TEST(PolynomialScheme, has_an_error_above_zero_and_below_a_ten_thousandth_of_a_degree_on_large_motion) {
   constexpr std::size_t kSamples = 21;
   const Subject subject(fixtures::large_soup());
   const Output output("polynomial", subject, kSamples);
