@@ -69,9 +69,9 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   for (const InputOptions& input : inputs) {
     auto motion = read_input(input, progress);
     if (!motion) {
-      const bool could_be_each = !options.each && options.input.samples.size() > 1;
       Error error = motion.error();
-      if (could_be_each && error.code == ErrorCode::kUsage) error.message += ", or --each to compare them side by side";
+      const bool several = input.samples.size() + (input.files.empty() ? 0 : 1) > 1;
+      if (several) error.message += ", or --each to compare them side by side";
       return error;
     }
     auto comparison = compare_one(std::move(motion).value(), options, progress);
@@ -113,6 +113,7 @@ int run(const Options& options) {
 void add_compare_command(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("compare", "Hold ways to interpolate normals against the exact ones, on your mesh");
+  command->group("Commands");
   auto options = std::make_shared<Options>();
   options->input.add_to(*command);
   command->add_flag("--each", options->each, "every INPUT and --sample is a motion of its own, side by side");

@@ -24,6 +24,7 @@ int run(const Options& options) {
 void add_convert_command(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("convert", "Write the keyframes of a motion, or of a built-in morph, as mesh files");
+  command->group("Commands");
   auto options = std::make_shared<Options>();
   options->input.add_to(*command);
   options->common.add_to(*command, true);

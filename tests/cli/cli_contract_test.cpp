@@ -69,7 +69,8 @@ TEST_F(Cli, version_and_help_go_to_stdout) {
 TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   write_two_frames();
   expect_error(run(""), 2, {"--help"});
-  expect_error(run("frobnicate"), 2, {"--help"});
+  expect_error(run("frobnicate"), 2, {"no command 'frobnicate'", "compare, convert", "--help"});
+  expect_error(run("compare --sample twist a.obj b.obj"), 2, {"--each"});
   expect_error(run("compare"), 2, {"nothing to read", "compare --help"});
   expect_error(run("compare --no-such-option"), 2, {"--no-such-option"});
   expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
@@ -279,7 +280,7 @@ TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) {
 }
 
 TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
-  if (run_shell("command -v script", "/tmp").exit_code != 0) GTEST_SKIP() << "there is no `script` to make a terminal";
+  if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";
   const std::string command = std::string(CHRONORMAL_PROGRAM) +
                               " compare --sample eversion --schemes linear:scaled,quaternion:optimal --samples 101";
   const ProcessResult shown = run_shell("script -qec '" + command + "' /dev/null", folder_.string());
