@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 
 #include "chronormal/io/builtin_morphs.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference.h"
 
 namespace chronormal {
 namespace {
@@ -33,6 +36,46 @@ TEST(Compare, one_face_by_hand) {
   EXPECT_EQ(row(comparison.value(), "linear").quality.max_at.t, 0.5);
   EXPECT_EQ(*row(comparison.value(), "linear").relative_to_linear, 1);
   EXPECT_LT(row(comparison.value(), "polynomial").quality.sum, 1e-6);
+}
+
+// The whole table against an implementation that shares nothing with it: mean angles over faces and samples.
+TEST(Compare, agrees_with_the_oracle_to_the_printed_digits) {
+  constexpr const char* kSchemes[] = {
+      "recompute",         "polynomial",      "rational",         "linear",
+      "quadratic",         "cubic",           "lagrange:5",       "slerp",
+      "decasteljau:4",     "decasteljau:6",   "circle",           "circle:timed",
+      "quaternion:matrix", "quaternion:edge", "quaternion:polar", "quaternion:random:3"};
+  for (const Motion& motion : {fixtures::smooth_morph(16), fixtures::large_soup(400), fixtures::moderate_soup(400)}) {
+    CompareOptions options;
+    options.schemes.assign(std::begin(kSchemes), std::end(kSchemes));
+    const auto comparison = compare(motion, options).value();
+    const Segment segment = motion.segment(0);
+    for (const char* name : kSchemes) {
+      double sum = 0;
+      std::size_t judged = 0;
+      for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
+        reference::Triangle triangle{};
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const auto vertex = motion.topology.face(f)[corner];
+          const Vec3d p = to_double(segment.from[vertex]), q = to_double(segment.to[vertex]);
+          triangle.from[corner] = {p.x, p.y, p.z};
+          triangle.to[corner] = {q.x, q.y, q.z};
+        }
+        for (int i = 0; i <= 20; ++i) {
+          const reference::Real t = i / reference::Real(20);
+          const auto exact = reference::exact_unit_normal(triangle, t);
+          const auto approximate = reference::unit_normal(name, triangle, t, {f, 0});
+          if (!exact || !approximate) continue;
+          sum += static_cast<double>(reference::angle(*exact, *approximate));
+          ++judged;
+        }
+      }
+      const Quality& quality = row(comparison, name).quality;
+      EXPECT_GT(judged, quality.count * 98 / 100) << name;
+      EXPECT_NEAR(quality.mean() * kDegreesPerRadian, sum / static_cast<double>(judged) * kDegreesPerRadian, 2e-4)
+          << name;
+    }
+  }
 }
 
 TEST(Compare, the_order_of_table_1_holds_on_every_mild_morph) {
