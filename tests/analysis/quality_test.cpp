@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "chronormal/analysis/reference_normals.h"
@@ -94,10 +95,15 @@ TEST(ReferenceNormals, of_a_polygon_are_its_vector_area) {
 }
 
 TEST(ReferenceNormals, a_collapse_is_exact_zero_wherever_it_lies) {
-  // Zero at t = 0.35, a sample that binary fractions cannot name.
-  const std::vector<float> from = {0, 0, 0, 7, 0, 0, 0, 7, 0}, to = {0, 0, 0, -13, 0, 0, 0, -13, 0};
-  EXPECT_EQ(reference(from, to, 0.35), Vec3d{});
-  EXPECT_FALSE(reference(from, to, 0.3500001) == Vec3d{});
+  // Both edges go through zero at a t that binary fractions cannot name: rounding must not become a direction.
+  for (const auto& [start, end] :
+       {std::pair{7.0f, -13.0f}, {1.0f, -9.0f}, {3.0f, -7.0f}, {9.0f, -11.0f}, {17.0f, -3.0f}}) {
+    const std::vector<float> from = {0, 0, 0, start, start, 0, 0, start, start};
+    const std::vector<float> to = {0, 0, 0, end, end, 0, 0, end, end};
+    const double t = static_cast<double>(start) / static_cast<double>(start - end);
+    EXPECT_EQ(reference(from, to, t), Vec3d{}) << t;
+    EXPECT_FALSE(reference(from, to, t + 1e-4) == Vec3d{}) << t;
+  }
 }
 
 TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {

@@ -13,8 +13,8 @@
 
 namespace chronormal {
 
-/// Writes n(t) of a range of faces, and (0, 0, 0) where n(t) is zero: where it is so small against the products that it
-/// is made of (below 1e-10 of them) that rounding would decide its direction. Threads: pure.
+/// Writes n(t) of a range of faces, and (0, 0, 0) where n(t) is zero: where it is so small against the positions that
+/// it is made of (below 1e-10 of their products) that rounding would decide its direction. Threads: pure.
 /// result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
