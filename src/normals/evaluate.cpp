@@ -32,22 +32,15 @@ bool certainly_not_negative(const Bernstein<double, 4>& p, int depth) {
   return certainly_not_negative(before, depth - 1) && certainly_not_negative(after, depth - 1);
 }
 
-// The square of a quadratic, given the products of its Bernstein coefficients.
-template <class Product>
-Bernstein<double, 4> squared(Product product) {
-  return {product(0, 0), product(0, 1), (product(0, 2) + 2 * product(1, 1)) / 3, product(1, 2), product(2, 2)};
-}
-
 // Whether float32 can be trusted with this element at every t. `largest` is that of all elements.
 bool float_suffices(const ControlNormals& normals, double largest) {
   const double smallest_end = std::min(max_abs(normals.n0), max_abs(normals.n1));
   if (!(smallest_end >= kSmallestShare * largest) || smallest_end == 0) return false;
 
   const double scale = 1 / largest_component(normals);
-  const std::array<Vec3d, 3> c = {scale * normals.n0, scale * normals.m, scale * normals.n1};
-  const std::array<double, 3> lengths = {length(c[0]), length(c[1]), length(c[2])};
-  const auto n_squared = squared([&](std::size_t i, std::size_t j) { return dot(c[i], c[j]); });
-  const auto g_squared = squared([&](std::size_t i, std::size_t j) { return lengths[i] * lengths[j]; });
+  const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
+  const Bernstein<double, 2> g = {length(n[0]), length(n[1]), length(n[2])};
+  const Bernstein<double, 4> n_squared = multiply(n, n, dot<double>), g_squared = multiply(g, g);
   Bernstein<double, 4> slack;
   for (std::size_t k = 0; k < slack.size(); ++k)
     slack[k] = kMaxCancellation * kMaxCancellation * n_squared[k] - g_squared[k];

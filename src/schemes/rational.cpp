@@ -29,8 +29,8 @@ class Rational {
     put_vector(c, 0, n0);
     put_vector(c, 1, m);
     put_vector(c, 2, n1);
-    const Bernstein<double, 4> square = {dot(n0, n0), dot(n0, m), (dot(n0, n1) + 2 * dot(m, m)) / 3, dot(m, n1),
-                                         dot(n1, n1)};
+    const Bernstein<Vec3d, 2> n = {n0, m, n1};
+    const Bernstein<double, 4> square = multiply(n, n, dot<double>);
     for (std::size_t k = 0; k < square.size(); ++k) c[9 + k] = square[k];
   }
 

@@ -64,6 +64,17 @@ TEST(Polynomial, ends_are_exact_and_vectors_work_too) {
   EXPECT_EQ(evaluate(p, 0.5), (Vec3d{0, 4, 1.275}));
 }
 
+RC_GTEST_PROP(Polynomial, the_product_is_the_product_at_every_t, ()) {
+  const auto p = some_quartic(), q = some_quartic();
+  const double t = some_t();
+  RC_ASSERT(std::fabs(evaluate(multiply(p, q), t) - bernstein_sum(p, t) * bernstein_sum(q, t)) < 1e-11);
+}
+
+TEST(Polynomial, vectors_multiply_by_their_dot_product) {
+  const Bernstein<Vec3d, 1> p = {Vec3d{1, 0, 0}, Vec3d{0, 2, 0}}, q = {Vec3d{3, 1, 0}, Vec3d{0, 4, 5}};
+  EXPECT_EQ(multiply(p, q, dot<double>), (Bernstein<double, 2>{3, 1, 8}));
+}
+
 Bernstein<double, 3> cubic_with_roots(double a, double b, double c) {
   return to_bernstein(Power<double, 3>{{-a * b * c, a * b + b * c + c * a, -(a + b + c), 1}});
 }
@@ -79,7 +90,7 @@ RC_GTEST_PROP(Polynomial, roots_are_found_where_they_were_put, ()) {
   // A root at an end is on the edge of being in.
   RC_PRE(a != 0 && c != 100);
   RC_ASSERT(roots.count == expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) RC_ASSERT(std::fabs(roots.t[i] - expected[i]) < 1e-11);
+  for (std::size_t i = 0; i < expected.size(); ++i) RC_ASSERT(std::fabs(roots.t[i] - expected[i]) < 1e-12);
 }
 
 TEST(Polynomial, roots_at_the_ends_are_roots) {

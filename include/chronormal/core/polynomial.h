@@ -13,6 +13,7 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 
 namespace chronormal {
 
@@ -63,6 +64,20 @@ template <class T, std::size_t M>
   return split(split(p, t1).before, t0 / t1).after;
 }
 
+/// The product of two polynomials, of the sum of their degrees. `product` multiplies two coefficients: the number that
+/// two vectors have as their dot product makes a scalar polynomial of two vector ones.
+template <class P, std::size_t M, class Q, std::size_t N, class Product = std::multiplies<>>
+[[nodiscard]] constexpr auto multiply(const std::array<P, M>& p, const std::array<Q, N>& q, Product product = {}) {
+  std::array<decltype(product(p[0], q[0])), M + N - 1> result{};
+  for (std::size_t i = 0; i < M; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      const double share = binomial(M - 1, i) * binomial(N - 1, j) / binomial(M + N - 2, i + j);
+      result[i + j] = result[i + j] + share * product(p[i], q[j]);
+    }
+  }
+  return result;
+}
+
 /// The same polynomial in power form. Cancels near t = 1: evaluate the Bernstein form where digits matter.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
@@ -104,22 +119,48 @@ struct Roots {
 
 namespace detail {
 
-/// Isolates by the variation of signs (Descartes), subdividing until an interval is as wide as rounding.
+/// The only root of p, which changes its sign, by false position with the Illinois rule (Dowell, Jarratt 1971) and a
+/// bisection wherever that gains too little.
+template <std::size_t M>
+[[nodiscard]] double only_root(const std::array<double, M>& p) {
+  double a = 0, b = 1, fa = p[0], fb = p[M - 1];
+  for (int i = 0; i < 100 && b - a > 1e-16 * b; ++i) {
+    const double width = b - a;
+    double t = (a * fb - b * fa) / (fb - fa);
+    if (i % 4 == 3 || !(a < t && t < b)) t = a + width / 2;
+    const double ft = evaluate(p, t);
+    if (ft == 0) return t;
+    if ((ft < 0) == (fb < 0)) {
+      b = t;
+      fb = ft;
+      fa /= 2;
+    } else {
+      a = t;
+      fa = ft;
+      fb /= 2;
+    }
+  }
+  return a + (b - a) / 2;
+}
+
+/// Isolates by the variation of signs (Descartes), subdividing until there is one or an interval is as wide as
+/// rounding.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
   std::size_t variations = 0;
-  double last = 0, size = 0;
+  double last = 0;
   for (const double b : p) {
     if (b != 0 && last != 0 && (b < 0) != (last < 0)) ++variations;
     if (b != 0) last = b;
-    size = size < b ? b : (size < -b ? -b : size);
   }
   // A zero at either end is a root that sign variations do not show; neighbours share it, so take it once.
   const auto add = [&roots](double t) {
     if (roots.count < M - 1 && (roots.count == 0 || roots.t[roots.count - 1] + 1e-14 < t)) roots.t[roots.count++] = t;
   };
   if (p[0] == 0) add(t0);
-  if (variations > 0) {
+  if (variations == 1 && p[0] != 0 && p[M - 1] != 0) {
+    add(t0 + (t1 - t0) * only_root(p));
+  } else if (variations > 0) {
     const double middle = t0 + (t1 - t0) / 2;
     if (t1 - t0 < 1e-15 || middle <= t0 || middle >= t1) {
       add(middle);
@@ -129,13 +170,14 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
       find_roots(halves.after, middle, t1, roots);
     }
   }
-  if (p[M - 1] == 0 && size != 0) add(t1);
+  if (p[M - 1] == 0 && last != 0) add(t1);
 }
 
 }  // namespace detail
 
-/// Finds the roots of p in [0, 1], ends included, to 1e-15. A double root that rounding has lifted off the axis may be
-/// missed, or found as two: a decision that hangs on it needs exact arithmetic.
+/// Finds the roots of p in [0, 1], ends included: a simple one to 1e-15 times its condition, one of multiplicity k to
+/// about the k-th root of that. A double root that rounding has lifted off the axis may be missed, or found as two: a
+/// decision that hangs on it needs exact arithmetic.
 template <std::size_t M>
 [[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
   Roots<M - 1> roots;

@@ -36,8 +36,8 @@ namespace chronormal {
 /// What a scheme is prepared from: some elements of one segment, and their control normals.
 struct ElementBlock {
   const Segment* segment = nullptr;
-  IndexRange elements;                      ///< which faces
-  std::span<const ControlNormals> normals;  ///< one per element; may be empty for `recompute`
+  IndexRange elements;                      ///< which faces: `recompute` and the frames of `quaternion` look at them
+  std::span<const ControlNormals> normals;  ///< one per element; `recompute` does not read them
 };
 
 /// Elementary operations of one evaluation of one element. What all elements of a block share at one t
