@@ -46,7 +46,9 @@ Motion some_faces(const Motion& motion, std::size_t count) {
   return part;
 }
 
-Motion some_pairs(const Motion& motion, std::size_t pairs) { return some_faces(motion, pairs / motion.segments.size()); }
+Motion some_pairs(const Motion& motion, std::size_t pairs) {
+  return some_faces(motion, pairs / motion.segments.size());
+}
 
 std::vector<ControlNormals> control_normals_of(const Segment& segment) {
   std::vector<ControlNormals> normals(segment.topology->face_count());

@@ -34,15 +34,16 @@ struct Morph {
 /// Angle between unit vectors, in degrees.
 [[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);
 
-/// Exact unit normals of all (segment, face) pairs at N equidistant t, from positions (analysis/reference_normals.h), and
-/// any scheme held against them, pair by pair. A sample without a direction counts as no error.
+/// Exact unit normals of all (segment, face) pairs at N equidistant t, from positions (analysis/reference_normals.h),
+/// and any scheme held against them, pair by pair. A sample without a direction counts as no error.
 class PairErrors {
  public:
   PairErrors(const Motion& motion, std::size_t samples);
 
   [[nodiscard]] std::size_t pairs() const { return pairs_; }
   [[nodiscard]] std::size_t samples() const { return samples_; }
-  /// The angles of a scheme, degrees, summed over samples; one value per pair. Threads: const functions may run at once.
+  /// The angles of a scheme, degrees, summed over samples; one value per pair. Threads: const functions may run at
+  /// once.
   [[nodiscard]] std::vector<double> sums(std::string_view scheme) const;
   /// The largest angle of each pair, in degrees.
   [[nodiscard]] std::vector<double> largest(std::string_view scheme) const;

@@ -44,7 +44,7 @@ std::string padded(const std::string& text, std::size_t to, bool left) {
 
 }  // namespace
 
-void Page::heading(std::string_view title) { markdown_ += fmt::format("\n## {}\n\n", title); }
+void Page::heading(std::string_view title) { markdown_ += fmt::format("## {}\n\n", title); }
 void Page::subheading(std::string_view title) { markdown_ += fmt::format("### {}\n\n", title); }
 void Page::text(std::string_view paragraph) { markdown_ += wrapped(paragraph, "", "") + '\n'; }
 void Page::line(std::string_view line) { markdown_ += std::string(line) + '\n'; }
@@ -59,12 +59,13 @@ void Page::table(const std::vector<std::string>& header, const std::vector<std::
   }
   const auto left = [text_column](std::size_t c) { return c == 0 || c >= text_column; };
   const auto add = [&](const std::vector<std::string>& cells) {
-    for (std::size_t c = 0; c < header.size(); ++c) markdown_ += "| " + padded(cells[c], widths[c], left(c)) + ' ';
+    for (std::size_t c = 0; c < header.size(); ++c)
+      markdown_ += fmt::format("| {} ", padded(cells[c], widths[c], left(c)));
     markdown_ += "|\n";
   };
   add(header);
   for (std::size_t c = 0; c < header.size(); ++c)
-    markdown_ += left(c) ? "|" + std::string(widths[c] + 2, '-') : "|" + std::string(widths[c] + 1, '-') + ":";
+    markdown_ += fmt::format("|{}{}", std::string(widths[c] + 1, '-'), left(c) ? '-' : ':');
   markdown_ += "|\n";
   for (const auto& row : rows) add(row);
   markdown_ += '\n';
@@ -89,7 +90,7 @@ std::string grouped(double value, int decimals) {
     i -= 3;
     text.insert(i, 1, ',');
   }
-  return value < 0 ? "-" + text : text;
+  return value < 0 ? fmt::format("-{}", text) : text;
 }
 
 std::string ratio(double value) {
@@ -103,7 +104,8 @@ std::string scientific(double value, int decimals) {
   if (value == 0) return "0";
   const std::string text = fmt::format("{:.{}e}", value, decimals);
   const std::size_t e = text.find('e');
-  return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)));
+  const int exponent = std::stoi(text.substr(e + 1));
+  return exponent == 0 ? text.substr(0, e) : fmt::format("{}e{}", text.substr(0, e), exponent);
 }
 
 std::string listed(const std::vector<std::string>& items) {

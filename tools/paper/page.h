@@ -50,7 +50,7 @@ void require(bool holds, std::string_view claim);
 [[nodiscard]] std::string grouped(double value, int decimals = 0);  ///< 1,234.5
 /// Three decimals, and powers of ten where those would show nothing.
 [[nodiscard]] std::string ratio(double value);
-[[nodiscard]] std::string percent(double share, int decimals = 0);    ///< 12 %
+[[nodiscard]] std::string percent(double share, int decimals = 0);     ///< 12 %
 [[nodiscard]] std::string scientific(double value, int decimals = 0);  ///< 1e-06 as 1e-6
 /// "a, b and c"
 [[nodiscard]] std::string listed(const std::vector<std::string>& items);

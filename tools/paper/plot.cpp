@@ -14,41 +14,62 @@ namespace {
 
 const char* hex(Colour colour) {
   switch (colour) {
-    case Colour::kBlack: return "#000000";
-    case Colour::kBlue: return "#0072b2";
-    case Colour::kOrange: return "#e69f00";
-    case Colour::kGreen: return "#009e73";
-    case Colour::kPurple: return "#cc79a7";
-    case Colour::kSky: return "#56b4e9";
-    case Colour::kRed: return "#d55e00";
-    case Colour::kGrey: return "#8c8c8c";
+    case Colour::kBlack:
+      return "#000000";
+    case Colour::kBlue:
+      return "#0072b2";
+    case Colour::kOrange:
+      return "#e69f00";
+    case Colour::kGreen:
+      return "#009e73";
+    case Colour::kPurple:
+      return "#cc79a7";
+    case Colour::kSky:
+      return "#56b4e9";
+    case Colour::kRed:
+      return "#d55e00";
+    case Colour::kGrey:
+      return "#8c8c8c";
   }
   return "#000000";
 }
 
 int point_type(Mark mark) {
   switch (mark) {
-    case Mark::kNone: return 0;
-    case Mark::kDisc: return 7;
-    case Mark::kCircle: return 6;
-    case Mark::kSquare: return 5;
-    case Mark::kOpenSquare: return 4;
-    case Mark::kTriangle: return 9;
-    case Mark::kOpenTriangle: return 8;
-    case Mark::kDiamond: return 13;
-    case Mark::kOpenDiamond: return 12;
-    case Mark::kCross: return 2;
+    case Mark::kNone:
+      return 0;
+    case Mark::kDisc:
+      return 7;
+    case Mark::kCircle:
+      return 6;
+    case Mark::kSquare:
+      return 5;
+    case Mark::kOpenSquare:
+      return 4;
+    case Mark::kTriangle:
+      return 9;
+    case Mark::kOpenTriangle:
+      return 8;
+    case Mark::kDiamond:
+      return 13;
+    case Mark::kOpenDiamond:
+      return 12;
+    case Mark::kCross:
+      return 2;
   }
   return 0;
 }
 
 std::string axis(const char* name, const Axis& axis) {
-  std::string script = fmt::format("set {0}label \"{1}\"\nset {0}range [{2:g}:{3:g}]\n", name, axis.label, axis.from, axis.to);
+  std::string script =
+      fmt::format("set {0}label \"{1}\"\nset {0}range [{2:g}:{3:g}]\n", name, axis.label, axis.from, axis.to);
   script += axis.logarithmic ? fmt::format("set logscale {}\n", name) : fmt::format("unset logscale {}\n", name);
   if (axis.ticks.empty()) {
     script += fmt::format("set {}tics autofreq scale 0.6 nomirror\n", name);
-    if (axis.logarithmic) script += fmt::format("set format {} \"10^{{%L}}\"\n", name);
-    else script += fmt::format("set format {} \"%g\"\n", name);
+    if (axis.logarithmic)
+      script += fmt::format("set format {} \"10^{{%L}}\"\n", name);
+    else
+      script += fmt::format("set format {} \"%g\"\n", name);
   } else {
     script += fmt::format("set {}tics scale 0.6 nomirror (", name);
     for (std::size_t i = 0; i < axis.ticks.size(); ++i)
@@ -65,14 +86,16 @@ std::string panel_script(const Panel& panel) {
 
   script += "unset label\nunset object\n";
   for (const Label& label : panel.labels) {
-    const char* align = label.align == Label::Align::kLeft ? "left" : label.align == Label::Align::kRight ? "right" : "center";
+    const char* align = label.align == Label::Align::kLeft    ? "left"
+                        : label.align == Label::Align::kRight ? "right"
+                                                              : "center";
     script += fmt::format("set label \"{}\" at {:g},{:g} {} tc rgb \"{}\" front\n", label.text, label.x, label.y, align,
                           hex(label.colour));
   }
   for (const Band& band : panel.bands)
     script += fmt::format(
-        "set object rectangle from {:g}, graph 0 to {:g}, graph 1 fc rgb \"#eeeeee\" fs solid noborder behind\n", band.from,
-        band.to);
+        "set object rectangle from {:g}, graph 0 to {:g}, graph 1 fc rgb \"#eeeeee\" fs solid noborder behind\n",
+        band.from, band.to);
 
   std::string plots;
   for (std::size_t s = 0; s < panel.series.size(); ++s) {
@@ -81,7 +104,8 @@ std::string panel_script(const Panel& panel) {
     for (const auto& [x, y] : series.points) script += fmt::format("{:.6g} {:.6g}\n", x, y);
     script += "end\n";
     const bool line = series.line > 0, mark = series.mark != Mark::kNone;
-    plots += fmt::format("{}$data{} with {} {}", s == 0 ? "plot " : ", ", s, line ? mark ? "linespoints" : "lines" : "points",
+    plots += fmt::format("{}$data{} with {} {}", s == 0 ? "plot " : ", ", s,
+                         line ? mark ? "linespoints" : "lines" : "points",
                          series.title.empty() ? "notitle" : fmt::format("title \"{}\"", series.title));
     plots += fmt::format(" lc rgb \"{}\"", hex(series.colour));
     if (line) plots += fmt::format(" lw {:g} dt {}", series.line, series.dashed ? 2 : 1);
@@ -96,11 +120,8 @@ std::string panel_script(const Panel& panel) {
 std::string script_of(const Figure& figure, const std::string& path) {
   const std::size_t panels = figure.panels.size(), columns = static_cast<std::size_t>(figure.columns);
   std::string script = fmt::format(
-      "set terminal svg size {},{} fixed enhanced font \"Helvetica,Arial,sans-serif;13\" background \"#ffffff\" linewidth 1\n",
-      figure.width, figure.height);
-  // Between font names a comma would end the name, and a size is set on its own.
-  script = fmt::format(
-      "set encoding utf8\nset terminal svg size {},{} fixed enhanced font \"Helvetica\" fontscale 1.05 background \"#ffffff\"\n",
+      "set encoding utf8\nset terminal svg size {},{} fixed enhanced font \"Helvetica\" fontscale 1.05 background "
+      "\"#ffffff\"\n",
       figure.width, figure.height);
   script += fmt::format("set output \"{}\"\n", path);
   script += "set border 3 lc rgb \"#444444\"\nset grid lc rgb \"#dddddd\" lw 0.7 dt 1\nset tics tc rgb \"#000000\"\n";
@@ -113,7 +134,7 @@ std::string script_of(const Figure& figure, const std::string& path) {
 
 void draw(const Figure& figure, const std::string& path) {
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-  FILE* const gnuplot = popen("LC_ALL=C gnuplot -", "w");
+  FILE* const gnuplot = popen("LC_ALL=C.UTF-8 gnuplot -", "w");
   if (gnuplot == nullptr) throw std::runtime_error("gnuplot cannot be started");
   const std::string script = script_of(figure, path);
   std::fwrite(script.data(), 1, script.size(), gnuplot);
@@ -126,7 +147,8 @@ void draw(const Figure& figure, const std::string& path) {
   bytes << std::ifstream(path, std::ios::binary).rdbuf();
   std::string svg = bytes.str();
   const std::size_t first = svg.find("<title>"), last = svg.find("</desc>");
-  if (first == std::string::npos || last == std::string::npos) throw std::runtime_error("gnuplot wrote no SVG: " + path);
+  if (first == std::string::npos || last == std::string::npos)
+    throw std::runtime_error("gnuplot wrote no SVG: " + path);
   svg.replace(first, last + 7 - first, fmt::format("<title>{}</title>", figure.name));
   std::ofstream(path, std::ios::binary) << svg;
 }

@@ -11,7 +11,18 @@ namespace chronormal::paper {
 /// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
 enum class Colour { kBlack, kBlue, kOrange, kGreen, kPurple, kSky, kRed, kGrey };
 
-enum class Mark { kNone, kDisc, kCircle, kSquare, kOpenSquare, kTriangle, kOpenTriangle, kDiamond, kOpenDiamond, kCross };
+enum class Mark {
+  kNone,
+  kDisc,
+  kCircle,
+  kSquare,
+  kOpenSquare,
+  kTriangle,
+  kOpenTriangle,
+  kDiamond,
+  kOpenDiamond,
+  kCross
+};
 
 struct Series {
   std::string title;  ///< in the legend; empty: not there
