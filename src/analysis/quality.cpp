@@ -15,8 +15,13 @@ void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals,
     const Vec3d u = to_double(normals[i]);
     // Through the largest component of the exact normal, whose length is an area of any size.
     const double scale = max_abs(exact[i]);
-    if (scale == 0 || u == Vec3d{}) {
+    if (scale == 0) {
       ++degenerate;
+      continue;
+    }
+    const double square = dot(u, u);
+    if (!(square > 0 && std::isfinite(square))) {
+      ++missing;
       continue;
     }
     const Vec3d n{exact[i].x / scale, exact[i].y / scale, exact[i].z / scale};
@@ -37,6 +42,7 @@ void Quality::add(const Quality& other) {
   sum_of_squares += other.sum_of_squares;
   count += other.count;
   degenerate += other.degenerate;
+  missing += other.missing;
   if (other.max > max) {
     max = other.max;
     max_at = other.max_at;

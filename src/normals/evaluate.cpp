@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chronormal/core/polynomial.h"
+#include "normals/certificate.h"
 #include "normals/curve_elements.h"
 
 namespace chronormal {
@@ -13,38 +14,24 @@ namespace {
 
 // docs/theory.md, section 5: below this ratio of sum w_k |c_k| to |n(t)|, float32 is within 1e-6 rad.
 constexpr double kMaxCancellation = 3;
-constexpr int kCertificateDepth = 4;
 
 // Planes are scaled so that the largest component is near 2^50 and none that counts is below 2^-58: then |n(t)|^2 stays
 // between 2^-122 and 2^104.
 constexpr int kLargestExponent = 50;
 constexpr double kSmallestShare = 0x1p-108;
+// Below this, that scale itself would leave the range of double.
+constexpr double kSmallestMesh = 0x1p-900;
 
 constexpr std::size_t kShortestRun = 8;
-
-double largest_component(const ControlNormals& c) { return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)}); }
-
-// Whether p >= 0 on [0, 1] can be shown by its Bernstein coefficients after a few subdivisions.
-bool certainly_not_negative(const Bernstein<double, 4>& p, int depth) {
-  if (std::all_of(p.begin(), p.end(), [](double b) { return b >= 0; })) return true;
-  if (depth == 0 || p.front() < 0 || p.back() < 0) return false;
-  const auto [before, after] = split(p, 0.5);
-  return certainly_not_negative(before, depth - 1) && certainly_not_negative(after, depth - 1);
-}
 
 // Whether float32 can be trusted with this element at every t. `largest` is that of all elements.
 bool float_suffices(const ControlNormals& normals, double largest) {
   const double smallest_end = std::min(max_abs(normals.n0), max_abs(normals.n1));
-  if (!(smallest_end >= kSmallestShare * largest) || smallest_end == 0) return false;
+  if (!(smallest_end >= kSmallestShare * largest) || !(largest >= kSmallestMesh)) return false;
 
   const double scale = 1 / largest_component(normals);
   const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
-  const Bernstein<double, 2> g = {length(n[0]), length(n[1]), length(n[2])};
-  const Bernstein<double, 4> n_squared = multiply(n, n, dot<double>), g_squared = multiply(g, g);
-  Bernstein<double, 4> slack;
-  for (std::size_t k = 0; k < slack.size(); ++k)
-    slack[k] = kMaxCancellation * kMaxCancellation * n_squared[k] - g_squared[k];
-  return certainly_not_negative(slack, kCertificateDepth);
+  return stays_above(n, kMaxCancellation, {length(n[0]), length(n[1]), length(n[2])});
 }
 
 struct DegreeRun {
@@ -85,7 +72,7 @@ Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_
 NormalCurves::NormalCurves(std::span<const ControlNormals> normals) : size_(normals.size()) {
   double largest = 0;
   for (const ControlNormals& c : normals) largest = std::fmax(largest, largest_component(c));
-  exponent_ = largest > 0 ? std::ilogb(largest) - kLargestExponent : 0;
+  exponent_ = largest >= kSmallestMesh ? std::ilogb(largest) - kLargestExponent : 0;
 
   // Find the degree of every element, flag those that float32 cannot carry, and collect runs.
   std::vector<DegreeRun> runs;

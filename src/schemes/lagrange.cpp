@@ -42,8 +42,9 @@ class Lagrange {
     return normalized_or(sum, c.vector(0));
   }
 
-  // Played by forward differences: K additions per component and step.
-  [[nodiscard]] std::size_t state_planes() const { return 3 * (degree() + 1); }
+  // Played by forward differences: K additions per component and step. Not beyond degree 3: differences of high order
+  // are smaller than the rounding of float32.
+  [[nodiscard]] std::size_t state_planes() const requires(kFixed > 0) { return 3 * (degree() + 1); }
 
   void anchor(Coefficients<float> c, double t, double step, double* state) const {
     std::array<Vec3d, kMaxLagrangeDegree + 1> differences;

@@ -17,7 +17,7 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"linear", "straight line between the unit end normals"},
     SchemeDescription{"quadratic", "parabola through 3 exact unit normals"},
     SchemeDescription{"cubic", "cubic through 4 exact unit normals"},
-    SchemeDescription{"lagrange:K", "degree K through K + 1 exact unit normals, K = 1 to 64"},
+    SchemeDescription{"lagrange:K", "degree K through K + 1 exact normals, K = 1 to 64 (float32 limits it from 16 on)"},
     SchemeDescription{"linear:scaled", "straight line with the best length of one end"},
     SchemeDescription{"slerp", "shortest arc between the end normals"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},

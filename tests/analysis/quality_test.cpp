@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -37,11 +38,13 @@ TEST(Quality, tiny_angles_count) {
 }
 
 TEST(Quality, pairs_without_a_direction_are_counted_not_summed) {
-  const std::vector<Vec3d> exact = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
-  float normals[] = {1, 0, 0, 0, 0, 0, 0, 1, 0};
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Vec3d> exact = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  float normals[] = {1, 0, 0, 0, 0, 0, 0, 1, 0, nan, 0, 0};
   Quality quality;
-  quality.add(exact, VectorView<float>::packed(normals, 3), {});
-  EXPECT_EQ(quality.degenerate, 2u);
+  quality.add(exact, VectorView<float>::packed(normals, 4), {});
+  EXPECT_EQ(quality.degenerate, 1u);
+  EXPECT_EQ(quality.missing, 2u);
   EXPECT_EQ(quality.count, 1u);
   EXPECT_NEAR(quality.mean(), 3.14159265358979 / 2, 1e-7);
 }

@@ -188,6 +188,14 @@ TEST(NormalCurves, lengths_at_the_limits_of_float_are_finite) {
   }
 }
 
+TEST(NormalCurves, control_normals_of_any_finite_size_keep_their_direction) {
+  for (const double size : {1e-310, 1e-300, 1e-290, 1e-200, 1e200, 1e290}) {
+    const ControlNormals c{size * kQuadratic.n0, size * kQuadratic.m, size * kQuadratic.n1};
+    const auto u = unit_normals(NormalCurves(std::span(&c, 1)), 0.6);
+    expect_near(to_double(u[0]), unit_normal_at(kQuadratic, 0.6).vector, 2e-7);
+  }
+}
+
 TEST(NormalCurves, elements_of_very_different_size_all_keep_their_direction) {
   std::vector<ControlNormals> normals;
   for (int e = -60; e <= 60; e += 4) {

@@ -93,6 +93,35 @@ TEST(Playback, drift_is_real_and_anchors_remove_it) {
   EXPECT_GT(drift_of_scheme("circle", twist, 5000, 0), 2 * drift_of_scheme("circle", twist, 5000, 32));
 }
 
+TEST(Playback, a_face_that_shrinks_keeps_its_direction) {
+  // The error of the state is absolute: what shrinks must not be played.
+  for (const double shrink : {0.1, 1e-2, 1e-4, 1e-8}) {
+    for (const double tilt : {0.0, 0.2}) {
+      const Vec3d end = (shrink * shrink) * Vec3d{std::sin(tilt), 0, std::cos(tilt)};
+      const ControlNormals c{{0, 0, 1}, shrink * Vec3d{std::sin(tilt / 2), 0, std::cos(tilt / 2)}, end};
+      const std::vector<ControlNormals> normals(20, c);
+      const NormalCurves curves(normals);
+      NormalPlayback playback(curves, 0, 1.0 / 63);
+      EXPECT_EQ(playback.unplayed_count() + curves.flagged_count(), 20u) << shrink;
+      std::vector<float> played(60);
+      for (int k = 0; k <= 63; ++k) {
+        EXPECT_EQ(playback.next(VectorView<float>::packed(played.data(), 20)), 0u);
+        for (std::size_t i = 0; i < 60; i += 3)
+          EXPECT_LT(angle_between({played[i], played[i + 1], played[i + 2]}, unit_normal_at(c, k / 63.0).vector), 1e-6)
+              << shrink << " " << tilt << " step " << k;
+      }
+    }
+  }
+}
+
+TEST(Playback, most_faces_of_a_mild_morph_are_played) {
+  for (const char* morph : {"cloth", "bend", "twist"}) {
+    const Prepared prepared(morph);
+    const NormalCurves curves(prepared.normals);
+    EXPECT_LT(NormalPlayback(curves, 0, 0.01).unplayed_count(), curves.size() / 20) << morph;
+  }
+}
+
 TEST(Playback, one_anchor_per_step_is_random_access) {
   const Prepared twist("twist");
   EXPECT_LT(drift_of_curves(twist, 50, 1), 3e-7);
@@ -135,7 +164,8 @@ TEST(Playback, mixed_degrees_and_degenerate_elements_are_played_too) {
 }
 
 TEST(Playback, schemes_without_an_incremental_form_say_so) {
-  for (const char* name : {"recompute", "rational", "decasteljau:4", "circle:timed", "linear:scaled"}) {
+  for (const char* name :
+       {"recompute", "rational", "decasteljau:4", "circle:timed", "linear:scaled", "lagrange:4", "lagrange:12"}) {
     const auto scheme = make_scheme(name).value();
     EXPECT_EQ(scheme->play(0, 0.1, 0), nullptr) << name;
     EXPECT_FALSE(scheme->sequential_operations().has_value()) << name;

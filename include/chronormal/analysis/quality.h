@@ -31,7 +31,8 @@ struct Quality {
   double max = 0;              ///< radians
   ErrorPlace max_at;           ///< the first place of the largest angle
   std::size_t count = 0;       ///< pairs that were summed
-  std::size_t degenerate = 0;  ///< pairs that were left out
+  std::size_t degenerate = 0;  ///< pairs without an exact normal, left out
+  std::size_t missing = 0;     ///< pairs without a normal of the scheme, left out
 
   [[nodiscard]] double mean() const noexcept;  ///< radians; 0 where nothing was summed
   [[nodiscard]] double rms() const noexcept;   ///< radians

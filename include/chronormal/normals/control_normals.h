@@ -39,8 +39,9 @@ void face_control_normals(const Segment& segment, IndexRange faces, std::span<Co
 
 /// The true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, a face of which two vertices move alike
 /// has at most 1, and so have others (shear within the plane), so the coefficients are tested, not the motion. A
-/// coefficient below 2^-28 of the largest control normal counts as zero: leaving it out changes no direction by more
-/// than 1e-8 rad. (A translation that float32 had to round is not exactly one, and may have degree 1 or 2.)
+/// coefficient below 2^-28 of the largest control normal counts as zero: leaving it out turns no direction by more than
+/// 1e-8 rad times that control normal / |n(t)|. (A translation that float32 had to round is not exactly one, and may
+/// have degree 1 or 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
 /// n(t) itself, by eq. 5. A convex combination: its error is a few rounding errors of the largest control normal.
