@@ -10,21 +10,23 @@
 namespace chronormal::cli {
 namespace {
 
-std::string file_name_of(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/');
-  return slash == std::string::npos ? path : path.substr(slash + 1);
-}
-
 std::string morph_list() {
-  std::string list = "a built-in morph:";
+  std::string list = "a built-in morph, may be repeated:";
   for (const BuiltinMorph& morph : builtin_morphs()) list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
   return list;
 }
 
 }  // namespace
 
+std::string short_name(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  const std::size_t slash = path.find_last_of('/');
+  return slash == std::string::npos || slash + 1 == path.size() ? path : path.substr(slash + 1);
+}
+
 void CommonOptions::add_to(CLI::App& command, bool output_required) {
-  CLI::Option* option = command.add_option("-o,--output", output, "where to write (default: standard output)");
+  CLI::Option* option = command.add_option(
+      "-o,--output", output, output_required ? "where to write" : "where to write (default: standard output)");
   option->type_name("OUT");
   if (output_required) option->required();
   command.add_flag("--force", force, "overwrite OUT if it exists");
@@ -46,7 +48,7 @@ Result<NamedMotion> read_files(const std::vector<std::string>& files, double fra
   progress.clear();
   if (!motion) return motion.error();
   const std::string name =
-      files.size() == 1 ? files.front() : file_name_of(files.front()) + " ... " + file_name_of(files.back());
+      files.size() == 1 ? files.front() : short_name(files.front()) + " ... " + short_name(files.back());
   return NamedMotion{name, std::move(motion).value()};
 }
 

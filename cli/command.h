@@ -40,6 +40,9 @@ struct NamedMotion {
   Motion motion;
 };
 
+/// The last part of a path: what a person calls it.
+[[nodiscard]] std::string short_name(std::string path);
+
 /// Reads one sequence of files. The name is that of the only input, or "first ... last".
 [[nodiscard]] Result<NamedMotion> read_files(const std::vector<std::string>& files, double frames_per_second,
                                              Progress& progress);

@@ -9,6 +9,8 @@
 namespace chronormal::cli {
 namespace {
 
+constexpr std::size_t kMostSamples = 1000000;
+
 struct Options {
   InputOptions input;
   CommonOptions common;
@@ -26,7 +28,10 @@ std::vector<std::string> split_at_commas(const std::string& list) {
   std::vector<std::string> parts;
   for (std::size_t first = 0;;) {
     const std::size_t comma = list.find(',', first);
-    parts.push_back(list.substr(first, comma - first));
+    std::string part = list.substr(first, comma - first);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    parts.push_back(std::move(part));
     if (comma == std::string::npos) return parts;
     first = comma + 1;
   }
@@ -71,6 +76,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
     if (!motion) {
       Error error = motion.error();
       const bool several = input.samples.size() + (input.files.empty() ? 0 : 1) > 1;
+      if (options.each && !input.files.empty()) error.place = input.files.front() + ": " + error.place;
       if (several) error.message += ", or --each to compare them side by side";
       return error;
     }
@@ -83,7 +89,10 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
 
 int run(const Options& options) {
   // Find out about wrong names before anything long begins.
+  if (options.samples < 2 || options.samples > kMostSamples)
+    return report("compare", {ErrorCode::kUsage, "--samples", "it must be a whole number from 2 to 1,000,000"});
   for (const std::string& name : options.schemes) {
+    if (name.empty()) return report("compare", {ErrorCode::kUsage, "--schemes", "there is an empty name in the list"});
     if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
   }
   if (const Status output = check_output(options.common.output, options.common.force); !output)
@@ -122,9 +131,7 @@ void add_compare_command(CLI::App& program, int& exit_code) {
           "--schemes", [options](const std::string& list) { options->schemes = split_at_commas(list); },
           "which schemes, in which order (listed below)")
       ->type_name("A,B,...");
-  command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}).description(""));
+  command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")->type_name("N");
   command->add_option("--elements", options->elements, "which normals: faces")
       ->type_name("KIND")
       ->check(CLI::IsMember({"faces"}).description(""));

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command.h"
 #include "cli/table.h"
 
 namespace chronormal::cli {
@@ -24,13 +25,6 @@ std::string headline(const NamedComparison& input) {
                      counted(c.faces, "face", "faces"), counted(c.segments, "segment", "segments"), c.samples);
 }
 
-// The last part of a path, which is enough above a column.
-std::string short_name(std::string name) {
-  while (name.size() > 1 && name.back() == '/') name.pop_back();
-  const std::size_t slash = name.find_last_of('/');
-  return slash == std::string::npos || slash + 1 == name.size() ? name : name.substr(slash + 1);
-}
-
 Json input_json(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   return {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
@@ -48,6 +42,7 @@ Json scheme_json(const SchemeComparison& row, bool with_times) {
                {"max_degrees", degrees(q.max)},
                {"max_at", {{"segment", q.max_at.segment}, {"element", q.max_at.element}, {"t", q.max_at.t}}},
                {"degenerate", q.degenerate},
+               {"missing", q.missing},
                {"fallbacks", row.fallbacks},
                {"flagged", row.flagged}};
   if (with_times) {
@@ -80,6 +75,34 @@ std::string csv_field(const std::string& text) {
   return quoted + '"';
 }
 
+// What a table does not show, a line each: shares that were treated otherwise, and what was left out.
+std::string notes(const Comparison& comparison, const std::string& prefix) {
+  const std::size_t pairs = comparison.faces * comparison.segments;
+  const char* of = comparison.segments > 1 ? "(face, segment) pairs" : pairs == 1 ? "face" : "faces";
+  const auto share = [pairs, of](std::size_t count) {
+    return fmt::format("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
+                       100 * static_cast<double>(count) / static_cast<double>(pairs));
+  };
+  std::string text, played;
+  std::size_t degenerate = 0;
+  for (const SchemeComparison& row : comparison.schemes) {
+    if (row.sequential) played += (played.empty() ? "" : ", ") + row.scheme;
+    degenerate = std::max(degenerate, row.quality.degenerate);
+    const auto add = [&](std::size_t count, const std::string& what) {
+      if (count > 0) text += fmt::format("{}{}: {}\n", prefix, row.scheme, what);
+    };
+    add(row.flagged, share(row.flagged) + " evaluated in double");
+    add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
+    add(row.quality.missing, counted(row.quality.missing, "(face, sample) pair", "(face, sample) pairs") +
+                                 " without a normal of the scheme left out");
+  }
+  if (!played.empty()) text += fmt::format("{}played step by step: {}\n", prefix, played);
+  if (degenerate > 0)
+    text += fmt::format("{}degenerate: {} without an exact normal left out\n", prefix,
+                        counted(degenerate, "(face, sample) pair", "(face, sample) pairs"));
+  return text;
+}
+
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
@@ -102,13 +125,6 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
     table.add_column("evaluate", "ns/face", Align::kRight);
   }
 
-  std::size_t degenerate = 0;
-  std::string notes, played;
-  const std::size_t elements = input.comparison.faces * input.comparison.segments;
-  const auto share = [elements](std::size_t count) {
-    return fmt::format("{} of {} faces ({:.2f} %)", grouped(count), grouped(elements),
-                       100 * static_cast<double>(count) / static_cast<double>(elements));
-  };
   for (const SchemeComparison& row : input.comparison.schemes) {
     const Quality& q = row.quality;
     std::vector<std::string> cells = {row.scheme,
@@ -126,17 +142,9 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
       cells.push_back(fmt::format("{:.1f}", row.evaluate_ns));
     }
     table.add_row(std::move(cells));
-
-    degenerate = std::max(degenerate, q.degenerate);
-    if (row.sequential) played += (played.empty() ? "" : ", ") + row.scheme;
-    if (row.flagged > 0) notes += fmt::format("{}: {} evaluated in double\n", row.scheme, share(row.flagged));
-    if (row.fallbacks > 0) notes += fmt::format("{}: {} with a stated fallback\n", row.scheme, share(row.fallbacks));
   }
-  if (!played.empty()) notes += fmt::format("played step by step: {}\n", played);
-  if (degenerate > 0)
-    notes += fmt::format("degenerate: {} without an exact normal left out\n",
-                         counted(degenerate, "(face, sample) pair", "(face, sample) pairs"));
-  return headline(input) + '\n' + table.text() + (notes.empty() ? "" : "\n" + notes);
+  const std::string remarks = notes(input.comparison, "");
+  return headline(input) + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
 }
 
 std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs) {
@@ -158,7 +166,9 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
     }
     table.add_row(std::move(cells));
   }
-  return text + '\n' + table.text();
+  std::string remarks;
+  for (const NamedComparison& input : inputs) remarks += notes(input.comparison, short_name(input.name) + ": ");
+  return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
 }
 
 std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
@@ -180,18 +190,18 @@ std::string compare_json(const std::vector<NamedComparison>& inputs, bool severa
 std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {
   std::string text =
       "input,vertices,faces,segments,elements,samples,scheme,sum_degrees,relative_to_linear,mean_degrees,rms_degrees,"
-      "max_degrees,max_segment,max_element,max_t,degenerate,fallbacks,flagged,";
+      "max_degrees,max_segment,max_element,max_t,degenerate,missing,fallbacks,flagged,";
   if (with_times) text += "prepare_ns,evaluate_ns,";
   text += "bytes,access,add,multiply,divide,sqrt,trigonometric\n";
   for (const NamedComparison& input : inputs) {
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
       const Quality& q = row.quality;
-      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
+      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
                           c.vertices, c.faces, c.segments, c.samples, csv_field(row.scheme), degrees(q.sum),
                           row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "", degrees(q.mean()),
                           degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element, q.max_at.t,
-                          q.degenerate, row.fallbacks, row.flagged);
+                          q.degenerate, q.missing, row.fallbacks, row.flagged);
       if (with_times) text += fmt::format("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
       text += fmt::format("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,

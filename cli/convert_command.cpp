@@ -1,3 +1,7 @@
+#include <optional>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/readers.h"
 #include "chronormal/io/sequence.h"
 #include "cli/command.h"
 
@@ -9,7 +13,29 @@ struct Options {
   CommonOptions common;
 };
 
+// A single mesh, which is no motion but can be written all the same; nothing where the inputs are not one file.
+Result<std::optional<Motion>> read_single_mesh(const InputOptions& options) {
+  if (options.files.empty() || !options.samples.empty()) return std::optional<Motion>();
+  const auto frames = find_frames(options.files);
+  if (!frames) return frames.error();
+  if (frames.value().size() != 1) return std::optional<Motion>();
+  const std::string& path = frames.value().front();
+  const auto file = FileBytes::open(path);
+  if (!file) return file.error();
+  auto mesh = read_mesh(file.value().bytes(), path == "-" ? "<stdin>" : path);
+  if (!mesh) return mesh.error();
+  MeshFrame frame = std::move(mesh).value();
+  return std::optional<Motion>(Motion{std::move(frame.topology), {{std::move(frame.positions), 0, path}}, {}});
+}
+
 int run(const Options& options) {
+  const auto single = read_single_mesh(options.input);
+  if (!single) return report("convert", single.error());
+  if (single.value()) {
+    const Status written = write_sequence(*single.value(), options.common.output, options.common.force);
+    return written ? kExitDone : report("convert", written.error());
+  }
+
   Progress progress(options.common.quiet);
   const auto input = read_input(options.input, progress);
   if (!input) return report("convert", input.error());

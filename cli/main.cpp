@@ -52,7 +52,9 @@ int main(int argument_count, char** arguments) {
     } catch (const CLI::Success& request) {  // --help and --version
       return program.exit(request);
     } catch (const CLI::ParseError& error) {
-      fmt::print(stderr, "chronormal: {}\nTry: chronormal --help\n", error.what());
+      const auto parsed = program.get_subcommands();
+      const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
+      fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", command, error.what(), command);
       return kExitUsage;
     }
   } catch (const std::bad_alloc&) {

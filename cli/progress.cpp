@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace chronormal::cli {
@@ -12,10 +14,16 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{300};
 constexpr int kWidth = 40;
 
+// One that cannot take a line back.
+bool is_dumb_terminal() {
+  const char* terminal = std::getenv("TERM");
+  return terminal != nullptr && std::string_view(terminal) == "dumb";
+}
+
 }  // namespace
 
 Progress::Progress(bool quiet)
-    : enabled_(!quiet && isatty(STDERR_FILENO) != 0), start_(std::chrono::steady_clock::now()) {}
+    : enabled_(!quiet && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()), start_(std::chrono::steady_clock::now()) {}
 
 std::function<void(std::size_t, std::size_t)> Progress::callback(std::string label) {
   if (!enabled_) return {};

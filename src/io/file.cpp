@@ -222,6 +222,7 @@ FileBytes::~FileBytes() {
 }
 
 Status check_output(const std::string& path, bool force) {
+  if (path.empty()) return Error{ErrorCode::kUsage, "", "the name of the output is empty"};
   if (stream_descriptor(path)) return Success{};
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return Success{};

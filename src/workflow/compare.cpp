@@ -12,7 +12,10 @@ namespace {
 
 // A block of the widest scheme stays in the second-level cache; a wave keeps partial results few and progress smooth.
 constexpr std::size_t kBlockSize = 1024;
-constexpr std::size_t kBlocksPerWave = 64;
+constexpr std::size_t kBlocksPerWaveAndThread = 4;
+
+// Below this mean, the error of linear is its rounding, and no measure for others.
+constexpr double kNoError = 1e-6;  // radians
 
 using Clock = std::chrono::steady_clock;
 
@@ -138,9 +141,10 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
   const std::size_t blocks_per_segment = (faces + kBlockSize - 1) / kBlockSize;
   const std::size_t blocks = blocks_per_segment * motion.segments.size();
   std::vector<Tally> totals(names.size());
-  std::vector<std::vector<Tally>> wave(std::min(blocks, kBlocksPerWave));
-  for (std::size_t first = 0; first < blocks; first += kBlocksPerWave) {
-    const std::size_t count = std::min(kBlocksPerWave, blocks - first);
+  const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
+  std::vector<std::vector<Tally>> wave(std::min(blocks, blocks_per_wave));
+  for (std::size_t first = 0; first < blocks; first += blocks_per_wave) {
+    const std::size_t count = std::min(blocks_per_wave, blocks - first);
     parallel_for(count, [&](std::size_t i) {
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_face = (first + i) % blocks_per_segment * kBlockSize;
@@ -156,12 +160,12 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
 
   Comparison comparison{motion.topology.vertex_count(), faces, motion.segments.size(), options.samples, {}};
   const double elements = static_cast<double>(faces * motion.segments.size());
-  const double linear_sum = totals[linear].quality.sum;
+  const Quality& linear_quality = totals[linear].quality;
   for (std::size_t s = 0; s < options.schemes.size(); ++s) {
     const Tally& total = totals[s];
     SchemeComparison& row = rows[s];
     row.quality = total.quality;
-    if (linear_sum > 0) row.relative_to_linear = total.quality.sum / linear_sum;
+    if (linear_quality.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear_quality.sum;
     row.fallbacks = total.fallbacks;
     row.flagged = total.flagged;
     row.prepare_ns = median(total.prepare_ns);

@@ -76,7 +76,10 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --samples x"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
-  expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"scheme"});
+  expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
+  expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
+  expect_error(run("compare a.obj b.obj -o ''"), 2, {"name of the output"});
+  expect_error(run("compare --bogus"), 2, {"compare --help"});
   expect_error(run("compare a.obj b.obj --schemes lagrange:0"), 2, {"1 to 64"});
   expect_error(run("compare a.obj b.obj --elements edges"), 2, {"--elements"});
   expect_error(run("compare a.obj b.obj --json --csv"), 2, {"--csv"});
@@ -160,6 +163,7 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
   // Linear at the middle, by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and 3/4 alike.
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
+  for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }
 
 TEST_F(Cli, schemes_are_selected_and_ordered) {
@@ -273,6 +277,36 @@ TEST_F(Cli, convert_writes_keyframes_that_compare_reads_back) {
   const Json direct = Json::parse(run("compare --sample twist --json --no-times").out);
   EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.obj' --json --no-times").out)["schemes"]);
   EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.ply' --json --no-times").out)["schemes"]);
+}
+
+TEST_F(Cli, convert_takes_a_single_mesh) {
+  write_two_frames();
+  ASSERT_EQ(run("convert a.obj -o a.ply").exit_code, 0);
+  ASSERT_EQ(run("convert a.ply -o again.obj").exit_code, 0);
+  EXPECT_EQ(read("again.obj"), read("a.obj"));
+  expect_error(run("convert missing.obj -o x.ply"), 1, {"missing.obj"});
+}
+
+TEST_F(Cli, a_face_that_shrinks_is_right_in_sequence_too) {
+  write("n0.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("n1.obj", "v 0 0 0\nv 0.0001220703125 0 0\nv 0 0.0001220703125 0\nf 1 2 3\n");
+  const Json json =
+      Json::parse(run("compare n0.obj n1.obj --schemes linear,polynomial --access sequential --samples 33 --json").out);
+  for (const Json& row : json["schemes"]) {
+    EXPECT_LT(row["max_degrees"].get<double>(), 1e-4);
+    EXPECT_EQ(row["missing"], 0);
+    EXPECT_TRUE(row["relative_to_linear"].is_null());  // linear errs by rounding only
+  }
+}
+
+TEST_F(Cli, each_keeps_the_notes_and_names_the_motion_that_failed) {
+  const ProcessResult notes = run("compare --each --sample soup --sample twist --schemes polynomial --samples 3");
+  EXPECT_NE(notes.out.find("soup: polynomial: "), std::string::npos) << notes.out;
+  write_two_frames();
+  fs::create_directory(folder_ / "walk");
+  write("walk/1.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("walk/2.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+  expect_error(run("compare --each walk/ --sample twist"), 3, {"walk/", "frame 1", "2.obj", "line 4"});
 }
 
 TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) {

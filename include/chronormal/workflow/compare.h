@@ -32,12 +32,12 @@ struct CompareOptions {
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// One scheme on one motion. Costs are per element; times are of one thread, the median over blocks that
-/// stay in cache.
+/// One scheme on one motion. Costs are per element; times are those of a thread among all that work, the median over
+/// blocks of up to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves are most of it).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
-  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing where linear has no error at all
+  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing where linear errs by rounding only
   std::size_t fallbacks = 0;                 ///< (element, segment) pairs prepared with a stated fallback
   std::size_t flagged = 0;                   ///< (element, segment) pairs evaluated in double
   bool sequential = false;                   ///< whether the scheme was played step by step
