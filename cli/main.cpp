@@ -54,7 +54,9 @@ int main(int argument_count, char** arguments) {
     } catch (const CLI::ParseError& error) {
       const auto parsed = program.get_subcommands();
       const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
-      fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", command, error.what(), command);
+      const std::string message =
+          parsed.empty() ? fmt::format("there is no option '{}' before a command", first) : error.what();
+      fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", command, message, command);
       return kExitUsage;
     }
   } catch (const std::bad_alloc&) {

@@ -198,7 +198,7 @@ Result<std::vector<std::string>> find_frames(std::span<const std::string> inputs
 Result<Motion> read_sequence(std::span<const std::string> inputs, const SequenceOptions& options,
                              const std::function<void(std::size_t done, std::size_t total)>& progress) {
   if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
-    return Error{ErrorCode::kUsage, "", "the number of frames per second must be finite and above 0"};
+    return Error{ErrorCode::kUsage, "", "the frame rate (--fps) must be a number from 1e-9 to 1e9"};
   const Result<std::vector<std::string>> files = find_frames(inputs);
   if (!files) return files.error();
   const std::size_t total = files.value().size();

@@ -79,7 +79,8 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj -o ''"), 2, {"name of the output"});
-  expect_error(run("compare --bogus"), 2, {"compare --help"});
+  expect_error(run("compare --bogus"), 2, {"--bogus", "compare --help"});
+  expect_error(run("--bogus"), 2, {"no option '--bogus'"});
   expect_error(run("compare a.obj b.obj --schemes lagrange:0"), 2, {"1 to 64"});
   expect_error(run("compare a.obj b.obj --elements edges"), 2, {"--elements"});
   expect_error(run("compare a.obj b.obj --json --csv"), 2, {"--csv"});

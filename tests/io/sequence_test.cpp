@@ -182,9 +182,8 @@ TEST(ReadSequence, frame_rate_must_be_finite_and_positive) {
   const TemporaryFolder folder;
   const std::string a = folder.write("a.obj", obj(0));
   for (const double rate :
-       {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+       {0.0, -1.0, 1e-320, 1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(error_of(read({a, a}, rate)).code, ErrorCode::kUsage);
-  EXPECT_EQ(error_of(read({a, a}, 1e-320)).code, ErrorCode::kInvalidInput);  // its times are not finite
 }
 
 Motion three_frames() {

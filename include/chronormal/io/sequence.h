@@ -23,7 +23,7 @@
 namespace chronormal {
 
 struct SequenceOptions {
-  double frames_per_second = 1;  ///< finite and > 0
+  double frames_per_second = 1;  ///< from 1e-9 to 1e9
 };
 
 /// The files that the inputs stand for, in order. Does not open them.
@@ -39,7 +39,7 @@ struct SequenceOptions {
 ///
 /// Errors: those of find_frames(), of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj),
 /// line 17"); kInvalidInput for fewer than two frames, and where vertex count or faces differ from those of frame 0;
-/// kUsage for a frame rate that is not positive.
+/// kUsage for a frame rate out of range.
 [[nodiscard]] Result<Motion> read_sequence(
     std::span<const std::string> inputs, const SequenceOptions& options,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
