@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/io/sequence.h"
+#include "chronormal/io/motion_files.h"
 
 namespace chronormal::cli {
 namespace {
@@ -36,15 +36,16 @@ void CommonOptions::add_to(CLI::App& command, bool output_required) {
 void InputOptions::add_to(CLI::App& command) {
   command
       .add_option("INPUT", files,
-                  "keyframes of one motion: .obj or .ply files in order, a quoted\n"
-                  "pattern, a folder (sorted by number), or - for one file on stdin")
+                  "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
+                  "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
+                  ".npz or .md2; - is one file on stdin")
       ->type_name("");
   command.add_option("--sample", samples, morph_list())->type_name("NAME")->take_all()->allow_extra_args(false);
   command.add_option("--fps", frames_per_second, "frames per second of the keyframes (default 1)")->type_name("N");
 }
 
 Result<NamedMotion> read_files(const std::vector<std::string>& files, double frames_per_second, Progress& progress) {
-  auto motion = read_sequence(files, {frames_per_second}, progress.callback("reading"));
+  auto motion = read_motion(files, {frames_per_second}, progress.callback("reading"));
   progress.clear();
   if (!motion) return motion.error();
   const std::string name =

@@ -1,6 +1,8 @@
 #include <optional>
 
 #include "chronormal/io/file.h"
+#include "chronormal/io/motion_files.h"
+#include "chronormal/io/motion_readers.h"
 #include "chronormal/io/readers.h"
 #include "chronormal/io/sequence.h"
 #include "cli/command.h"
@@ -20,6 +22,7 @@ Result<std::optional<Motion>> read_single_mesh(const InputOptions& options) {
   if (!frames) return frames.error();
   if (frames.value().size() != 1) return std::optional<Motion>();
   const std::string& path = frames.value().front();
+  if (find_motion_reader(path) != nullptr) return std::optional<Motion>();
   const auto file = FileBytes::open(path);
   if (!file) return file.error();
   auto mesh = read_mesh(file.value().bytes(), path == "-" ? "<stdin>" : path);
@@ -39,8 +42,7 @@ int run(const Options& options) {
   Progress progress(options.common.quiet);
   const auto input = read_input(options.input, progress);
   if (!input) return report("convert", input.error());
-  if (const Status written = write_sequence(input.value().motion, options.common.output, options.common.force);
-      !written)
+  if (const Status written = write_motion(input.value().motion, options.common.output, options.common.force); !written)
     return report("convert", written.error());
   return kExitDone;
 }
@@ -48,18 +50,18 @@ int run(const Options& options) {
 }  // namespace
 
 void add_convert_command(CLI::App& program, int& exit_code) {
-  CLI::App* command =
-      program.add_subcommand("convert", "Write the keyframes of a motion, or of a built-in morph, as mesh files");
+  CLI::App* command = program.add_subcommand("convert", "Write a motion, or a built-in morph, in another format");
   command->group("Commands");
   auto options = std::make_shared<Options>();
   options->input.add_to(*command);
   options->common.add_to(*command, true);
   command->footer(
-      "OUT is a file per keyframe: %d in its name stands for the number, %03d for 000, 001, ...\n"
-      "The extension chooses the format: .obj, or .ply (binary).\n"
+      "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
+      "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
       "\nExamples:\n"
       "  chronormal convert --sample twist -o twist_%d.obj\n"
       "  chronormal convert scans/ -o frame_%03d.ply\n"
+      "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

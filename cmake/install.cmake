@@ -12,6 +12,8 @@ file(WRITE ${PROJECT_BINARY_DIR}/chronormalConfig.cmake
 if(${TBB_FOUND})  # whether the library was built over oneTBB
   find_dependency(TBB)
 endif()
+find_dependency(ZLIB)
+find_dependency(pugixml)
 include(\${CMAKE_CURRENT_LIST_DIR}/chronormalTargets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/chronormalConfigVersion.cmake COMPATIBILITY SameMinorVersion)

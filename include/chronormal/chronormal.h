@@ -25,9 +25,17 @@
 
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
 #include "chronormal/io/file.h"            // whole files in, and out without ever half a one
+#include "chronormal/io/maya_cache.h"      // Maya point caches: XML with .mc or .mcx
+#include "chronormal/io/md2.h"             // models of Quake II
+#include "chronormal/io/mdd.h"             // the point cache of LightWave
 #include "chronormal/io/mesh_frame.h"      // one keyframe as read from one file
+#include "chronormal/io/motion_files.h"    // motions from files of every format, and back
+#include "chronormal/io/motion_readers.h"  // the lists of motion and cache formats
+#include "chronormal/io/npz.h"             // NumPy arrays
 #include "chronormal/io/obj.h"             // Wavefront OBJ
+#include "chronormal/io/pc2.h"             // the point cache of 3ds Max
 #include "chronormal/io/ply.h"             // PLY: ascii and binary
+#include "chronormal/io/position_cache.h"  // positions over time, and the mesh that gives them faces
 #include "chronormal/io/readers.h"         // the list of mesh formats
 #include "chronormal/io/sequence.h"        // files, patterns and folders as one motion
 

@@ -280,6 +280,22 @@ TEST_F(Cli, convert_writes_keyframes_that_compare_reads_back) {
   EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.ply' --json --no-times").out)["schemes"]);
 }
 
+TEST_F(Cli, caches_and_arrays_are_motions_too) {
+  ASSERT_EQ(run("convert --sample cloth -o cloth_%d.obj").exit_code, 0);
+  const Json direct = Json::parse(run("compare --sample cloth --samples 5 --json --no-times").out);
+  for (const char* cache : {"cloth.pc2", "cloth.mdd"}) {
+    ASSERT_EQ(run(std::string("convert --sample cloth -o ") + cache).exit_code, 0) << cache;
+    const ProcessResult read = run(std::string("compare cloth_0.obj --samples 5 --json --no-times ") + cache);
+    ASSERT_EQ(read.exit_code, 0) << read.err;
+    EXPECT_EQ(direct["schemes"], Json::parse(read.out)["schemes"]) << cache;
+  }
+  ASSERT_EQ(run("convert cloth_0.obj cloth.pc2 -o cloth.npz").exit_code, 0);
+  EXPECT_EQ(direct["schemes"], Json::parse(run("compare cloth.npz --samples 5 --json --no-times").out)["schemes"]);
+  expect_error(run("compare cloth.pc2"), 2, {"cloth.pc2", "mesh"});
+  write_two_frames();
+  expect_error(run("compare a.obj cloth.pc2"), 3, {"17822", "3"});
+}
+
 TEST_F(Cli, convert_takes_a_single_mesh) {
   write_two_frames();
   ASSERT_EQ(run("convert a.obj -o a.ply").exit_code, 0);

@@ -1,0 +1,49 @@
+/// What must hold for the result of every reader of motions and caches on any bytes at all.
+#ifndef CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
+#define CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/position_cache.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/motion/validate.h"
+#include "mesh_invariants.h"
+
+namespace chronormal::fuzz {
+
+inline void check_error(const Error& error) {
+  require(error.code == ErrorCode::kInvalidInput, "the code of an error is kInvalidInput");
+  require(!error.place.empty(), "an error has a place");
+  require(!error.message.empty(), "an error has a message");
+}
+
+/// Aborts where the result of reading byte_count bytes is neither an error with code, place and message, nor a cache of
+/// finite numbers that had room in most_per_byte x byte_count bytes.
+inline void check_cache_invariants(const Result<PositionCache>& result, std::size_t byte_count) {
+  if (!result) return check_error(result.error());
+  const PositionCache& cache = result.value();
+  require(cache.vertex_count > 0 && !cache.samples.empty(), "a cache has vertices and samples");
+  require(cache.samples.size() * cache.vertex_count <= byte_count, "a position takes a byte or more");
+  for (const PositionCache::Sample& sample : cache.samples) {
+    require(std::isfinite(sample.time), "times are finite");
+    require(sample.positions.size() == 3 * cache.vertex_count, "every sample has all vertices");
+    for (const float coordinate : sample.positions) require(std::isfinite(coordinate), "positions are finite");
+  }
+}
+
+/// The same for a motion, which validate() must accept.
+inline void check_motion_invariants(const Result<Motion>& result, std::size_t byte_count, std::size_t most_per_byte) {
+  if (!result) return check_error(result.error());
+  const Motion& motion = result.value();
+  require(motion.keyframes.size() * motion.topology.vertex_count() <= most_per_byte * byte_count,
+          "positions are there");
+  require(motion.topology.corner_count() <= most_per_byte * byte_count, "corners are there");
+  require(validate(motion).ok(), "a motion that was read is valid");
+}
+
+}  // namespace chronormal::fuzz
+
+#endif  // CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_

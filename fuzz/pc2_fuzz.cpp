@@ -1,0 +1,10 @@
+// Fuzz target of the reader of PC2: whatever the bytes are, the result is an error with a place, or a cache.
+#include "chronormal/io/pc2.h"
+
+#include "cache_invariants.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  chronormal::fuzz::check_cache_invariants(chronormal::read_pc2(bytes, "fuzz.pc2"), size);
+  return 0;
+}

@@ -1,0 +1,42 @@
+/// Motions from files of every format, and back.
+///
+///     walk.npz                        a whole motion: .npz or .md2
+///     body.obj walk.pc2               a mesh and a point cache: .pc2, .mdd, .npy, .mc, .mcx, or a Maya .xml
+///     body.obj cache.xml#bodyShape    the same, with the channel of a Maya cache
+///     walk_0.obj walk_1.obj, walk/    a sequence of meshes (io/sequence.h)
+#ifndef CHRONORMAL_IO_MOTION_FILES_H_
+#define CHRONORMAL_IO_MOTION_FILES_H_
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/sequence.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// Reads the motion that the inputs stand for. The result is valid (motion/validate.h).
+///
+/// One file of a whole motion, which "-" may be too; or two inputs of which one is a cache by its extension, in either
+/// order, and the other a mesh; anything else is read_sequence(). The frame rate of the options is that of formats that
+/// have no times of their own, or count them in frames (npz without times, npy, MD2, PC2); MDD, Maya and npz with times
+/// keep their seconds. progress(done, total), if given, is called after each file.
+///
+/// Errors: those of opening and of the readers, with the file name in the place; of motion_from_cache() and of
+/// read_sequence(); kUsage for a cache without a mesh or with several, for a whole motion among other inputs, and for a
+/// frame rate that is not positive.
+[[nodiscard]] Result<Motion> read_motion(std::span<const std::string> inputs, const SequenceOptions& options,
+                                         const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// Writes a motion to one file by the extension of path, .npz (whole), .pc2 or .mdd (positions alone), or else by
+/// write_sequence(). PC2 gets one frame a second, which read_motion() takes back at its default rate.
+///
+/// Errors: those of the writers, with path as the place, and of write_output(); nothing is written then.
+[[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_MOTION_FILES_H_
