@@ -5,6 +5,7 @@
 
 #include "chronormal/io/obj.h"
 #include "chronormal/io/ply.h"
+#include "io/extension.h"
 #include "io/scan.h"
 
 namespace chronormal {
@@ -38,18 +39,6 @@ constexpr std::array<MeshReader, 2> kReaders = {{
     {"ply", kPlyExtensions, is_ply, read_ply},
     {"obj", kObjExtensions, is_obj, read_obj},
 }};
-
-std::string lower_extension(std::string_view file_name) {
-  const std::size_t slash = file_name.rfind('/');
-  if (slash != std::string_view::npos) file_name.remove_prefix(slash + 1);
-  const std::size_t dot = file_name.rfind('.');
-  if (dot == std::string_view::npos) return {};
-  std::string extension(file_name.substr(dot));
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
 
 std::string readable_formats() {
   std::string text;
