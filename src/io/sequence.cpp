@@ -1,12 +1,8 @@
 #include "chronormal/io/sequence.h"
 
-#include <glob.h>
-
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -16,41 +12,12 @@
 #include "chronormal/io/ply.h"
 #include "chronormal/io/readers.h"
 #include "chronormal/motion/validate.h"
+#include "io/input_files.h"
 
 namespace chronormal {
 namespace {
 
-constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
-
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-// Takes the digits at the front of text, without leading zeros.
-std::string_view take_number(std::string_view& text) {
-  std::size_t end = 0;
-  while (end < text.size() && is_digit(text[end])) ++end;
-  std::string_view number = text.substr(0, end);
-  text.remove_prefix(end);
-  while (!number.empty() && number.front() == '0') number.remove_prefix(1);
-  return number;
-}
-
-// Whether a stands before b when runs of digits count as numbers of any size; ties are broken by plain order.
-bool stands_before(const std::string& a, const std::string& b) {
-  std::string_view rest_a = a, rest_b = b;
-  while (!rest_a.empty() && !rest_b.empty()) {
-    if (is_digit(rest_a.front()) && is_digit(rest_b.front())) {
-      const std::string_view number_a = take_number(rest_a), number_b = take_number(rest_b);
-      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
-      if (number_a != number_b) return number_a < number_b;
-      continue;
-    }
-    if (rest_a.front() != rest_b.front()) return rest_a.front() < rest_b.front();
-    rest_a.remove_prefix(1);
-    rest_b.remove_prefix(1);
-  }
-  if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
-  return a < b;
-}
 
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
@@ -78,56 +45,11 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   return files;
 }
 
-Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
-  glob_t matches{};
-  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
-  std::vector<std::string> files;
-  for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
-  ::globfree(&matches);
-  if (files.empty()) return Error{ErrorCode::kFailed, pattern, "no file of this name, and none that matches it"};
-  return files;
-}
-
-std::string file_name_of(const std::string& path) {
-  return path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
-}
-
 std::string frame_place(std::size_t k, const std::string& name) {
   return "frame " + std::to_string(k) + " (" + name + ")";
 }
 
-Result<MeshFrame> read_frame(const std::string& path, const std::string& place) {
-  const Result<FileBytes> file = FileBytes::open(path);
-  if (!file) {
-    Error error = file.error();
-    error.place = place;
-    return error;
-  }
-  const std::string_view bytes = file.value().bytes();
-  const Result<const MeshReader*> reader = choose_mesh_reader(bytes, file_name_of(path));
-  if (!reader) return invalid_input(place, reader.error().message);
-  return reader.value()->read(bytes, place);
-}
-
-Status check_same_topology(const Topology& first, const Topology& other, const std::string& place) {
-  const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* what) {
-    return invalid_input(place, "it has " + std::to_string(count) + " " + what + ", but frame 0 has " +
-                                    std::to_string(first_count) + std::string(kTopologyMustNotChange));
-  };
-  if (other.vertex_count() != first.vertex_count())
-    return counts_differ(other.vertex_count(), first.vertex_count(), "vertices");
-  if (other.face_count() != first.face_count()) return counts_differ(other.face_count(), first.face_count(), "faces");
-  if (other == first) return Success{};
-  for (std::size_t f = 0; f < first.face_count(); ++f) {
-    const auto a = first.face(f), b = other.face(f);
-    if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
-      return invalid_input(place,
-                           "face " + std::to_string(f) + " differs from frame 0" + std::string(kTopologyMustNotChange));
-  }
-  return Success{};
-}
-
-// A name with a place for the number of the keyframe.
+// A name with a place for a number.
 struct NamePattern {
   std::string before, after;
   bool has_number = false;
@@ -143,7 +65,7 @@ struct NamePattern {
 
 Result<NamePattern> parse_pattern(const std::string& pattern) {
   const Error misuse{ErrorCode::kUsage, pattern,
-                     "the name must have one %d or %0Nd (N = 1 to 99) for the number of the keyframe"};
+                     "the name must have one %d or %0Nd (N = 1 to 99) for the number of the file"};
   NamePattern parts;
   const std::size_t slash = pattern.rfind('/');
   const std::size_t percent = pattern.find('%', slash == std::string::npos ? 0 : slash);
@@ -168,31 +90,7 @@ Result<NamePattern> parse_pattern(const std::string& pattern) {
 }  // namespace
 
 Result<std::vector<std::string>> find_frames(std::span<const std::string> inputs) {
-  std::vector<std::string> frames;
-  bool has_stdin = false;
-  for (const std::string& input : inputs) {
-    if (input == "-") {
-      if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input can be given only once"};
-      has_stdin = true;
-      frames.push_back(input);
-      continue;
-    }
-    std::error_code code;
-    const std::filesystem::file_status status = std::filesystem::status(input, code);
-    const bool is_missing = status.type() == std::filesystem::file_type::not_found;
-    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
-      frames.push_back(input);
-      continue;
-    }
-    const bool is_pattern = input.find_first_of("*?[") != std::string::npos;
-    if (!std::filesystem::exists(status) && !(is_missing && is_pattern))
-      return Error{ErrorCode::kFailed, input, code ? code.message() : "no such file or folder"};
-    Result<std::vector<std::string>> found = is_missing ? match_pattern(input) : list_folder(input);
-    if (!found) return found.error();
-    std::sort(found.value().begin(), found.value().end(), stands_before);
-    std::move(found.value().begin(), found.value().end(), std::back_inserter(frames));
-  }
-  return frames;
+  return find_input_files(inputs, list_folder);
 }
 
 Result<Motion> read_sequence(std::span<const std::string> inputs, const SequenceOptions& options,
@@ -213,11 +111,12 @@ Result<Motion> read_sequence(std::span<const std::string> inputs, const Sequence
   for (std::size_t k = 0; k < total; ++k) {
     const std::string& path = files.value()[k];
     const std::string name = file_name_of(path);
-    Result<MeshFrame> frame = read_frame(path, frame_place(k, name));
+    Result<MeshFrame> frame = read_mesh_file(path, frame_place(k, name));
     if (!frame) return frame.error();
     if (k == 0) {
       motion.topology = std::move(frame.value().topology);
-    } else if (Status status = check_same_topology(motion.topology, frame.value().topology, frame_place(k, name));
+    } else if (Status status =
+                   check_same_topology(motion.topology, "frame 0", frame.value().topology, frame_place(k, name));
                !status) {
       return status.error();
     }
@@ -230,19 +129,26 @@ Result<Motion> read_sequence(std::span<const std::string> inputs, const Sequence
   return motion;
 }
 
-Status write_sequence(const Motion& motion, const std::string& pattern, bool force) {
+Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count) {
   const Result<NamePattern> parts = parse_pattern(pattern);
   if (!parts) return parts.error();
-  if (!parts.value().has_number && motion.keyframes.size() > 1)
+  if (!parts.value().has_number && count > 1)
     return Error{ErrorCode::kUsage, pattern,
-                 "the motion has " + std::to_string(motion.keyframes.size()) +
-                     " keyframes, a file each: the name must have a %d for their number"};
+                 "there are " + std::to_string(count) + " files to write: the name must have a %d for their number"};
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < count; ++k) names.push_back(parts.value().name(k));
+  return names;
+}
+
+Status write_sequence(const Motion& motion, const std::string& pattern, bool force) {
+  const Result<std::vector<std::string>> names = numbered_names(pattern, motion.keyframes.size());
+  if (!names) return names.error();
   const MeshReader* const format = find_mesh_reader(pattern);
   if (format == nullptr || (format->name != "obj" && format->name != "ply"))
     return Error{ErrorCode::kUsage, pattern, "the name must end in .obj or .ply"};
 
-  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
-    if (Status status = check_output(parts.value().name(k), force); !status) return status;
+  for (const std::string& name : names.value()) {
+    if (Status status = check_output(name, force); !status) return status;
   }
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const std::vector<float>& coordinates = motion.keyframes[k].positions;
@@ -251,7 +157,7 @@ Status write_sequence(const Motion& motion, const std::string& pattern, bool for
     const std::string bytes = format->name == "obj"
                                   ? write_obj(motion.topology, positions)
                                   : write_ply(motion.topology, positions, PlyEncoding::kBinaryLittleEndian);
-    if (Status status = write_output(parts.value().name(k), bytes, force); !status) return status;
+    if (Status status = write_output(names.value()[k], bytes, force); !status) return status;
   }
   return Success{};
 }

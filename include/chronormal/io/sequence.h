@@ -44,9 +44,12 @@ struct SequenceOptions {
     std::span<const std::string> inputs, const SequenceOptions& options,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// Writes every keyframe to a file of its own. In the file name of pattern, one %d or %0Nd stands for the number of the
-/// keyframe, from 0; it may be missing for a motion of one keyframe. The extension chooses the format: .obj, or .ply
-/// (binary, little endian). Precondition: every keyframe has 3 x vertex_count coordinates.
+/// The names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from 0; it
+/// may be missing where count is at most 1. Errors: kUsage for a pattern of another form.
+[[nodiscard]] Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count);
+
+/// Writes every keyframe to a file of its own. The files have numbered_names(). The extension chooses the format: .obj,
+/// or .ply (binary, little endian). Precondition: every keyframe has 3 x vertex_count coordinates.
 ///
 /// Errors: kUsage for a pattern of another form; else those of write_output(). Where a file exists and force is not
 /// given, nothing is written.
