@@ -14,6 +14,8 @@ if(${TBB_FOUND})  # whether the library was built over oneTBB
 endif()
 find_dependency(ZLIB)
 find_dependency(pugixml)
+find_dependency(meshoptimizer)
+find_dependency(draco)
 include(\${CMAKE_CURRENT_LIST_DIR}/chronormalTargets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/chronormalConfigVersion.cmake COMPATIBILITY SameMinorVersion)

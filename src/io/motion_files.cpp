@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chronormal/io/file.h"
+#include "chronormal/io/gltf_motion.h"
 #include "chronormal/io/maya_cache.h"
 #include "chronormal/io/mdd.h"
 #include "chronormal/io/motion_readers.h"
@@ -14,14 +15,15 @@
 #include "chronormal/io/pc2.h"
 #include "chronormal/io/readers.h"
 #include "io/extension.h"
+#include "io/input_files.h"
 
 namespace chronormal {
 namespace {
 
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-std::string name_of(const std::string& path) {
-  return path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
+Error not_animated(const std::string& input) {
+  return Error{ErrorCode::kUsage, input, "--animation chooses among those of a glTF file, which this is not"};
 }
 
 // An input that is a point cache: its file, and the channel after "#".
@@ -48,11 +50,11 @@ Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& op
   if (input.reader == nullptr) return read_maya_cache(input.path, options);
   const Result<FileBytes> file = FileBytes::open(input.path);
   if (!file) return file.error();
-  return input.reader->read(file.value().bytes(), name_of(input.path), options);
+  return input.reader->read(file.value().bytes(), file_name_of(input.path), options);
 }
 
 Result<Motion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,
-                                    const SequenceOptions& options, const Progress& progress) {
+                                    const MotionOptions& options, const Progress& progress) {
   const Result<std::vector<std::string>> meshes = find_frames({&mesh_input, 1});
   if (!meshes) return meshes.error();
   if (meshes.value().size() != 1)
@@ -63,7 +65,7 @@ Result<Motion> read_cache_over_mesh(const CacheInput& input, const std::string& 
   {
     const Result<FileBytes> file = FileBytes::open(mesh_path);
     if (!file) return file.error();
-    Result<MeshFrame> mesh = read_mesh(file.value().bytes(), name_of(mesh_path));
+    Result<MeshFrame> mesh = read_mesh(file.value().bytes(), file_name_of(mesh_path));
     if (!mesh) return mesh.error();
     faces = std::move(mesh.value().topology);
   }
@@ -71,30 +73,72 @@ Result<Motion> read_cache_over_mesh(const CacheInput& input, const std::string& 
   Result<PositionCache> cache = read_cache(input, {options.frames_per_second, faces.vertex_count(), input.channel});
   if (!cache) return cache.error();
   if (progress) progress(2, 2);
-  return motion_from_cache(std::move(faces), std::move(cache).value(), name_of(mesh_path), name_of(input.path));
-}
-
-// The reader of a whole motion that one input has: by its extension, or else by its content.
-Result<const MotionReader*> choose_motion_reader(const std::string& input, std::string_view bytes) {
-  if (const MotionReader* const reader = find_motion_reader(input)) return reader;
-  for (const MotionReader& reader : motion_readers()) {
-    if (reader.recognises(bytes)) return &reader;
-  }
-  return invalid_input(name_of(input),
-                       "neither the name nor the content tells a format that holds a whole motion "
-                       "(.npz, .md2); a sequence of .obj or .ply files needs two or more");
+  return motion_from_cache(std::move(faces), std::move(cache).value(), file_name_of(mesh_path),
+                           file_name_of(input.path));
 }
 
 // Whether one input is a file, not a folder or pattern, that can be a whole motion.
 bool may_be_whole(const std::string& input) {
-  if (input == "-" || find_motion_reader(input) != nullptr) return true;
+  if (input == "-" || is_gltf_file(input) || find_motion_reader(input) != nullptr) return true;
   std::error_code code;
   return find_mesh_reader(input) == nullptr && std::filesystem::is_regular_file(input, code);
 }
 
-}  // namespace
+bool is_movable(const GltfDocument& document) {
+  for (const GltfMesh& mesh : document.meshes()) {
+    if (mesh.target_count > 0) return true;
+  }
+  return false;
+}
 
-Result<Motion> read_motion(std::span<const std::string> inputs, const SequenceOptions& options,
+Result<Motion> motion_of(const GltfDocument& document, const MotionOptions& options, bool allow_mesh) {
+  Result<GltfMotion> read = allow_mesh && options.animation.empty() && !is_movable(document)
+                                ? read_gltf_mesh(document)
+                                : read_gltf_motion(document, {options.animation});
+  if (!read) return read.error();
+  return std::move(read.value().motion);
+}
+
+Result<Motion> mesh_as_motion(std::string_view bytes, const std::string& input) {
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(input));
+  if (!mesh) return mesh.error();
+  MeshFrame frame = std::move(mesh).value();
+  return Motion{std::move(frame.topology), {{std::move(frame.positions), 0, file_name_of(input)}}, {}};
+}
+
+// Reads one file that is a whole motion: by its extension, or else by its content.
+Result<Motion> read_whole(const std::string& input, const MotionOptions& options, bool allow_mesh) {
+  const GltfOptions gltf_options{options.allow_external};
+  if (is_gltf_file(input)) {
+    const Result<GltfDocument> document = GltfDocument::open(input, gltf_options);
+    if (!document) return document.error();
+    return motion_of(document.value(), options, allow_mesh);
+  }
+  const Result<FileBytes> file = FileBytes::open(input);
+  if (!file) return file.error();
+  const std::string_view bytes = file.value().bytes();
+  const std::string name = file_name_of(input);
+  const MotionReader* reader = find_motion_reader(input);
+  for (const MotionReader& candidate : motion_readers()) {
+    if (reader == nullptr && candidate.recognises(bytes)) reader = &candidate;
+  }
+  const bool is_gltf = reader == nullptr && GltfDocument::recognises(bytes);
+  if (!options.animation.empty() && !is_gltf) return not_animated(input);
+  if (reader != nullptr) return reader->read(bytes, name, options.frames_per_second);
+  if (is_gltf) {
+    std::optional<std::string> folder;
+    if (input != "-") folder = std::filesystem::path(input).parent_path().string();
+    const Result<GltfDocument> document = GltfDocument::read(bytes, name, folder, gltf_options);
+    if (!document) return document.error();
+    return motion_of(document.value(), options, allow_mesh);
+  }
+  if (allow_mesh) return mesh_as_motion(bytes, input);
+  return invalid_input(name,
+                       "neither the name nor the content tells a format that holds a whole motion "
+                       "(.gltf, .glb, .npz, .md2); a sequence of .obj or .ply files needs two or more");
+}
+
+Result<Motion> read_inputs(std::span<const std::string> inputs, const MotionOptions& options, bool allow_mesh,
                            const Progress& progress) {
   if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
     return Error{ErrorCode::kUsage, "", "the frame rate (--fps) must be a number from 1e-9 to 1e9"};
@@ -104,21 +148,46 @@ Result<Motion> read_motion(std::span<const std::string> inputs, const SequenceOp
     if (!cache) continue;
     if (inputs.size() != 2 || as_cache(inputs[1 - i]))
       return Error{ErrorCode::kUsage, inputs[i], "a cache has no faces: give it together with one mesh (.obj or .ply)"};
+    if (!options.animation.empty()) return not_animated(inputs[i]);
     return read_cache_over_mesh(*cache, inputs[1 - i], options, progress);
   }
   for (const std::string& input : inputs) {
-    if (inputs.size() > 1 && find_motion_reader(input) != nullptr)
+    if (inputs.size() > 1 && (is_gltf_file(input) || find_motion_reader(input) != nullptr))
       return Error{ErrorCode::kUsage, input, "the file is a whole motion: give it alone"};
   }
-  if (inputs.size() != 1 || !may_be_whole(inputs[0])) return read_sequence(inputs, options, progress);
+  if (inputs.size() == 1 && may_be_whole(inputs[0])) {
+    Result<Motion> motion = read_whole(inputs[0], options, allow_mesh);
+    if (motion && progress) progress(1, 1);
+    return motion;
+  }
+  if (!options.animation.empty()) return not_animated(inputs.empty() ? "" : inputs[0]);
+  if (allow_mesh) {
+    const Result<std::vector<std::string>> frames = find_frames(inputs);
+    if (!frames) return frames.error();
+    if (frames.value().size() == 1) {
+      const Result<FileBytes> file = FileBytes::open(frames.value().front());
+      if (!file) return file.error();
+      return mesh_as_motion(file.value().bytes(), frames.value().front());
+    }
+  }
+  return read_sequence(inputs, {options.frames_per_second}, progress);
+}
 
-  const Result<FileBytes> file = FileBytes::open(inputs[0]);
-  if (!file) return file.error();
-  const Result<const MotionReader*> reader = choose_motion_reader(inputs[0], file.value().bytes());
-  if (!reader) return reader.error();
-  Result<Motion> motion = reader.value()->read(file.value().bytes(), name_of(inputs[0]), options.frames_per_second);
-  if (motion && progress) progress(1, 1);
-  return motion;
+}  // namespace
+
+bool is_gltf_file(const std::string& input) {
+  const std::string extension = lower_extension(input);
+  return extension == ".gltf" || extension == ".glb";
+}
+
+Result<Motion> read_motion(std::span<const std::string> inputs, const MotionOptions& options,
+                           const Progress& progress) {
+  return read_inputs(inputs, options, false, progress);
+}
+
+Result<Motion> read_motion_or_mesh(std::span<const std::string> inputs, const MotionOptions& options,
+                                   const Progress& progress) {
+  return read_inputs(inputs, options, true, progress);
 }
 
 Status write_motion(const Motion& motion, const std::string& path, bool force) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/support/ply_bytes.h"
+#include "tests/support/random_edits.h"
 
 namespace chronormal {
 namespace {
@@ -207,26 +208,7 @@ TEST_P(Readers, random_edits_are_errors_or_meshes) {
   for (const Fixture& fixture : reader_fixtures()) {
     for (int round = 0; round < 2000; ++round) {
       SCOPED_TRACE(fixture.label + ", round " + std::to_string(round));
-      std::string bytes = fixture.bytes;
-      for (std::size_t edits = 1 + random() % 6; edits > 0 && !bytes.empty(); --edits) {
-        const std::size_t at = random() % bytes.size();
-        const std::size_t from = random() % bytes.size();
-        switch (random() % 4) {
-          case 0:
-            bytes[at] = static_cast<char>(random());
-            break;
-          case 1:
-            bytes.insert(at, 1, static_cast<char>(random()));
-            break;
-          case 2:
-            bytes.erase(at, 1 + random() % 8);
-            break;
-          default:
-            bytes.insert(at, bytes.substr(from, random() % 24));
-            break;
-        }
-      }
-      (void)read_anything(bytes);
+      (void)read_anything(test::with_random_edits(fixture.bytes, random));
     }
   }
 }

@@ -1,0 +1,156 @@
+/// glTF 2.0 files (.gltf, .glb): what is in them, and their morphing meshes as arrays.
+///
+/// Opening a document maps the file and reads its JSON, nothing else; geometry and tracks are read when they are asked
+/// for, so that the cost is that of what is asked for. All of the format that concerns normals over time is understood:
+/// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
+/// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression and
+/// KHR_draco_mesh_compression. What is read is checked, strictly by the specification; what is not read (materials,
+/// textures, skins, the bounds of accessors) is not.
+///
+/// A file that requires another extension is refused by the name of that, but for those of materials, textures and
+/// lights, which do not touch geometry.
+///
+/// Errors     kInvalidInput with the file and a JSON pointer as the place ("walk.gltf, /accessors/3/count"), or a byte
+///            for what is no JSON.
+/// Threads    one document belongs to one thread at a time: decompressed pieces are kept.
+#ifndef CHRONORMAL_IO_GLTF_DOCUMENT_H_
+#define CHRONORMAL_IO_GLTF_DOCUMENT_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+
+namespace chronormal {
+
+/// How weights go from one key to the next.
+enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
+
+struct GltfPrimitive {
+  int mode = 4;                   ///< 4 triangles, 5 strip, 6 fan; others (points, lines) have no faces
+  std::size_t vertex_count = 0;   ///< 0 where there is no POSITION
+  std::size_t element_count = 0;  ///< indices, or vertices where there are none
+  bool has_normals = false, has_tangents = false, has_draco = false;
+  /// What each target moves.
+  struct Target {
+    bool positions = false, normals = false, tangents = false;
+  };
+  std::vector<Target> targets;
+
+  [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
+};
+
+struct GltfMesh {
+  std::string name;
+  std::vector<GltfPrimitive> primitives;
+  std::size_t target_count = 0;           ///< the same in all primitives
+  std::vector<std::string> target_names;  ///< extras.targetNames, where it has target_count names; else empty
+  std::vector<double> weights;            ///< the default ones; target_count of them, 0 where the file has none
+};
+
+struct GltfNode {
+  std::string name;
+  std::optional<std::uint32_t> mesh, parent;
+  bool has_skin = false;
+  std::vector<double> weights;  ///< its own, or empty: those of the mesh
+};
+
+/// The animation of the weights of one node.
+struct GltfTrack {
+  std::size_t node = 0, channel = 0;
+  std::size_t same_keys_as = 0;  ///< the first track of the animation that has the same keys: itself, or one before it
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  std::size_t key_count = 0;
+};
+
+struct GltfAnimation {
+  std::string name;
+  std::size_t channel_count = 0;  ///< of all kinds
+  std::vector<GltfTrack> tracks;  ///< of weights
+};
+
+/// The keys of a track; K = keys, N = targets of the mesh.
+struct GltfKeys {
+  std::vector<double> times;  ///< (K), seconds, ascending; float32 in the file
+  /// (K, N), or for a cubic spline (K, 3, N): in-tangents per second, values, out-tangents
+  std::vector<double> values;
+};
+
+/// Arrays of a primitive, decoded.
+struct GltfGeometry {
+  std::vector<std::uint32_t> corners;  ///< (F, 3): strips and fans are taken apart
+  std::vector<float> positions;        ///< (V, 3)
+  std::vector<float> normals;          ///< (V, 3), or empty
+  std::vector<float> tangents;         ///< (V, 4), or empty
+  /// Deltas (V, 3), each empty where the target has none.
+  struct Target {
+    std::vector<float> positions, normals, tangents;
+  };
+  std::vector<Target> targets;
+};
+
+struct GltfOptions {
+  bool allow_external = false;  ///< read buffers from files outside the folder of the asset
+  /// The most memory that the arrays of one primitive may take: a small file can ask for much.
+  std::size_t most_bytes = std::size_t{4} << 30;
+};
+
+class GltfDocument {
+ public:
+  /// Opens a file; "-" is the standard input. Errors: those of FileBytes::open, and of the format.
+  [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
+
+  /// Reads a document from bytes that outlive it. name is for messages; folder is where its files are, if it has any.
+  [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
+                                                 const std::optional<std::string>& folder = std::nullopt,
+                                                 const GltfOptions& options = {});
+
+  /// Whether bytes look like a glTF file: GLB, or JSON with an object.
+  [[nodiscard]] static bool recognises(std::string_view first_bytes) noexcept;
+
+  GltfDocument(GltfDocument&&) noexcept;
+  GltfDocument& operator=(GltfDocument&&) noexcept;
+  GltfDocument(const GltfDocument&) = delete;
+  GltfDocument& operator=(const GltfDocument&) = delete;
+  ~GltfDocument();
+
+  [[nodiscard]] const std::string& name() const noexcept;
+  [[nodiscard]] const std::vector<GltfMesh>& meshes() const noexcept;
+  [[nodiscard]] const std::vector<GltfNode>& nodes() const noexcept;
+  [[nodiscard]] const std::vector<GltfAnimation>& animations() const noexcept;
+  /// Extensions that the file uses, as it names them.
+  [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
+
+  /// The part of a geometry that is wanted beside faces and positions.
+  struct Wanted {
+    bool shading = false;  ///< normals and tangents, of the base and of the targets
+    bool targets = true;
+  };
+  /// Reads a primitive. Memory: that of the result; compressed pieces are kept decompressed as long as the document.
+  /// Precondition: the primitive has_faces()
+  [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
+
+  /// Reads the keys of a track.
+  [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
+
+  /// The animation that a person names: by its name, or else by its index.
+  /// Errors: kUsage, with the animations that there are.
+  [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;
+
+ private:
+  struct State;
+  explicit GltfDocument(std::unique_ptr<State> state) noexcept;
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_GLTF_DOCUMENT_H_

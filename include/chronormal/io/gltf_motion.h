@@ -1,0 +1,62 @@
+/// The motions of a glTF file: its morph targets, or one of its animations, as keyframes and segments.
+///
+///     targets      keyframe 0 is the base, keyframe k has target k - 1 of every mesh at weight 1; segments 0 -> k
+///     animation    a keyframe per time at which any of its weight tracks has a key; where weights step, two
+///
+/// LINEAR tracks are exact: weights, and so positions, are linear between keys. STEP tracks hold still between keys and
+/// jump at them, where no segment is; a jump at the last key leads out of the motion. CUBICSPLINE tracks are cut into
+/// straight pieces so short that no vertex is farther from its true place than a stated distance.
+///
+/// Vertices are those of the file, neither welded nor transformed by nodes or skins, part after part: in the order of
+/// meshes and primitives for targets, of nodes and primitives for an animation.
+#ifndef CHRONORMAL_IO_GLTF_MOTION_H_
+#define CHRONORMAL_IO_GLTF_MOTION_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+struct GltfMotionOptions {
+  std::string animation;  ///< name or index; empty: the targets
+  /// The largest distance between a cut cubic spline and the true one, in parts of the diagonal of the bounding box.
+  double curve_tolerance = 1e-5;
+  /// The most memory that keyframes may take, in bytes: a small file can ask for much.
+  std::size_t most_bytes = std::size_t{4} << 30;
+};
+
+/// One primitive of the motion: where its vertices and faces came from.
+struct GltfPart {
+  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing for targets
+  std::size_t mesh = 0, primitive = 0;
+  std::size_t first_vertex = 0, vertex_count = 0;
+  std::size_t first_face = 0, face_count = 0;
+};
+
+struct GltfMotion {
+  Motion motion;
+  std::vector<GltfPart> parts;
+  /// A bound of the distance between cut cubic splines and the true ones, in units of the file; 0 without any.
+  double curve_error = 0;
+};
+
+/// Reads the motion that the options name. Only parts that can move take part: primitives with faces and targets, and
+/// for an animation those that it drives. The result is valid (motion/validate.h).
+///
+/// Errors: of GltfDocument; kInvalidInput where nothing can move, or the keyframes would take more than most_bytes;
+/// kUsage for an animation that is not there.
+[[nodiscard]] Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMotionOptions& options);
+
+/// Reads all primitives with faces at the default weights of their meshes, as one keyframe without a segment. (So the
+/// result is not valid by itself.) Errors: of GltfDocument; kInvalidInput where there are none.
+[[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_GLTF_MOTION_H_

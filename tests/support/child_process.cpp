@@ -1,0 +1,113 @@
+#include "tests/support/child_process.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <fstream>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define CHRONORMAL_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CHRONORMAL_SANITIZED
+#endif
+
+namespace chronormal::test {
+namespace {
+
+// The largest resident memory so far. What the parent had at its peak is forgotten at the start.
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
+
+std::size_t peak_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::size_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
+  return 0;
+}
+
+void limit_address_space(std::size_t growth) {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + growth;
+  const rlimit limit{most, most};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+void write_all(int file, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t written = write(file, text.data() + at, text.size() - at);
+    if (written <= 0) return;
+    at += static_cast<std::size_t>(written);
+  }
+}
+
+// The growth as text, a mark, and the text of the work: what goes through the pipe.
+[[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work) {
+  alarm(most_seconds);
+  malloc_trim(0);
+  if (!is_sanitized()) limit_address_space(std::size_t{1} << 30);
+  forget_peak();
+  const std::size_t start = peak_bytes();
+  std::string text;
+  int code = 0;
+  try {
+    text = work();
+  } catch (const std::exception& exception) {
+    text = std::string("it threw: ").append(exception.what());
+    code = 1;
+  }
+  write_all(out, std::to_string(peak_bytes() - start) + "\n" + text);
+  _exit(code);
+}
+
+}  // namespace
+
+bool is_sanitized() {
+#ifdef CHRONORMAL_SANITIZED
+  return true;
+#else
+  return false;
+#endif
+}
+
+ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work) {
+  ChildRun run;
+  int ends[2];
+  if (pipe(ends) != 0) return run;
+  const auto start = std::chrono::steady_clock::now();
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    work_and_exit(ends[1], most_seconds, work);
+  }
+  close(ends[1]);
+  std::string text;
+  char block[4096];
+  for (ssize_t size = 0; (size = read(ends[0], block, sizeof block)) > 0;)
+    text.append(block, static_cast<std::size_t>(size));
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::size_t mark = text.find('\n');
+  if (mark == std::string::npos) {
+    run.text = WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended without a word";
+    return run;
+  }
+  run.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  run.peak_growth = std::stoull(text.substr(0, mark));
+  run.text = text.substr(mark + 1);
+  return run;
+}
+
+}  // namespace chronormal::test

@@ -1,0 +1,66 @@
+/// Weights of morph targets over time by the formulas of the glTF specification (appendix C), in long double, and where
+/// a motion puts its vertices: to hold the one against the other.
+#ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
+#define CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::test {
+
+/// The weights at a time, of target_count targets. values as they stand in the file: (K, N), or (K, 3, N) for a cubic
+/// spline. At a key of STEP it is the value of that key.
+[[nodiscard]] inline std::vector<double> weights_at(GltfInterpolation interpolation, const std::vector<float>& times,
+                                                    const std::vector<float>& values, std::size_t target_count,
+                                                    double time) {
+  const bool is_cubic = interpolation == GltfInterpolation::kCubicSpline;
+  const auto at = [&](std::size_t key, std::size_t which, std::size_t target) {
+    const std::size_t index = is_cubic ? (3 * key + which) * target_count + target : key * target_count + target;
+    return static_cast<long double>(values.at(index));
+  };
+  constexpr std::size_t kIn = 0, kValue = 1, kOut = 2;
+  // The last key that is not after the time.
+  const auto after = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < key; });
+  const auto next = static_cast<std::size_t>(after - times.begin());
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < target_count; ++k) {
+    if (next == 0 || next == times.size()) {
+      weights.push_back(static_cast<double>(at(next == 0 ? 0 : next - 1, kValue, k)));
+      continue;
+    }
+    const std::size_t key = next - 1;
+    const long double from = times[key], d = static_cast<long double>(times[next]) - from;
+    const long double t = (static_cast<long double>(time) - from) / d, t2 = t * t, t3 = t2 * t;
+    const long double a = at(key, kValue, k), b = at(next, kValue, k);
+    long double weight = a;
+    if (interpolation == GltfInterpolation::kLinear) weight = (1 - t) * a + t * b;
+    if (is_cubic)
+      weight = (2 * t3 - 3 * t2 + 1) * a + d * (t3 - 2 * t2 + t) * at(key, kOut, k) + (3 * t2 - 2 * t3) * b +
+               d * (t3 - t2) * at(next, kIn, k);
+    weights.push_back(static_cast<double>(weight));
+  }
+  return weights;
+}
+
+/// All positions of a sequence at a time, on the straight way of the segment that it lies in; at its ends, still.
+[[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
+  for (const Motion::SegmentKeys& segment : motion.segments) {
+    const Motion::Keyframe& from = motion.keyframes.at(segment.from);
+    const Motion::Keyframe& to = motion.keyframes.at(segment.to);
+    if (time > to.time && &segment != &motion.segments.back()) continue;
+    const double t = std::clamp((time - from.time) / (to.time - from.time), 0.0, 1.0);
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < from.positions.size(); ++i)
+      positions.push_back((1 - t) * static_cast<double>(from.positions[i]) + t * static_cast<double>(to.positions[i]));
+    return positions;
+  }
+  return {};
+}
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
