@@ -1,0 +1,121 @@
+/// Which corners of faces share one normal.
+///
+/// The normal of a vertex is a sum over the faces around it, and the normal of a corner a sum over some of them: those
+/// across edges that are smooth. Both are a partition of the corners into *elements*; each element has one normal. Two
+/// triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
+///
+///     corner    0  1  2  3  4  5            of face 0, and of face 1
+///     vertex    0  1  2  2  1  3
+///     vertices: elements {0} {1 4} {2 3} {5} {}       one for each vertex, 4 has none of the corners
+///     corners:  elements {0} {1} {2} {3} {4} {5}      with a smooth edge {0} {1 4} {2 3} {5}
+///
+/// An *output* is what a file or a renderer wants a normal for: a vertex, or a corner. Several outputs may show the
+/// same element: copies of a vertex that are one point (weld.h), corners across a smooth edge. Their normals are then
+/// the same to the last bit.
+///
+/// Order      The corners of an element are listed in an order that follows from the vertices of their faces and not
+///            from the order of the faces in the mesh. Sums in this order have the same bits however the faces are
+///            shuffled. (The order of the corners within a face does matter, in the last bits.)
+/// Polygons   A face that has two corners at one point counts with both.
+/// Threads    const functions may run at the same time.
+#ifndef CHRONORMAL_NORMALS_NORMAL_GROUPS_H_
+#define CHRONORMAL_NORMALS_NORMAL_GROUPS_H_
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/motion/topology.h"
+#include "chronormal/normals/weld.h"
+
+namespace chronormal {
+
+/// Stored normals closer than this are one normal that was rounded twice.
+inline constexpr double kSplitNormalTolerance = 0.1;  // degrees
+
+class NormalGroups {
+ public:
+  NormalGroups() = default;
+
+  /// One element for each point, with all of its corners; outputs are vertices. Elements are numbered as the points.
+  /// points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
+  [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
+
+  /// Outputs are corners. Two corners of a point share a normal if their faces have an edge in common that begins or
+  /// ends at this point, and the angle between the two face normals in keyframe 0 is at most the crease angle (and
+  /// 1e-6 rad, for the rounding of positions); or if both share it with a third. So smoothness spreads from edge to
+  /// edge around a point, across angles that add up, and stops at boundaries: two fans that touch in a point only stay
+  /// apart. Edges are between points, whatever their direction. More exactly:
+  ///   * between two faces that are wound in opposite ways the angle is taken as it is, near 180 degrees: a hard edge;
+  ///   * an edge of 3 to 16 faces is smooth between those pairs of them that satisfy the angle; an edge of more is
+  ///   hard;
+  ///   * a face without a normal in keyframe 0 counts as 180 degrees from every other.
+  /// A crease angle of 180 makes every edge smooth. Errors: kUsage where it is outside [0, 180].
+  [[nodiscard]] static Result<NormalGroups> by_crease_angle(const Motion& motion, const Points& points, double degrees);
+
+  /// Outputs are corners. Two corners of a point share a normal if their faces are in the same smoothing group, whether
+  /// they have an edge in common or not; the corners of faces in group 0 share with none. (The statement `s` of OBJ.)
+  /// Errors: kInvalidInput where there is not one group for each face.
+  [[nodiscard]] static Result<NormalGroups> by_smoothing_group(const Topology& topology, const Points& points,
+                                                               std::span<const std::uint32_t> group_of_face);
+
+  /// Outputs are corners. Two corners of a point share a normal if the normals that a file stores for them are within
+  /// the tolerance of each other, or both within that of a third. Stored normals need no length of 1; (0, 0, 0) is
+  /// within the tolerance of (0, 0, 0) only.
+  /// Errors: kInvalidInput where there is not one finite normal for each corner, with the place "corner C"; kUsage for
+  /// a tolerance outside [0, 45]. Cost: quadratic in the number of different normals around one point, at the worst.
+  [[nodiscard]] static Result<NormalGroups> by_split_normals(const Topology& topology, const Points& points,
+                                                             VectorView<const float> normal_of_corner,
+                                                             double degrees = kSplitNormalTolerance);
+
+  /// How many elements there are: different normals.
+  [[nodiscard]] std::size_t size() const noexcept { return offsets_.size() - 1; }
+  /// The corners that share the normal of element e, as indices into Topology::corners(); none for an isolated vertex.
+  [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t e) const noexcept { return part(corners_, e); }
+  /// The faces of these corners, one for one.
+  [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t e) const noexcept { return part(faces_, e); }
+
+  /// The element of each corner.
+  [[nodiscard]] std::span<const std::uint32_t> element_of_corner() const noexcept { return element_of_corner_; }
+  /// The element of each output: of each vertex, or of each corner.
+  [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
+    return outputs_are_vertices_ ? element_of_vertex_ : element_of_corner_;
+  }
+  [[nodiscard]] bool outputs_are_vertices() const noexcept { return outputs_are_vertices_; }
+
+  /// How many elements have no corner: isolated vertices. Their normal is (0, 0, 0).
+  [[nodiscard]] std::size_t isolated_count() const noexcept;
+
+  /// Copies the normal of each element to every output that shows it.
+  /// of_elements must have size() elements, of_outputs as many as element_of_output()
+  void copy_to_outputs(VectorView<const float> of_elements, VectorView<float> of_outputs) const noexcept;
+
+ private:
+  // Lists the corners of each element. element_of_corner has values below element_count.
+  NormalGroups(const Topology& topology, std::vector<std::uint32_t> element_of_corner, std::size_t element_count);
+
+  // Numbers sets of corners, named by any of their members, in the order of their first corners.
+  [[nodiscard]] static NormalGroups of_corner_sets(const Topology& topology, std::vector<std::uint32_t> set_of_corner);
+
+  [[nodiscard]] std::span<const std::uint32_t> part(const std::vector<std::uint32_t>& values,
+                                                    std::size_t e) const noexcept {
+    assert(e < size());
+    return {values.data() + offsets_[e], values.data() + offsets_[e + 1]};
+  }
+
+  std::vector<std::uint32_t> offsets_ = {0};      // where the corners of each element begin, and the end
+  std::vector<std::uint32_t> corners_;            // element after element
+  std::vector<std::uint32_t> faces_;              // of these corners
+  std::vector<std::uint32_t> element_of_corner_;  // the inverse
+  std::vector<std::uint32_t> element_of_vertex_;  // where outputs are vertices
+  bool outputs_are_vertices_ = false;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_NORMAL_GROUPS_H_

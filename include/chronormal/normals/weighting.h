@@ -1,0 +1,77 @@
+/// The ways in which tools weigh the faces around a vertex.
+///
+/// The normal of an element (normal_groups.h) is a sum over its corners: face normal times weight. With the vector area
+/// n of the face (length: twice its area), its unit normal u, and the edges e to the next and f to the previous corner,
+///
+///     name         adds                         used by
+///     area         n                            trimesh, PyTorch3D; the default of chronormal
+///     angle        angle(e, f) u                3ds Max, MeshLab (Thuermer, Wuethrich 1998)
+///     uniform      u                            Gouraud 1971
+///     area-angle   angle(e, f) n                Maya, Marvelous Designer
+///     max          e x f / (|e|^2 |f|^2)        N. Max 1999, exact on spheres
+///
+/// Area is the default because it is the only one whose sum is a polynomial in time: exact by three control normals
+/// (group_normals.h). The others are evaluated here, anew for each t, or fitted (weighting_fit.h).
+///
+/// Polygons   n, u and the angle are those of the polygon, its vector area and its own corner angle in [0, pi], not of
+///            the triangles that some tool would cut it into. e x f is that of the corner: for a triangle and a convex
+///            planar polygon along n, at a reflex corner against it.
+/// Degenerate A face whose n is zero or nothing but rounding adds nothing, whatever the weighting; nor does a corner at
+///            an edge without length, except by area and uniform, which do not look at edges. A duplicate face adds
+///            twice. A sum that is nothing but the rounding of its terms is (0, 0, 0).
+/// Threads    everything here is pure. Angles go through std::atan2: the last bit may differ between C libraries.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_H_
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+enum class Weighting { kArea, kAngle, kUniform, kAreaAngle, kMax };
+
+struct WeightingInfo {
+  Weighting weighting;
+  std::string_view name;     ///< on the command line
+  std::string_view summary;  ///< one line
+};
+
+/// All weightings, in the order of the table above.
+inline constexpr std::array<WeightingInfo, 5> kWeightings = {{
+    {Weighting::kArea, "area", "the area of the face; the only one that is exact at every time"},
+    {Weighting::kAngle, "angle", "the angle of the face at the vertex"},
+    {Weighting::kUniform, "uniform", "all faces alike"},
+    {Weighting::kAreaAngle, "area-angle", "area times angle"},
+    {Weighting::kMax, "max", "the sine of the angle over the lengths of both edges (Max 1999)"},
+}};
+
+[[nodiscard]] std::string_view weighting_name(Weighting weighting) noexcept;
+
+/// Finds a weighting by its name. Errors: kUsage, with all names.
+[[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
+
+/// Writes n of a range of faces at t: twice the vector area, and zero where it is nothing but rounding.
+/// result must have as many elements as the range; t in [0, 1]
+void face_normals_at(const Segment& segment, double t, IndexRange faces, std::span<Vec3d> result) noexcept;
+
+/// Writes the weighted normals of a range of elements at t, of any length. Pure: no allocation, no throw. The terms are
+/// added in the order of NormalGroups: shuffling the faces of the mesh gives the same bits.
+/// of_faces must have the result of face_normals_at() for all faces at this t, result as many elements as the range
+void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, double t,
+                         std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
+
+/// The same for all elements. On all cores.
+[[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
+                                                         Weighting weighting, double t);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_H_

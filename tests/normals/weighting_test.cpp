@@ -1,0 +1,184 @@
+// Weighted normals at one time: each weighting against its definition, and what degenerate faces add.
+
+#include "chronormal/normals/weighting.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "chronormal/normals/group_normals.h"
+#include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference_elements.h"
+
+namespace chronormal {
+namespace {
+
+using fixtures::Point;
+
+constexpr double kQuarter = 1.5707963267948966;
+
+NormalGroups vertices_of(const Motion& motion) {
+  return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+}
+
+std::vector<Vec3d> weighted(const Motion& motion, Weighting weighting, double t = 0) {
+  return all_weighted_normals_at(motion.segment(0), vertices_of(motion), weighting, t);
+}
+
+void expect_near(const Vec3d& found, const Vec3d& expected, double tolerance = 1e-12) {
+  EXPECT_NEAR(found.x, expected.x, tolerance);
+  EXPECT_NEAR(found.y, expected.y, tolerance);
+  EXPECT_NEAR(found.z, expected.z, tolerance);
+}
+
+// ---- names ---------------------------------------------------------------------------------------------------------
+
+TEST(Weighting, names_lead_there_and_back) {
+  for (const WeightingInfo& info : kWeightings) {
+    EXPECT_EQ(make_weighting(info.name).value(), info.weighting);
+    EXPECT_EQ(weighting_name(info.weighting), info.name);
+  }
+  const auto unknown = make_weighting("areal");
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_EQ(unknown.error().code, ErrorCode::kUsage);
+  EXPECT_EQ(unknown.error().text(), "there is no weighting 'areal'; there are area, angle, uniform, area-angle, max");
+}
+
+// ---- definitions ---------------------------------------------------------------------------------------------------
+
+TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
+  // Quads of 2 x 1, 1 x 3 and 3 x 2, with the corner at the origin: x, y and z edges of 2, 1, 3, normals outwards.
+  const Motion corner = test::still(fixtures::make_polygons(7, {0, 4, 8, 12}, {0, 2, 4, 1, 0, 3, 5, 2, 0, 1, 6, 3}),
+                                    {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}, {2, 1, 0}, {0, 1, 3}, {2, 0, 3}});
+  const double xy = 2, yz = 3, zx = 6;  // areas; the face across z has the area xy
+  expect_near(weighted(corner, Weighting::kArea)[0], {-2 * yz, -2 * zx, -2 * xy});
+  expect_near(weighted(corner, Weighting::kUniform)[0], {-1, -1, -1});
+  expect_near(weighted(corner, Weighting::kAngle)[0], {-kQuarter, -kQuarter, -kQuarter});
+  expect_near(weighted(corner, Weighting::kAreaAngle)[0], {-2 * yz * kQuarter, -2 * zx * kQuarter, -2 * xy * kQuarter});
+  expect_near(weighted(corner, Weighting::kMax)[0], {-1 / 3.0, -1 / 6.0, -1 / 2.0});
+}
+
+TEST(Weighting, max_is_exact_on_a_sphere) {
+  // Any fan of triangles around a point of a sphere, however irregular: Max's theorem.
+  fixtures::Random random(5);
+  for (int round = 0; round < 100; ++round) {
+    std::vector<Point> points = {{0, 0, 1}};
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      const double around = (i + random.uniform(0, 0.9)) * 1.0471975511965976, down = random.uniform(0.2, 1.4);
+      points.push_back({std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), std::cos(down)});
+      corners.insert(corners.end(), {0, 1 + i, 1 + (i + 1) % 6});
+    }
+    const Motion fan = test::still(fixtures::make_triangles(7, corners), points);
+    EXPECT_LT(angle_between(weighted(fan, Weighting::kMax)[0], {0, 0, 1}), 1e-5);
+  }
+}
+
+RC_GTEST_PROP(Weighting, equals_the_definition_at_every_t, ()) {
+  const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+  const bool of_polygons = *rc::gen::arbitrary<bool>();
+  const Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(1),
+                                         *rc::gen::element(0.02, 0.5, 2.0), seed);
+  const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
+  const NormalGroups groups = vertices_of(motion);
+  const auto corners = test::reference_corners(mesh, groups);
+  const double t = *rc::gen::inRange(0, 65) / 64.0;
+  for (const WeightingInfo& info : kWeightings) {
+    const auto found = weighted(motion, info.weighting, t);
+    for (std::size_t e = 0; e < groups.size(); ++e) {
+      reference::Real size = 0;
+      for (const auto& corner : corners[e])
+        size += reference::length(reference::contribution(mesh, corner, std::string(info.name), t));
+      const auto expected = reference::element_normal(mesh, corners[e], std::string(info.name), t);
+      RC_ASSERT(reference::length(reference::subtract(test::to_real(found[e]), expected)) <= 1e-9L * size);
+    }
+  }
+}
+
+RC_GTEST_PROP(Weighting, area_is_the_sum_of_quadratics, ()) {
+  const Motion motion = fixtures::shaken(fixtures::box_grid(3), 0.5, *rc::gen::arbitrary<std::uint64_t>());
+  const double t = *rc::gen::inRange(0, 65) / 64.0;
+  const auto found = weighted(motion, Weighting::kArea, t);
+  const auto controls = all_group_control_normals(motion.segment(0), vertices_of(motion));
+  for (std::size_t e = 0; e < found.size(); ++e)
+    RC_ASSERT(max_abs(found[e] - normal_at(controls[e], t)) <= 1e-13 * (1 + max_abs(found[e])));
+}
+
+RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
+  const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+  const Motion motion = fixtures::shaken(fixtures::box_grid(3), 0.5, seed);
+  const Motion shuffled = test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), seed));
+  for (const WeightingInfo& info : kWeightings)
+    RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
+}
+
+TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
+  // A cube of quads: all weightings are symmetric at its corners, which they are not on its triangles.
+  const fixtures::ClosedMesh cube = fixtures::box_grid(1);
+  const Motion motion = test::still(cube.topology, cube.points);
+  for (const WeightingInfo& info : kWeightings) {
+    const auto normals = weighted(motion, info.weighting);
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+      const Vec3d outwards{cube.points[v][0], cube.points[v][1], cube.points[v][2]};
+      EXPECT_LT(angle_between(normals[v], outwards), 1e-7) << info.name;
+    }
+  }
+}
+
+// ---- degenerate ----------------------------------------------------------------------------------------------------
+
+TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
+  const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};
+  const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
+  // On a line, twice the same vertex, a point, and a line that is only nearly one at these coordinates.
+  const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
+  for (const WeightingInfo& info : kWeightings) {
+    const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
+    for (std::size_t v = 0; v < 3; ++v) EXPECT_EQ(found[v], expected[v]) << info.name;
+    for (std::size_t v = 3; v < 6; ++v) EXPECT_EQ(found[v], Vec3d{}) << info.name;
+  }
+}
+
+TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
+  // A quad with two vertices at one place.
+  const Motion motion =
+      test::still(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}), {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax}) {
+    EXPECT_EQ(weighted(motion, weighting)[1], Vec3d{});
+    EXPECT_GT(weighted(motion, weighting)[0].z, 0);
+  }
+  EXPECT_EQ(weighted(motion, Weighting::kUniform)[1], (Vec3d{0, 0, 1}));
+}
+
+TEST(Weighting, both_sides_of_a_sheet_cancel_to_zero) {
+  Motion sheet = test::still(fixtures::make_triangles(3, {0, 1, 2, 2, 1, 0}),
+                             {{0.1, 0.7, 0.2}, {1.3, 0.1, -0.4}, {0.3, 1.9, 0.6}});
+  for (float& p : sheet.keyframes[1].positions) p = p * p + 0.3F;
+  for (const WeightingInfo& info : kWeightings) {
+    for (const Vec3d& n : weighted(sheet, info.weighting, 0.37)) EXPECT_EQ(n, Vec3d{}) << info.name;
+  }
+}
+
+TEST(Weighting, a_duplicate_face_adds_twice) {
+  const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Motion motion = test::still(fixtures::make_triangles(4, {0, 1, 2, 0, 1, 2, 0, 2, 3}), points);
+  expect_near(weighted(motion, Weighting::kUniform)[0], {1, 0, 2});
+  expect_near(weighted(motion, Weighting::kAngle)[0], {kQuarter, 0, 2 * kQuarter});
+}
+
+TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
+  for (const double size : {1e-30, 1e30}) {
+    const Motion motion = test::still(fixtures::make_triangles(3, {0, 1, 2}), {{0, 0, 0}, {size, 0, 0}, {0, size, 0}});
+    for (const WeightingInfo& info : kWeightings)
+      expect_near(unit(weighted(motion, info.weighting, 0.5)[0]), {0, 0, 1}, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

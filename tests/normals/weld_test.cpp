@@ -1,0 +1,61 @@
+// Which vertices are one point.
+
+#include "chronormal/normals/weld.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference_elements.h"
+
+namespace chronormal {
+namespace {
+
+using fixtures::Point;
+
+Motion two_keyframes(const std::vector<Point>& from, const std::vector<Point>& to) {
+  return fixtures::make_motion(fixtures::make_triangles(from.size(), {0, 1, 2}), from, to);
+}
+
+TEST(Weld, vertices_that_coincide_in_every_keyframe_are_one_point) {
+  const Motion motion = two_keyframes({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                                      {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {1, 0, 1}, {2, 0, 2}});
+  const Points points = weld_coincident(motion);
+  EXPECT_EQ(points.point_of_vertex, (std::vector<std::uint32_t>{0, 1, 2, 1, 3})) << "2 and 4 part";
+  EXPECT_EQ(points.count, 4u);
+}
+
+TEST(Weld, without_welding_every_vertex_is_a_point) {
+  const Points points = separate_points(3);
+  EXPECT_EQ(points.point_of_vertex, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(points.count, 3u);
+}
+
+TEST(Weld, minus_zero_is_zero_and_the_next_float_is_not) {
+  Motion motion = two_keyframes({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
+  motion.keyframes[0].positions[3] = -0.0F;
+  motion.keyframes[0].positions[7] = std::numeric_limits<float>::denorm_min();
+  EXPECT_EQ(weld_coincident(motion).point_of_vertex, (std::vector<std::uint32_t>{0, 0, 1}));
+}
+
+TEST(Weld, no_vertices_are_no_points) { EXPECT_EQ(weld_coincident(Motion{}).count, 0u); }
+
+RC_GTEST_PROP(Weld, equals_a_comparison_of_all_pairs, ()) {
+  // Few places, so that many coincide in one keyframe and some in both.
+  const auto count = *rc::gen::inRange<std::size_t>(3, 40);
+  const auto place = rc::gen::container<Point>(rc::gen::map(rc::gen::inRange(0, 2), [](int k) { return double(k); }));
+  const auto from = *rc::gen::container<std::vector<Point>>(count, place);
+  const auto to = *rc::gen::container<std::vector<Point>>(count, place);
+  const Points points = weld_coincident(two_keyframes(from, to));
+  const auto expected =
+      reference::flood(count, [&](std::size_t a, std::size_t b) { return from[a] == from[b] && to[a] == to[b]; });
+  RC_ASSERT(std::vector<std::size_t>(points.point_of_vertex.begin(), points.point_of_vertex.end()) == expected);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,144 @@
+/// An oracle for the normals of vertices and corners, in long double, by a route of its own.
+///
+/// As in reference.h, nothing here includes a chronormal header or shares a line with src/. Where there is a choice the
+/// slow way is taken: vector areas from the vertices at t about their centre, never from a fan or a polynomial; groups
+/// of corners by flooding over all pairs, never by sorting.
+#ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
+#define CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/reference.h"
+
+namespace chronormal::reference {
+
+/// Polygons whose vertices move on straight lines.
+struct Mesh {
+  std::vector<std::vector<std::size_t>> faces;  ///< vertices of each
+  std::vector<Vector> from, to;                 ///< positions of each vertex
+};
+
+/// Corner `place` of face `face`.
+struct Corner {
+  std::size_t face = 0, place = 0;
+};
+
+[[nodiscard]] inline std::vector<Corner> corners_of(const Mesh& mesh) {
+  std::vector<Corner> corners;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (std::size_t i = 0; i < mesh.faces[f].size(); ++i) corners.push_back({f, i});
+  }
+  return corners;
+}
+
+[[nodiscard]] inline std::size_t vertex_of(const Mesh& mesh, const Corner& corner, std::size_t steps = 0) {
+  const auto& face = mesh.faces[corner.face];
+  return face[(corner.place + steps) % face.size()];
+}
+
+[[nodiscard]] inline Vector position(const Mesh& mesh, std::size_t vertex, Real t) {
+  return add(scaled(1 - t, mesh.from[vertex]), scaled(t, mesh.to[vertex]));
+}
+
+/// Twice the vector area of a polygon at t. Zero where it is nothing but rounding.
+[[nodiscard]] inline Vector vector_area(const Mesh& mesh, std::size_t face, Real t) {
+  const auto& vertices = mesh.faces[face];
+  std::vector<Vector> points;
+  Vector centre{};
+  for (const std::size_t v : vertices) {
+    points.push_back(position(mesh, v, t));
+    centre = add(centre, scaled(1 / static_cast<Real>(vertices.size()), points.back()));
+  }
+  Vector sum{};
+  Real size = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector p = subtract(points[i], centre), q = subtract(points[(i + 1) % points.size()], centre);
+    sum = add(sum, cross(p, q));
+    size += length(p) * length(q);
+  }
+  return length(sum) > 1e-15L * size ? sum : Vector{};
+}
+
+/// What one corner adds to the normal of its element. `weighting` is a name of the command line.
+[[nodiscard]] inline Vector contribution(const Mesh& mesh, const Corner& corner, const std::string& weighting, Real t) {
+  const Vector area = vector_area(mesh, corner.face, t);
+  const Vector here = position(mesh, vertex_of(mesh, corner), t);
+  const std::size_t corners = mesh.faces[corner.face].size();
+  const Vector next = subtract(position(mesh, vertex_of(mesh, corner, 1), t), here);
+  const Vector previous = subtract(position(mesh, vertex_of(mesh, corner, corners - 1), t), here);
+  if (weighting == "area" || !(length(area) > 0)) return area;
+  if (weighting == "max") {
+    const Real squares = dot(next, next) * dot(previous, previous);
+    return squares > 0 ? scaled(1 / squares, cross(next, previous)) : Vector{};
+  }
+  if (weighting == "uniform") return normalised(area);
+  // The angle by the half-angle formula of Kahan, not by a cross product.
+  Real corner_angle = 0;
+  if (length(next) > 0 && length(previous) > 0) {
+    const Vector a = normalised(next), b = normalised(previous);
+    corner_angle = 2 * std::atan2(length(subtract(a, b)), length(add(a, b)));
+  }
+  return scaled(corner_angle, weighting == "angle" ? normalised(area) : area);
+}
+
+/// The normal of the corners that share one, at t.
+[[nodiscard]] inline Vector element_normal(const Mesh& mesh, const std::vector<Corner>& corners,
+                                           const std::string& weighting, Real t) {
+  Vector sum{};
+  for (const Corner& corner : corners) sum = add(sum, contribution(mesh, corner, weighting, t));
+  return sum;
+}
+
+/// Numbers the classes of the relation that `related` generates on 0 ... count - 1, in the order of their first
+/// members.
+[[nodiscard]] inline std::vector<std::size_t> flood(std::size_t count,
+                                                    const std::function<bool(std::size_t, std::size_t)>& related) {
+  std::vector<std::size_t> class_of(count, count);
+  std::size_t classes = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (class_of[i] != count) continue;
+    std::vector<std::size_t> wave = {i};
+    class_of[i] = classes;
+    while (!wave.empty()) {
+      const std::size_t reached = wave.back();
+      wave.pop_back();
+      for (std::size_t k = 0; k < count; ++k) {
+        if (class_of[k] == count && related(reached, k)) {
+          class_of[k] = classes;
+          wave.push_back(k);
+        }
+      }
+    }
+    ++classes;
+  }
+  return class_of;
+}
+
+/// Which corners share a normal at a crease angle in degrees; `point` names the point of each vertex. Faces must have
+/// normals at t = 0, and no angle may be within rounding of the crease angle.
+[[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
+                                                             Real degrees) {
+  const std::vector<Corner> corners = corners_of(mesh);
+  const auto neighbours = [&](const Corner& c) {
+    return std::pair{point[vertex_of(mesh, c, 1)], point[vertex_of(mesh, c, mesh.faces[c.face].size() - 1)]};
+  };
+  return flood(corners.size(), [&](std::size_t i, std::size_t k) {
+    const Corner &a = corners[i], &b = corners[k];
+    const std::size_t here = point[vertex_of(mesh, a)];
+    if (here != point[vertex_of(mesh, b)]) return false;
+    const auto [a1, a2] = neighbours(a);
+    const auto [b1, b2] = neighbours(b);
+    const bool edge = (a1 != here && (a1 == b1 || a1 == b2)) || (a2 != here && (a2 == b1 || a2 == b2));
+    if (!edge) return false;
+    return a.face == b.face || angle(vector_area(mesh, a.face, 0), vector_area(mesh, b.face, 0)) <= degrees * kPi / 180;
+  });
+}
+
+}  // namespace chronormal::reference
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
