@@ -5,7 +5,8 @@
 #include <cstdio>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/io/motion_files.h"
+#include "chronormal/io/make_human_target.h"
+#include "chronormal/io/targets.h"
 
 namespace chronormal::cli {
 namespace {
@@ -38,30 +39,78 @@ void InputOptions::add_to(CLI::App& command) {
       .add_option("INPUT", files,
                   "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
                   "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
-                  ".npz or .md2; - is one file on stdin")
+                  ".gltf, .glb, .npz or .md2; - is one file on stdin")
       ->type_name("");
+  command
+      .add_option("--base", base,
+                  "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
+                  ".target or .target.gz of MakeHuman, folders of them")
+      ->type_name("FILE")
+      ->check([](const std::string& name) { return name.empty() ? "it must name a file" : ""; }, "");
+  command
+      .add_option("--animation", animation,
+                  "an animation of a glTF file, by name or index; without it\n"
+                  "every morph target is a segment")
+      ->type_name("NAME")
+      ->check([](const std::string& name) { return name.empty() ? "it must be a name or an index" : ""; }, "");
+  command.add_flag("--allow-external", allow_external, "a glTF file may name files outside its folder");
   command.add_option("--sample", samples, morph_list())->type_name("NAME")->take_all()->allow_extra_args(false);
   command.add_option("--fps", frames_per_second, "frames per second of the keyframes (default 1)")->type_name("N");
 }
 
-Result<NamedMotion> read_files(const std::vector<std::string>& files, double frames_per_second, Progress& progress) {
-  auto motion = read_motion(files, {frames_per_second}, progress.callback("reading"));
-  progress.clear();
-  if (!motion) return motion.error();
-  const std::string name =
-      files.size() == 1 ? files.front() : short_name(files.front()) + " ... " + short_name(files.back());
-  return NamedMotion{name, std::move(motion).value()};
+std::string name_of_files(const std::vector<std::string>& files) {
+  return files.size() == 1 ? files.front() : short_name(files.front()) + " ... " + short_name(files.back());
+}
+
+Status check_input(const InputOptions& options) {
+  const auto misuse = [](std::string place, std::string message) {
+    return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+  };
+  if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
+    return misuse("--animation", "it chooses among those of a glTF file: name one");
+  if (!options.base.empty()) {
+    if (!options.samples.empty()) return misuse("--base", "a built-in morph is no target: give .obj, .ply or .target");
+    if (options.files.empty()) return misuse("--base", "there is nothing to read: name the targets of the base");
+    if (options.frames_per_second != 1)
+      return misuse("--fps", "targets of a base have no frames: the base is at 0 s and every target at 1 s");
+    return Success{};
+  }
+  if (options.files.empty() && options.samples.empty())
+    return misuse("", "there is nothing to read: name the keyframes, or --sample NAME");
+  if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
+    return misuse("", "there are several inputs: give one");
+  for (const std::string& file : options.files) {
+    if (is_make_human_target(file)) return misuse(file, "a target changes a mesh: name the mesh with --base FILE");
+  }
+  return Success{};
 }
 
 Result<NamedMotion> read_input(const InputOptions& options, Progress& progress) {
-  if (options.files.empty() && options.samples.empty())
-    return Error{ErrorCode::kUsage, "", "there is nothing to read: name the keyframes, or --sample NAME"};
-  if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
-    return Error{ErrorCode::kUsage, "", "there are several inputs: give one"};
-  if (!options.files.empty()) return read_files(options.files, options.frames_per_second, progress);
+  if (const Status status = check_input(options); !status) return status.error();
+  if (!options.base.empty()) {
+    auto motion = read_targets(options.base, options.files, progress.callback("reading"));
+    progress.clear();
+    if (!motion) return motion.error();
+    return NamedMotion{options.base, std::move(motion).value()};
+  }
+  if (!options.files.empty()) {
+    auto motion = read_motion(options.files, options.motion_options(), progress.callback("reading"));
+    progress.clear();
+    if (!motion) return motion.error();
+    return NamedMotion{name_of_files(options.files), std::move(motion).value()};
+  }
   auto motion = make_builtin_morph(options.samples.front());
   if (!motion) return motion.error();
   return NamedMotion{options.samples.front(), std::move(motion).value()};
+}
+
+Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& progress) {
+  if (options.files.empty() || !options.base.empty()) return read_input(options, progress);
+  if (const Status status = check_input(options); !status) return status.error();
+  auto motion = read_motion_or_mesh(options.files, options.motion_options(), progress.callback("reading"));
+  progress.clear();
+  if (!motion) return motion.error();
+  return NamedMotion{name_of_files(options.files), std::move(motion).value()};
 }
 
 int report(const std::string& command, const Error& error) {

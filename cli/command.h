@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/motion_files.h"
 #include "chronormal/motion/motion.h"
 #include "cli/progress.h"
 
@@ -28,9 +29,14 @@ struct CommonOptions {
 
 /// The options that choose what to read.
 struct InputOptions {
-  std::vector<std::string> files;    ///< files, patterns, folders or "-": one sequence
+  std::vector<std::string> files;    ///< files, patterns, folders or "-": one sequence, or the targets of a base
   std::vector<std::string> samples;  ///< built-in morphs
   double frames_per_second = 1;
+  std::string base;       ///< the mesh of which files are morph targets; empty where there is none
+  std::string animation;  ///< of a glTF file; empty: its morph targets
+  bool allow_external = false;
+
+  [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external}; }
 
   void add_to(CLI::App& command);
 };
@@ -43,12 +49,18 @@ struct NamedMotion {
 /// The last part of a path: what a person calls it.
 [[nodiscard]] std::string short_name(std::string path);
 
-/// Reads one sequence of files. The name is that of the only input, or "first ... last".
-[[nodiscard]] Result<NamedMotion> read_files(const std::vector<std::string>& files, double frames_per_second,
-                                             Progress& progress);
+/// What to call the files: the name of the only one, or "first ... last".
+[[nodiscard]] std::string name_of_files(const std::vector<std::string>& files);
 
-/// Reads what the options name, which must be one input: files or one built-in morph.
+/// Whether the options go together, before anything is opened. Errors: kUsage.
+[[nodiscard]] Status check_input(const InputOptions& options);
+
+/// Reads what the options name, which must be one input: files or one built-in morph. Checks them first.
+/// A base with its targets has the name of the base.
 [[nodiscard]] Result<NamedMotion> read_input(const InputOptions& options, Progress& progress);
+
+/// The same, but a mesh that does not move is taken as well: a keyframe without segments.
+[[nodiscard]] Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& progress);
 
 /// Prints an error to stderr, as "chronormal COMMAND: place: message", and returns its exit code.
 int report(const std::string& command, const Error& error);
@@ -56,6 +68,7 @@ int report(const std::string& command, const Error& error);
 // The commands. Each adds itself to the program and writes its exit code there when it has run.
 void add_compare_command(CLI::App& program, int& exit_code);
 void add_convert_command(CLI::App& program, int& exit_code);
+void add_inspect_command(CLI::App& program, int& exit_code);
 
 }  // namespace chronormal::cli
 

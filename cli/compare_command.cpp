@@ -14,9 +14,11 @@ constexpr std::size_t kMostSamples = 1000000;
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::vector<std::string> schemes = default_schemes();
+  std::vector<std::string> schemes;  // empty: those that are usual for the elements
   std::size_t samples = 21;
   std::string elements = "faces";
+  double crease_angle = 180;
+  bool no_weld = false;
   std::string access = "random";
   bool each = false;
   bool json = false;
@@ -46,13 +48,18 @@ std::string footer() {
          "  chronormal compare frames/\n"
          "  chronormal compare a.obj b.obj --schemes linear,slerp,circle:timed --json\n"
          "  chronormal compare --each walk/ run/ --sample twist\n"
+         "  chronormal compare --base face.obj targets/\n"
+         "  chronormal compare face.glb --elements vertices\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
 Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
-  const CompareOptions compare_options{options.schemes, options.samples,
-                                       options.access == "sequential" ? Access::kSequential : Access::kRandom,
-                                       progress.callback("comparing")};
+  const CompareOptions compare_options{
+      options.schemes,
+      options.samples,
+      options.access == "sequential" ? Access::kSequential : Access::kRandom,
+      progress.callback("comparing"),
+      {make_element_kind(options.elements).value(), !options.no_weld, options.crease_angle}};
   auto comparison = compare(input.motion, compare_options);
   progress.clear();
   if (!comparison) return comparison.error();
@@ -63,12 +70,24 @@ Result<NamedComparison> compare_one(NamedMotion input, const Options& options, P
 Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress) {
   std::vector<InputOptions> inputs;
   if (options.each) {
-    for (const std::string& file : options.input.files) inputs.push_back({{file}, {}, options.input.frames_per_second});
-    for (const std::string& sample : options.input.samples)
-      inputs.push_back({{}, {sample}, options.input.frames_per_second});
+    InputOptions one = options.input;
+    one.samples.clear();
+    for (const std::string& file : options.input.files) {
+      one.files = {file};
+      inputs.push_back(one);
+    }
+    one.files.clear();
+    for (const std::string& sample : options.input.samples) {
+      one.samples = {sample};
+      inputs.push_back(one);
+    }
     if (inputs.empty()) inputs.push_back(options.input);
   } else {
     inputs.push_back(options.input);
+  }
+  // Find out about all wrong inputs before the first is read.
+  for (const InputOptions& input : inputs) {
+    if (const Status status = check_input(input); options.each && !status) return status.error();
   }
   std::vector<NamedComparison> comparisons;
   for (const InputOptions& input : inputs) {
@@ -76,10 +95,12 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
     if (!motion) {
       Error error = motion.error();
       const bool several = input.samples.size() + (input.files.empty() ? 0 : 1) > 1;
-      if (options.each && !input.files.empty()) error.place = input.files.front() + ": " + error.place;
+      if (options.each && !input.files.empty() && input.base.empty())
+        error.place = input.files.front() + ": " + error.place;
       if (several) error.message += ", or --each to compare them side by side";
       return error;
     }
+    if (options.each && !input.base.empty()) motion.value().name = input.files.front();  // the base is that of all
     auto comparison = compare_one(std::move(motion).value(), options, progress);
     if (!comparison) return comparison.error();
     comparisons.push_back(std::move(comparison).value());
@@ -95,6 +116,15 @@ int run(const Options& options) {
     if (name.empty()) return report("compare", {ErrorCode::kUsage, "--schemes", "there is an empty name in the list"});
     if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
   }
+  const auto kind = make_element_kind(options.elements);
+  if (!kind) return report("compare", {ErrorCode::kUsage, "--elements", kind.error().message});
+  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
+    return report("compare", {ErrorCode::kUsage, "--crease", "it must be an angle from 0 to 180 degrees"});
+  if (options.crease_angle != 180 && kind.value() != ElementKind::kCorners)
+    return report("compare", {ErrorCode::kUsage, "--crease", "only --elements corners can have hard edges"});
+  if (options.no_weld && kind.value() == ElementKind::kFaces)
+    return report("compare",
+                  {ErrorCode::kUsage, "--no-weld", "faces are not welded: it goes with vertices or corners"});
   if (const Status output = check_output(options.common.output, options.common.force); !output)
     return report("compare", output.error());
 
@@ -132,9 +162,14 @@ void add_compare_command(CLI::App& program, int& exit_code) {
           "which schemes, in which order (listed below)")
       ->type_name("A,B,...");
   command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")->type_name("N");
-  command->add_option("--elements", options->elements, "which normals: faces")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"faces"}).description(""));
+  command->add_option("--elements", options->elements, "which normals: faces (default), vertices, corners")
+      ->type_name("KIND");
+  command
+      ->add_option("--crease", options->crease_angle,
+                   "corners: edges between faces that differ by more than this\n"
+                   "in the first keyframe are hard (default 180: none)")
+      ->type_name("DEG");
+  command->add_flag("--no-weld", options->no_weld, "vertices at one point in all keyframes stay apart");
   command->add_option("--access", options->access, "random (default), or sequential: played step by step")
       ->type_name("KIND")
       ->check(CLI::IsMember({"random", "sequential"}).description(""));

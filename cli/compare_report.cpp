@@ -22,12 +22,18 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   return fmt::format("{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
-                     counted(c.faces, "face", "faces"), counted(c.segments, "segment", "segments"), c.samples);
+                     counted(c.faces, "face", "faces"), counted(c.segments, "segment", "segments"), c.samples) +
+         (c.kind == ElementKind::kFaces
+              ? std::string()
+              : fmt::format("{} of {}\n", counted(c.elements, "different normal", "different normals"),
+                            element_kind_name(c.kind)));
 }
 
 Json input_json(const NamedComparison& input) {
   const Comparison& c = input.comparison;
-  return {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
+  Json json = {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
+  if (c.kind != ElementKind::kFaces) json["different_normals"] = c.elements;
+  return json;
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
@@ -75,11 +81,23 @@ std::string csv_field(const std::string& text) {
   return quoted + '"';
 }
 
+std::string one_element(ElementKind kind) {
+  if (kind == ElementKind::kVertices) return "vertex";
+  return kind == ElementKind::kCorners ? "corner" : "face";
+}
+
+std::string sample_pairs(std::size_t count, const std::string& word) {
+  return fmt::format("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
+}
+
 // What a table does not show, a line each: shares that were treated otherwise, and what was left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
-  const std::size_t pairs = comparison.faces * comparison.segments;
-  const char* of = comparison.segments > 1 ? "(face, segment) pairs" : pairs == 1 ? "face" : "faces";
-  const auto share = [pairs, of](std::size_t count) {
+  const std::size_t pairs = comparison.elements * comparison.segments;
+  const std::string word = one_element(comparison.kind);
+  const std::string of = comparison.segments > 1 ? "(" + word + ", segment) pairs"
+                         : pairs == 1            ? word
+                                                 : std::string(element_kind_name(comparison.kind));
+  const auto share = [pairs, &of](std::size_t count) {
     return fmt::format("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
                        100 * static_cast<double>(count) / static_cast<double>(pairs));
   };
@@ -93,13 +111,11 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     };
     add(row.flagged, share(row.flagged) + " evaluated in double");
     add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
-    add(row.quality.missing, counted(row.quality.missing, "(face, sample) pair", "(face, sample) pairs") +
-                                 " without a normal of the scheme left out");
+    add(row.quality.missing, sample_pairs(row.quality.missing, word) + " without a normal of the scheme left out");
   }
   if (!played.empty()) text += fmt::format("{}played step by step: {}\n", prefix, played);
   if (degenerate > 0)
-    text += fmt::format("{}degenerate: {} without an exact normal left out\n", prefix,
-                        counted(degenerate, "(face, sample) pair", "(face, sample) pairs"));
+    text += fmt::format("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
   return text;
 }
 
@@ -117,12 +133,13 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   table.add_column("max", "degrees", Align::kRight);
   const bool several_segments = input.comparison.segments > 1;
   if (several_segments) table.add_column("worst at", "segment", Align::kRight);
-  table.add_column(several_segments ? "" : "worst at", "face", Align::kRight);
+  const std::string element = one_element(input.comparison.kind);
+  table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
   table.add_column("", "t", Align::kRight);
-  table.add_column("memory", "B/face", Align::kRight);
+  table.add_column("memory", "B/" + element, Align::kRight);
   if (with_times) {
-    table.add_column("prepare", "ns/face", Align::kRight);
-    table.add_column("evaluate", "ns/face", Align::kRight);
+    table.add_column("prepare", "ns/" + element, Align::kRight);
+    table.add_column("evaluate", "ns/" + element, Align::kRight);
   }
 
   for (const SchemeComparison& row : input.comparison.schemes) {
@@ -174,7 +191,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
 std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
   Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "compare"}, {"schema", 1}};
   if (!several) json["input"] = input_json(inputs.front());
-  json["elements"] = "faces";
+  json["elements"] = element_kind_name(inputs.front().comparison.kind);
   json["samples"] = inputs.front().comparison.samples;
   if (several) {
     json["inputs"] = Json::array();
@@ -197,11 +214,11 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
       const Quality& q = row.quality;
-      text += fmt::format("{},{},{},{},faces,{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
-                          c.vertices, c.faces, c.segments, c.samples, csv_field(row.scheme), degrees(q.sum),
-                          row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "", degrees(q.mean()),
-                          degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element, q.max_at.t,
-                          q.degenerate, q.missing, row.fallbacks, row.flagged);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
+                          c.vertices, c.faces, c.segments, element_kind_name(c.kind), c.samples, csv_field(row.scheme),
+                          degrees(q.sum), row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "",
+                          degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
+                          q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
       if (with_times) text += fmt::format("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
       text += fmt::format("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,

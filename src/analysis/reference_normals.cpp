@@ -46,4 +46,15 @@ void reference_normals(const Segment& segment, IndexRange faces, double t, std::
     result[i] = vector_area_at(segment, segment.topology->face(faces.first + i), t);
 }
 
+Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept {
+  Vec3d sum;
+  double size = 0;
+  for (const std::uint32_t face : faces) {
+    const Vec3d n = vector_area_at(segment, segment.topology->face(face), t);
+    sum = sum + n;
+    size += max_abs(n);
+  }
+  return max_abs(sum) > kZeroShare * size ? sum : Vec3d{};
+}
+
 }  // namespace chronormal

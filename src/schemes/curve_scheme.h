@@ -8,6 +8,10 @@
 ///     auto at<S>(double t) const                         what all elements share at t
 ///     Vec3<S> evaluate<S>(Coefficients<S> c, shared)     the unit normal of one element
 ///
+/// where it looks at the face itself,
+///
+///     bool needs_faces = true
+///
 /// and, where the scheme can be played step by step,
 ///
 ///     std::size_t state_planes() const                       how many floats the state of an element has
@@ -203,6 +207,12 @@ class CurveScheme final : public Scheme {
     return without_direction_;
   }
 
+  [[nodiscard]] bool needs_faces() const noexcept override {
+    if constexpr (requires { policy_.needs_faces; })
+      return policy_.needs_faces;
+    else
+      return false;
+  }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return fallbacks_; }
   [[nodiscard]] std::size_t bytes() const noexcept override { return planes_.size() * sizeof(float); }
 

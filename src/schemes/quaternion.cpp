@@ -12,7 +12,7 @@ namespace {
 
 template <class MakeFrames>
 struct Quaternion : UniformArc {
-  explicit Quaternion(MakeFrames make) : make_frames(std::move(make)) {}
+  Quaternion(MakeFrames make, bool looks_at_faces) : make_frames(std::move(make)), needs_faces(looks_at_faces) {}
 
   void fit(ElementMotion& element, double* c) const {
     if (const auto frames = make_frames(element)) {
@@ -24,20 +24,22 @@ struct Quaternion : UniformArc {
   }
 
   MakeFrames make_frames;
+  bool needs_faces;
 };
 
 template <class MakeFrames>
-std::unique_ptr<Scheme> make_quaternion(MakeFrames make_frames) {
-  return std::make_unique<CurveScheme<Quaternion<MakeFrames>>>(Quaternion<MakeFrames>(std::move(make_frames)));
+std::unique_ptr<Scheme> make_quaternion(MakeFrames make_frames, bool needs_faces) {
+  return std::make_unique<CurveScheme<Quaternion<MakeFrames>>>(
+      Quaternion<MakeFrames>(std::move(make_frames), needs_faces));
 }
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_quaternion_matrix() { return make_quaternion(matrix_frames); }
-std::unique_ptr<Scheme> make_quaternion_edge() { return make_quaternion(edge_frames); }
-std::unique_ptr<Scheme> make_quaternion_polar() { return make_quaternion(polar_frames); }
+std::unique_ptr<Scheme> make_quaternion_matrix() { return make_quaternion(matrix_frames, true); }
+std::unique_ptr<Scheme> make_quaternion_edge() { return make_quaternion(edge_frames, true); }
+std::unique_ptr<Scheme> make_quaternion_polar() { return make_quaternion(polar_frames, true); }
 std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed) {
-  return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); });
+  return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); }, false);
 }
 
 }  // namespace chronormal

@@ -26,6 +26,8 @@ Edge<float> edge_of(const Segment& segment, std::uint32_t from, std::uint32_t to
 
 class Recompute final : public Scheme {
  public:
+  [[nodiscard]] bool needs_faces() const noexcept override { return true; }
+
   void prepare(const ElementBlock& block) override {
     segment_ = *block.segment;
     elements_ = block.elements;

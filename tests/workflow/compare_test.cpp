@@ -2,12 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "chronormal/io/builtin_morphs.h"
+#include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
+#include "tests/support/reference_elements.h"
 
 namespace chronormal {
 namespace {
@@ -148,8 +156,140 @@ TEST(Compare, progress_reaches_its_end) {
 TEST(Compare, refuses_what_makes_no_table) {
   const Motion motion = make_builtin_morph("soup").value();
   EXPECT_EQ(compare(motion, {{"linear"}, 1, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(compare(motion, {{}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(compare(motion, {{""}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
   EXPECT_EQ(compare(motion, {{"bicubic"}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
+}
+
+// Elements as the oracle has them: the corners of each, and the first vertex or corner that shows it.
+struct OracleElements {
+  reference::Mesh mesh;
+  std::vector<std::vector<reference::Corner>> corners;
+  std::vector<std::size_t> first_output;
+};
+
+OracleElements oracle_elements(const Motion& motion, const ElementOptions& options) {
+  OracleElements elements{test::reference_mesh(motion.segment(0)), {}, {}};
+  const reference::Mesh& mesh = elements.mesh;
+  const auto all = reference::corners_of(mesh);
+  const std::vector<std::size_t> point = reference::flood(mesh.from.size(), [&](std::size_t a, std::size_t b) {
+    return a == b || (options.weld && mesh.from[a] == mesh.from[b] && mesh.to[a] == mesh.to[b]);
+  });
+  const bool vertices = options.kind == ElementKind::kVertices;
+  const auto classes =
+      vertices ? point : reference::crease_classes(mesh, point, static_cast<reference::Real>(options.crease_angle));
+  for (std::size_t output = 0; output < classes.size(); ++output) {
+    if (classes[output] == elements.first_output.size()) elements.first_output.push_back(output);
+  }
+  elements.corners.resize(elements.first_output.size());
+  for (std::size_t c = 0; c < all.size(); ++c)
+    elements.corners[classes[vertices ? vertex_of(mesh, all[c]) : c]].push_back(all[c]);
+  return elements;
+}
+
+// What a scheme gives for an element at t, from exact unit normals at the times that it asks for.
+std::optional<reference::Vector> oracle_normal(const std::string& scheme,
+                                               const std::function<reference::Vector(reference::Real)>& exact,
+                                               reference::Real t) {
+  using reference::add, reference::scaled;
+  const auto nodes = [&exact](std::size_t count) {
+    std::vector<reference::Vector> result;
+    for (std::size_t i = 0; i < count; ++i)
+      result.push_back(exact(static_cast<reference::Real>(i) / static_cast<reference::Real>(count - 1)));
+    return result;
+  };
+  if (scheme == "polynomial") return exact(t);
+  if (scheme == "slerp") return reference::slerp(exact(0), exact(1), t);
+  if (scheme == "decasteljau:4") return reference::spherical_de_casteljau(nodes(4), t);
+  if (scheme == "linear") return add(scaled(1 - t, exact(0)), scaled(t, exact(1)));
+  const auto n = nodes(3);  // quadratic: Lagrange through three
+  return add(scaled((1 - t) * (1 - 2 * t), n[0]), add(scaled(4 * t * (1 - t), n[1]), scaled(t * (2 * t - 1), n[2])));
+}
+
+TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
+  const Motion torn = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.8, 21));
+  const std::vector<std::string> schemes = {"linear", "quadratic", "polynomial", "slerp", "decasteljau:4"};
+  constexpr std::size_t kSamples = 11;
+  for (const auto& [elements, count] : {std::pair{ElementOptions{ElementKind::kVertices, true, 180}, std::size_t{42}},
+                                        std::pair{ElementOptions{ElementKind::kVertices, false, 180}, std::size_t{240}},
+                                        std::pair{ElementOptions{ElementKind::kCorners, true, 20}, std::size_t{0}}}) {
+    CompareOptions options{schemes, kSamples, Access::kRandom, {}, elements};
+    const auto comparison = compare(torn, options).value();
+    const OracleElements oracle = oracle_elements(torn, elements);
+    EXPECT_EQ(comparison.kind, elements.kind);
+    EXPECT_EQ(comparison.vertices, 240U);
+    EXPECT_EQ(comparison.elements, oracle.corners.size());
+    if (count > 0)
+      EXPECT_EQ(comparison.elements, count);
+    else
+      EXPECT_TRUE(comparison.elements > 42 && comparison.elements < 240)
+          << comparison.elements << ": some edges are hard";
+    for (const std::string& scheme : schemes) {
+      reference::Real sum = 0, worst = 0;
+      std::size_t worst_element = 0, worst_sample = 0;
+      for (std::size_t e = 0; e < oracle.corners.size(); ++e) {
+        const auto exact = [&](reference::Real t) {
+          return reference::normalised(reference::element_normal(oracle.mesh, oracle.corners[e], "area", t));
+        };
+        for (std::size_t i = 0; i < kSamples; ++i) {
+          const reference::Real t = static_cast<reference::Real>(i) / (kSamples - 1);
+          const reference::Real error = reference::angle(exact(t), oracle_normal(scheme, exact, t).value());
+          sum += error;
+          if (error > worst) std::tie(worst, worst_element, worst_sample) = std::tuple{error, e, i};
+        }
+      }
+      const Quality& quality = row(comparison, scheme).quality;
+      EXPECT_EQ(quality.count, oracle.corners.size() * kSamples);
+      EXPECT_NEAR(static_cast<double>(quality.sum / static_cast<double>(quality.count)),
+                  static_cast<double>(sum) / static_cast<double>(quality.count), 1e-7)
+          << scheme;
+      if (scheme == "polynomial") continue;  // errs by rounding alone
+      EXPECT_NEAR(quality.sum, static_cast<double>(sum), 1e-6 * static_cast<double>(sum)) << scheme;
+      EXPECT_EQ(quality.max_at.element, oracle.first_output[worst_element]) << scheme << ": a vertex, or a corner";
+      EXPECT_NEAR(quality.max_at.t, static_cast<double>(worst_sample) / (kSamples - 1), 1e-12) << scheme;
+    }
+  }
+}
+
+TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
+  // Elements are 240 corners in 42 points, but the vertex with the largest error keeps its own number.
+  Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.01, 22));
+  for (std::size_t v = 0; v < 240; ++v) {  // the point of vertex 239 alone goes far
+    bool same = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      same = same && motion.keyframes[0].positions[3 * v + k] == motion.keyframes[0].positions[3 * 239 + k];
+    if (same) motion.keyframes[1].positions[3 * v] += 2;
+  }
+  CompareOptions options{{"linear"}, 5, Access::kRandom, {}, {ElementKind::kVertices}};
+  const std::size_t welded = compare(motion, options).value().schemes[0].quality.max_at.element;
+  options.elements.weld = false;
+  const std::size_t apart = compare(motion, options).value().schemes[0].quality.max_at.element;
+  EXPECT_LT(welded, 240U);
+  EXPECT_LT(apart, 240U);
+  // Welded it is the first of its copies: no vertex before it lies at its place.
+  for (std::size_t v = 0; v < welded; ++v) {
+    EXPECT_FALSE(std::equal(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
+                            motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
+                            motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * welded)))
+        << v;
+  }
+}
+
+TEST(Compare, schemes_that_need_faces_are_refused_for_others) {
+  const Motion motion = fixtures::smooth_morph(4);
+  for (const ElementKind kind : {ElementKind::kVertices, ElementKind::kCorners}) {
+    for (const char* const scheme : {"quaternion:edge", "quaternion:polar"}) {
+      EXPECT_TRUE(compare(motion, {{scheme}, 3, Access::kRandom, {}, {ElementKind::kFaces}}).ok());
+      const auto refused = compare(motion, {{"linear", scheme}, 3, Access::kRandom, {}, {kind}});
+      ASSERT_FALSE(refused.ok()) << scheme;
+      EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
+      EXPECT_NE(refused.error().message.find(scheme), std::string::npos) << refused.error().message;
+      EXPECT_NE(refused.error().message.find(element_kind_name(kind)), std::string::npos) << refused.error().message;
+    }
+    EXPECT_EQ(compare(motion, {{}, 3, Access::kRandom, {}, {kind}}).value().schemes.size(),
+              default_schemes(kind).size());
+  }
+  EXPECT_EQ(compare(motion, {{}, 3, Access::kRandom, {}, {ElementKind::kCorners, true, 181}}).error().code,
+            ErrorCode::kUsage);
 }
 
 TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {

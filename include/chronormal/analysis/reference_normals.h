@@ -5,6 +5,7 @@
 #ifndef CHRONORMAL_ANALYSIS_REFERENCE_NORMALS_H_
 #define CHRONORMAL_ANALYSIS_REFERENCE_NORMALS_H_
 
+#include <cstdint>
 #include <span>
 
 #include "chronormal/core/vec3.h"
@@ -17,6 +18,10 @@ namespace chronormal {
 /// it is made of (below 1e-10 of their products) that rounding would decide its direction. Threads: pure.
 /// result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
+
+/// n(t) of a vertex or corner: the sum of those of the faces that it belongs to, and (0, 0, 0) where that is below
+/// 1e-10 of their lengths. Threads: pure. t in [0, 1]
+[[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
 }  // namespace chronormal
 

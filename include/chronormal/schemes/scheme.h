@@ -36,7 +36,7 @@ namespace chronormal {
 /// What a scheme is prepared from: some elements of one segment, and their control normals.
 struct ElementBlock {
   const Segment* segment = nullptr;
-  IndexRange elements;                      ///< which faces: `recompute` and the frames of `quaternion` look at them
+  IndexRange elements;                      ///< which; schemes that need faces look at those of these indices
   std::span<const ControlNormals> normals;  ///< one per element; `recompute` does not read them
 };
 
@@ -83,6 +83,9 @@ class Scheme {
 
   /// Whether prepare() reads the control normals of the block.
   [[nodiscard]] virtual bool uses_control_normals() const noexcept { return true; }
+  /// Whether it looks at the faces themselves, so that elements can be nothing else; others take the control normals of
+  /// vertices and corners just as well, and read of the segment nothing but its index.
+  [[nodiscard]] virtual bool needs_faces() const noexcept { return false; }
   /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials by forward differences, arcs by a
   /// rotation per step. The state drifts with every step and is made anew every anchor_interval steps (0: never).
   /// Returns nothing where the scheme has no incremental form. The scheme must outlive the playback, unprepared anew.

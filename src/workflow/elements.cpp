@@ -1,0 +1,35 @@
+#include "chronormal/workflow/elements.h"
+
+#include <array>
+#include <cassert>
+#include <string>
+
+namespace chronormal {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNames = {"faces", "vertices", "corners"};
+
+}  // namespace
+
+std::string_view element_kind_name(ElementKind kind) noexcept { return kNames[static_cast<std::size_t>(kind)]; }
+
+Result<ElementKind> make_element_kind(std::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) return static_cast<ElementKind>(i);
+  }
+  return Error{ErrorCode::kUsage, "",
+               std::string("there are no elements '").append(name).append("'; there are faces, vertices, corners")};
+}
+
+Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options) {
+  assert(options.kind != ElementKind::kFaces);
+  const Points points = options.weld ? weld_coincident(motion) : separate_points(motion.topology.vertex_count());
+  if (options.kind == ElementKind::kVertices) return NormalGroups::of_vertices(motion.topology, points);
+  if (!options.group_of_face.empty())
+    return NormalGroups::by_smoothing_group(motion.topology, points, options.group_of_face);
+  if (options.normal_of_corner.count > 0)
+    return NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner);
+  return NormalGroups::by_crease_angle(motion, points, options.crease_angle);
+}
+
+}  // namespace chronormal
