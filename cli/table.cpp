@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/text.h"
+
 namespace chronormal::cli {
 
 void Table::add_column(std::string title, std::string unit, Align align) {
@@ -31,15 +33,15 @@ std::string Table::text() const {
 
   std::vector<std::size_t> widths(columns_.size(), 0);
   for (const auto& line : lines) {
-    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], width_of(line[c]));
   }
   std::string text;
   for (const auto& line : lines) {
     std::string row;
     for (std::size_t c = 0; c < line.size(); ++c) {
       if (c > 0) row += "  ";
-      row += columns_[c].align == Align::kLeft ? fmt::format("{:<{}}", line[c], widths[c])
-                                               : fmt::format("{:>{}}", line[c], widths[c]);
+      const std::string blanks(widths[c] - width_of(line[c]), ' ');
+      row += columns_[c].align == Align::kLeft ? line[c] + blanks : blanks + line[c];
     }
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + '\n';

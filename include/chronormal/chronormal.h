@@ -14,31 +14,47 @@
 #include "chronormal/motion/topology.h"  // which vertices make which face
 #include "chronormal/motion/validate.h"  // the check between data from outside and everything that computes
 
-#include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
-#include "chronormal/normals/evaluate.h"         // curves of normals: prepared once, evaluated at any t in float32
-#include "chronormal/normals/playback.h"         // the same, played at equal steps
+#include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
+#include "chronormal/normals/evaluate.h"           // curves of normals: prepared once, evaluated at any t in float32
+#include "chronormal/normals/group_normals.h"      // normals of vertices and corners, as sums of those of faces
+#include "chronormal/normals/normal_groups.h"      // which corners share a normal: vertices, creases, split normals
+#include "chronormal/normals/playback.h"           // the same, played at equal steps
+#include "chronormal/normals/polynomial_motion.h"  // vertices on curves: normals of degree 4 and 6
+#include "chronormal/normals/transform.h"          // rigid and affine motion: normals of meshes that move as a whole
+#include "chronormal/normals/weighting.h"          // area, angle, uniform ...: the weightings that tools use
+#include "chronormal/normals/weighting_fit.h"      // quadratics for those that are none, with a bound for each
+#include "chronormal/normals/weld.h"               // which vertices are one point
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
+#include "chronormal/analysis/collapse.h"           // when a normal vanishes inside a segment
 #include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
+#include "chronormal/analysis/surface.h"            // doubled vertices, edges, pieces, faces on each other
 
-#include "chronormal/io/builtin_morphs.h"  // morphs that need no file
-#include "chronormal/io/file.h"            // whole files in, and out without ever half a one
-#include "chronormal/io/maya_cache.h"      // Maya point caches: XML with .mc or .mcx
-#include "chronormal/io/md2.h"             // models of Quake II
-#include "chronormal/io/mdd.h"             // the point cache of LightWave
-#include "chronormal/io/mesh_frame.h"      // one keyframe as read from one file
-#include "chronormal/io/motion_files.h"    // motions from files of every format, and back
-#include "chronormal/io/motion_readers.h"  // the lists of motion and cache formats
-#include "chronormal/io/npz.h"             // NumPy arrays
-#include "chronormal/io/obj.h"             // Wavefront OBJ
-#include "chronormal/io/pc2.h"             // the point cache of 3ds Max
-#include "chronormal/io/ply.h"             // PLY: ascii and binary
-#include "chronormal/io/position_cache.h"  // positions over time, and the mesh that gives them faces
-#include "chronormal/io/readers.h"         // the list of mesh formats
-#include "chronormal/io/sequence.h"        // files, patterns and folders as one motion
+#include "chronormal/io/builtin_morphs.h"     // morphs that need no file
+#include "chronormal/io/file.h"               // whole files in, and out without ever half a one
+#include "chronormal/io/gltf_document.h"      // glTF 2.0 files: what is in them, and their meshes as arrays
+#include "chronormal/io/gltf_motion.h"        // their morph targets and animations as motions
+#include "chronormal/io/make_human_target.h"  // targets of MakeHuman: sparse deltas
+#include "chronormal/io/maya_cache.h"         // Maya point caches: XML with .mc or .mcx
+#include "chronormal/io/md2.h"                // models of Quake II
+#include "chronormal/io/mdd.h"                // the point cache of LightWave
+#include "chronormal/io/mesh_frame.h"         // one keyframe as read from one file
+#include "chronormal/io/motion_files.h"       // motions from files of every format, and back
+#include "chronormal/io/motion_readers.h"     // the lists of motion and cache formats
+#include "chronormal/io/npz.h"                // NumPy arrays
+#include "chronormal/io/obj.h"                // Wavefront OBJ
+#include "chronormal/io/pc2.h"                // the point cache of 3ds Max
+#include "chronormal/io/ply.h"                // PLY: ascii and binary
+#include "chronormal/io/position_cache.h"     // positions over time, and the mesh that gives them faces
+#include "chronormal/io/readers.h"            // the list of mesh formats
+#include "chronormal/io/sequence.h"           // files, patterns and folders as one motion
+#include "chronormal/io/targets.h"            // a base mesh and its morph targets
 
-#include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion
+#include "chronormal/workflow/compare.h"       // the paper's Table 1 for any motion
+#include "chronormal/workflow/elements.h"      // faces, vertices or corners, and their hard edges
+#include "chronormal/workflow/inspect.h"       // what a motion holds, and what in it is trouble for normals
+#include "chronormal/workflow/inspect_gltf.h"  // the same of a glTF file: stored normals, targets, tracks
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

@@ -1,0 +1,156 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/motion_files.h"
+#include "chronormal/io/motion_readers.h"
+#include "chronormal/io/readers.h"
+#include "cli/command.h"
+#include "cli/inspect_report.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  bool json = false;
+};
+
+void take_motion(const Motion& motion, Inspected& result, Progress& progress) {
+  result.inspection = inspect(motion, progress.callback("inspecting"));
+  progress.clear();
+  for (const Motion::Keyframe& keyframe : motion.keyframes) result.keyframe_names.push_back(keyframe.name);
+  result.segments = motion.segments;
+}
+
+Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptions& options, Progress& progress) {
+  const std::string& path = options.files.front();
+  std::optional<std::string> folder;
+  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
+  auto opened = GltfDocument::read(file->bytes(), path == "-" ? "<stdin>" : short_name(path), folder,
+                                   {.allow_external = options.allow_external});
+  if (!opened) return opened.error();
+  GltfDocument document = std::move(opened).value();
+  auto inspection = inspect(document);
+  if (!inspection) return inspection.error();
+  const auto& primitives = inspection.value().primitives;
+  const bool moves = std::any_of(primitives.begin(), primitives.end(), [](const auto& p) { return p.moving > 0; });
+  Inspected result;
+  result.name = path;
+  std::vector<GltfPart> parts;
+  double curve_error = 0;
+  if (!primitives.empty() || !options.animation.empty()) {
+    GltfMotionOptions motion_options;
+    motion_options.animation = options.animation;
+    const bool is_mesh = !moves && options.animation.empty();
+    auto read = is_mesh ? read_gltf_mesh(document) : read_gltf_motion(document, motion_options);
+    if (!read) return read.error();
+    take_motion(read.value().motion, result, progress);
+    result.is_star = moves && options.animation.empty();
+    parts = std::move(read.value().parts);
+    curve_error = read.value().curve_error;
+  }
+  result.gltf =
+      InspectedGltf{std::move(file), std::move(document), std::move(inspection).value(), std::move(parts), curve_error};
+  return result;
+}
+
+// Whether a file is glTF, by its name or else by its content.
+bool is_gltf(const std::string& path, std::string_view bytes) {
+  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
+  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
+}
+
+// What is on the standard input, which can be read only once: a whole motion, or a mesh.
+Result<Motion> read_stream(std::string_view bytes, double frames_per_second) {
+  const std::string name = "<stdin>";
+  for (const MotionReader& reader : motion_readers()) {
+    if (reader.recognises(bytes)) return reader.read(bytes, name, frames_per_second);
+  }
+  auto mesh = read_mesh(bytes, name);
+  if (!mesh) return mesh.error();
+  MeshFrame frame = std::move(mesh).value();
+  return Motion{std::move(frame.topology), {{std::move(frame.positions), 0, name}}, {}};
+}
+
+bool is_one_file(const InputOptions& options) {
+  if (options.files.size() != 1 || !options.base.empty()) return false;
+  const std::string& path = options.files.front();
+  std::error_code code;
+  return path == "-" || is_gltf_file(path) || std::filesystem::is_regular_file(path, code);
+}
+
+Result<NamedMotion> read_moving_or_still(const InputOptions& options, Progress& progress) {
+  if (options.files.empty() || !options.base.empty()) return read_input(options, progress);
+  auto motion = read_motion_or_mesh(options.files, options.motion_options(), progress.callback("reading"));
+  progress.clear();
+  if (!motion) return motion.error();
+  return NamedMotion{name_of_files(options.files), std::move(motion).value()};
+}
+
+Result<Inspected> inspect_input(const InputOptions& options, Progress& progress) {
+  if (const Status status = check_input(options); !status) return status.error();
+  Inspected result;
+  if (is_one_file(options)) {
+    const std::string& path = options.files.front();
+    auto opened = FileBytes::open(path);
+    if (!opened) return opened.error();
+    auto file = std::make_unique<FileBytes>(std::move(opened).value());
+    if (is_gltf(path, file->bytes())) return inspect_gltf(std::move(file), options, progress);
+    if (path == "-") {
+      if (!options.animation.empty()) return Error{ErrorCode::kUsage, "--animation", "only a glTF file has animations"};
+      const auto motion = read_stream(file->bytes(), options.frames_per_second);
+      if (!motion) return motion.error();
+      result.name = path;
+      take_motion(motion.value(), result, progress);
+      return result;
+    }
+  }
+  const auto input = read_moving_or_still(options, progress);
+  if (!input) return input.error();
+  result.name = input.value().name;
+  take_motion(input.value().motion, result, progress);
+  result.is_star = !options.base.empty();
+  return result;
+}
+
+int run(const Options& options) {
+  if (const Status output = check_output(options.common.output, options.common.force); !output)
+    return report("inspect", output.error());
+  Progress progress(options.common.quiet);
+  const auto inspected = inspect_input(options.input, progress);
+  if (!inspected) return report("inspect", inspected.error());
+  const std::string text = options.json ? inspect_json(inspected.value()) : inspect_text(inspected.value());
+  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+    return report("inspect", written.error());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_inspect_command(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand("inspect", "What is in a file, and what in it will trouble you");
+  command->group("Commands");
+  auto options = std::make_shared<Options>();
+  options->input.add_to(*command);
+  command->add_flag("--json", options->json, "one JSON object");
+  options->common.add_to(*command, false);
+  command->footer(
+      "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
+      "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
+      "It does not change the exit code.\n"
+      "\nExamples:\n"
+      "  chronormal inspect head.glb\n"
+      "  chronormal inspect walk/ --json\n"
+      "  chronormal inspect --base face.obj targets/\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,56 @@
+/// What a mesh is made of, apart from how it moves: doubled vertices, edges, pieces, faces that lie on each other.
+///
+/// Files double vertices, for texture seams or hard edges, and a surface that is whole then looks torn. So everything
+/// here counts points (normals/weld.h) and not vertices. An edge has two of them, and is
+///
+///     open           if one face has it: the border of the surface
+///     non-manifold   if more than two faces have it
+///     turned         if two faces have it and go along it the same way: one of them is wound the wrong way round
+///     seam           if two faces have it, but not by the same vertices: the file keeps it apart
+///
+/// Threads    pure.
+/// Cost       sorting within the edges and faces of each point: near linear.
+#ifndef CHRONORMAL_ANALYSIS_SURFACE_H_
+#define CHRONORMAL_ANALYSIS_SURFACE_H_
+
+#include <cstddef>
+
+#include "chronormal/motion/topology.h"
+#include "chronormal/normals/weld.h"
+
+namespace chronormal {
+
+/// How many were found, and the lowest index among them.
+struct Found {
+  std::size_t count = 0;
+  std::size_t first = 0;  ///< 0 where there are none
+
+  void add(std::size_t index, std::size_t how_many = 1) noexcept {
+    first = count == 0 || index < first ? index : first;
+    count += how_many;
+  }
+  friend bool operator==(const Found&, const Found&) = default;
+};
+
+/// The vertices that are copies: those at the point of a lower one.
+[[nodiscard]] Found find_copies(const Points& points);
+
+/// The numbers that the page above explains. The first of an edge, or of a pair, is the lowest face that has one.
+struct Surface {
+  std::size_t edges = 0;
+  Found open_edges, non_manifold_edges, turned_edges, seam_edges;
+  std::size_t pieces = 0;  ///< parts without a common point
+  Found unreferenced;      ///< vertices that no face has
+  Found repeating_faces;   ///< faces that have a point twice: a triangle has no area then
+  Found doubled_faces;     ///< faces with the points of a lower one, wound the same way
+  Found back_to_back;      ///< pairs of faces with the same points, wound against each other
+  std::size_t triangles = 0;
+  std::size_t most_corners = 0;  ///< of one face
+};
+
+/// Looks at a mesh of which these vertices are one point.
+[[nodiscard]] Surface survey(const Topology& topology, const Points& points);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_ANALYSIS_SURFACE_H_

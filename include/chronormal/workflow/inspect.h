@@ -1,0 +1,86 @@
+/// What a motion holds, and what in it will trouble whoever needs its normals.
+///
+/// Counts of faces over keyframes or segments come as Places: how many (face, keyframe) pairs there are, how many
+/// different faces take part, and the first pair, by keyframe or segment and then by face.
+///
+/// Units      positions as in the file; radians; seconds; bytes.
+#ifndef CHRONORMAL_WORKFLOW_INSPECT_H_
+#define CHRONORMAL_WORKFLOW_INSPECT_H_
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "chronormal/analysis/surface.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// Faces at keyframes or in segments.
+struct Places {
+  std::size_t pairs = 0;
+  std::size_t faces = 0;
+  std::size_t first_at = 0;    ///< the keyframe or segment of the first pair
+  std::size_t first_face = 0;  ///< its face
+  double first_t = 0;          ///< where in the segment, for what has an instant there
+};
+
+/// The largest of something, and the first place where it is.
+struct Largest {
+  double value = 0;
+  std::size_t segment = 0, element = 0;  ///< element: a vertex or a face
+};
+
+/// One segment: for a star of targets, one target.
+struct SegmentInspection {
+  std::size_t moved_vertices = 0;
+  Largest motion;                   ///< how far a vertex goes
+  Largest turn;                     ///< the angle between the normals of a face at both ends
+  std::size_t turned_far = 0;       ///< faces of which that is more than 90 degrees
+  std::size_t collapses = 0;        ///< faces that have no area at an instant inside
+  std::size_t turned_over = 0;      ///< those that come out of it with the opposite normal
+  std::size_t without_normals = 0;  ///< faces that have no area throughout
+  std::size_t flagged = 0;          ///< faces that are evaluated in double (NormalCurves)
+  std::size_t bytes = 0;            ///< of its NormalCurves
+};
+
+struct Inspection {
+  std::size_t vertices = 0, faces = 0, keyframes = 0;
+  double first_time = 0, last_time = 0;  ///< of keyframes
+  Vec3d low, high;                       ///< bounding box over all keyframes
+  double diagonal = 0;                   ///< of that box
+  Largest motion, turn;                  ///< over all segments
+  Found doubled;                         ///< vertices that are at the place of a lower one in all keyframes
+  Found doubled_at_start;                ///< in keyframe 0; never fewer
+  Surface surface;
+  std::vector<SegmentInspection> segments;
+
+  Places no_area;           ///< keyframes: no area at all
+  Places slivers;           ///< keyframes: see inspect()
+  Places collapses;         ///< segments: the normal vanishes inside, or nearly (analysis/collapse.h)
+  Places turned_over;       ///< segments: those of which the normal is opposed afterwards
+  Places turned_far;        ///< segments: the normals at both ends are more than 90 degrees apart
+  Places without_normals;   ///< segments: no area throughout, so there is no direction to give
+  std::size_t flagged = 0;  ///< (face, segment) pairs that are evaluated in double
+
+  std::size_t keyframe_bytes = 0;  ///< positions of all keyframes
+  std::size_t normal_bytes = 0;    ///< NormalCurves of all segments at once
+};
+
+/// Inspects a motion, or a mesh: a motion of one keyframe and no segment. progress(done, total), if given, is called
+/// from the calling thread.
+///
+/// A face is a sliver at a keyframe where it has an area, but so small a one that it may be nothing but the rounding of
+/// the positions to float32: where moving them by half a unit in the last place could turn its normal any way.
+///
+/// Threads    uses all (core/parallel.h); the result is the same on any number of them.
+/// Memory     about 120 bytes a face for each thread; nothing grows with faces x segments.
+/// Cost       control normals and NormalCurves of every segment, once; the rest is near linear.
+/// Precondition: the motion is valid (motion/validate.h), but that it may have no segment
+[[nodiscard]] Inspection inspect(const Motion& motion,
+                                 const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_INSPECT_H_

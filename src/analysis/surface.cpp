@@ -1,0 +1,188 @@
+#include "chronormal/analysis/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <numeric>
+#include <tuple>
+
+namespace chronormal {
+namespace {
+
+// Calls with_group(first, last) for every run of equal elements of a sorted range.
+template <class Iterator, class Equal, class WithGroup>
+void for_each_group(Iterator first, Iterator last, Equal equal, WithGroup with_group) {
+  while (first != last) {
+    Iterator next = first;
+    while (next != last && equal(*first, *next)) ++next;
+    with_group(first, next);
+    first = next;
+  }
+}
+
+// Items in buckets: those of bucket b are items[offsets[b]] ... items[offsets[b + 1] - 1], in the order of visits.
+template <class Item>
+struct Buckets {
+  std::vector<std::size_t> offsets;
+  std::vector<Item> items;
+
+  // visit(put) calls put(bucket, item) for every item, and does the same on both of its calls.
+  template <class Visit>
+  Buckets(std::size_t count, Visit visit) : offsets(count + 1, 0) {
+    visit([this](std::size_t bucket, const Item&) { ++offsets[bucket + 1]; });
+    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+    items.resize(offsets.back());
+    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+    visit([this, &next](std::size_t bucket, const Item& item) { items[next[bucket]++] = item; });
+  }
+};
+
+// A face at an edge, from the lower point, whose bucket it is in, to the higher one.
+struct EdgeUse {
+  std::uint32_t far = 0;
+  std::uint32_t face = 0;
+  std::uint32_t near_vertex = 0, far_vertex = 0;  // as the face has them
+  bool is_forward = false;                        // the face goes from near to far
+};
+
+void survey_edges(const Topology& topology, const Points& points, Surface& surface) {
+  Buckets<EdgeUse> uses(points.count, [&](auto put) {
+    for (std::size_t f = 0; f < topology.face_count(); ++f) {
+      const auto face = topology.face(f);
+      for (std::size_t c = 0; c < face.size(); ++c) {
+        const std::uint32_t a = face[c], b = face[c + 1 == face.size() ? 0 : c + 1];
+        const std::uint32_t p = points.point_of_vertex[a], q = points.point_of_vertex[b];
+        if (p < q) put(p, EdgeUse{q, static_cast<std::uint32_t>(f), a, b, true});
+        if (p > q) put(q, EdgeUse{p, static_cast<std::uint32_t>(f), b, a, false});
+      }
+    }
+  });
+  const auto same_edge = [](const EdgeUse& a, const EdgeUse& b) { return a.far == b.far; };
+  for (std::size_t near = 0; near < points.count; ++near) {
+    const auto begin = uses.items.begin() + static_cast<std::ptrdiff_t>(uses.offsets[near]);
+    const auto end = uses.items.begin() + static_cast<std::ptrdiff_t>(uses.offsets[near + 1]);
+    std::sort(begin, end, [](const EdgeUse& a, const EdgeUse& b) {
+      return std::tie(a.far, a.face, a.is_forward) < std::tie(b.far, b.face, b.is_forward);
+    });
+    for_each_group(begin, end, same_edge, [&surface](auto first, auto last) {
+      ++surface.edges;
+      if (last - first == 1) surface.open_edges.add(first->face);
+      if (last - first > 2) surface.non_manifold_edges.add(first->face);
+      if (last - first != 2) return;
+      const EdgeUse &a = *first, &b = *(first + 1);
+      if (a.is_forward == b.is_forward) surface.turned_edges.add(a.face);
+      if (a.near_vertex != b.near_vertex || a.far_vertex != b.far_vertex) surface.seam_edges.add(a.face);
+    });
+  }
+}
+
+// Whether the face, seen from its lowest point, goes on to the lower of its two neighbours: two triangles over the same
+// points are wound the same way exactly if they agree in this.
+bool starts_low(std::span<const std::uint32_t> face, const Points& points) {
+  const auto point = [&](std::size_t corner) { return points.point_of_vertex[face[corner % face.size()]]; };
+  std::size_t lowest = 0;
+  for (std::size_t c = 1; c < face.size(); ++c) lowest = point(c) < point(lowest) ? c : lowest;
+  return point(lowest + 1) < point(lowest + face.size() - 1);
+}
+
+void survey_faces(const Topology& topology, const Points& points, Surface& surface) {
+  // The points of every face, sorted; `starts` is where those of a face begin.
+  std::vector<std::uint32_t> corners;
+  corners.reserve(topology.corner_count());
+  std::vector<std::size_t> starts = {0};
+  starts.reserve(topology.face_count() + 1);
+  std::vector<bool> repeats(topology.face_count());
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const auto face = topology.face(f);
+    for (const std::uint32_t vertex : face) corners.push_back(points.point_of_vertex[vertex]);
+    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(starts.back());
+    std::sort(first, corners.end());
+    if (std::adjacent_find(first, corners.end()) != corners.end()) {
+      repeats[f] = true;
+      surface.repeating_faces.add(f);
+    }
+    starts.push_back(corners.size());
+    surface.triangles += face.size() == 3 ? 1U : 0U;
+    surface.most_corners = std::max(surface.most_corners, face.size());
+  }
+  const auto corners_of = [&](std::uint32_t f) {
+    return std::span<const std::uint32_t>(corners).subspan(starts[f], starts[f + 1] - starts[f]);
+  };
+  const auto same_corners = [&](std::uint32_t a, std::uint32_t b) {
+    return std::equal(corners_of(a).begin(), corners_of(a).end(), corners_of(b).begin(), corners_of(b).end());
+  };
+
+  Buckets<std::uint32_t> faces(points.count, [&](auto put) {
+    for (std::size_t f = 0; f < topology.face_count(); ++f) {
+      if (!repeats[f]) put(corners[starts[f]], static_cast<std::uint32_t>(f));
+    }
+  });
+  for (std::size_t lowest = 0; lowest < points.count; ++lowest) {
+    const auto begin = faces.items.begin() + static_cast<std::ptrdiff_t>(faces.offsets[lowest]);
+    const auto end = faces.items.begin() + static_cast<std::ptrdiff_t>(faces.offsets[lowest + 1]);
+    std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
+      const auto p = corners_of(a), q = corners_of(b);
+      if (!same_corners(a, b)) return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+      return a < b;
+    });
+    for_each_group(begin, end, same_corners, [&](auto first, auto last) {
+      std::array<std::size_t, 2> seen{};  // by the way they are wound
+      for (auto f = first; f != last; ++f) {
+        std::size_t& alike = seen[starts_low(topology.face(*f), points) ? 1 : 0];
+        if (alike++ > 0) surface.doubled_faces.add(*f);
+      }
+      if (const std::size_t pairs = std::min(seen[0], seen[1]); pairs > 0) surface.back_to_back.add(*first, pairs);
+    });
+  }
+}
+
+void survey_pieces(const Topology& topology, const Points& points, Surface& surface) {
+  std::vector<std::uint32_t> parent(points.count);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root_of = [&parent](std::uint32_t p) {
+    while (parent[p] != p) {
+      parent[p] = parent[parent[p]];
+      p = parent[p];
+    }
+    return p;
+  };
+  std::vector<bool> is_referenced(topology.vertex_count()), has_face(points.count);
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const auto face = topology.face(f);
+    for (const std::uint32_t vertex : face) {
+      is_referenced[vertex] = true;
+      has_face[points.point_of_vertex[vertex]] = true;
+      const std::uint32_t a = root_of(points.point_of_vertex[face[0]]), b = root_of(points.point_of_vertex[vertex]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::size_t p = 0; p < points.count; ++p) surface.pieces += has_face[p] && parent[p] == p ? 1U : 0U;
+  for (std::size_t v = 0; v < is_referenced.size(); ++v) {
+    if (!is_referenced[v]) surface.unreferenced.add(v);
+  }
+}
+
+}  // namespace
+
+Found find_copies(const Points& points) {
+  Found copies;
+  std::uint32_t next = 0;  // points are numbered in the order of their first vertices
+  for (std::size_t v = 0; v < points.point_of_vertex.size(); ++v) {
+    if (points.point_of_vertex[v] == next)
+      ++next;
+    else
+      copies.add(v);
+  }
+  return copies;
+}
+
+Surface survey(const Topology& topology, const Points& points) {
+  assert(points.point_of_vertex.size() == topology.vertex_count());
+  Surface surface;
+  survey_edges(topology, points, surface);
+  survey_faces(topology, points, surface);
+  survey_pieces(topology, points, surface);
+  return surface;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,118 @@
+#include "chronormal/workflow/inspect_gltf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/weld.h"
+
+namespace chronormal {
+namespace {
+
+// Signed bytes round a component by up to 1 / 254, so a length by up to sqrt(3) times that.
+constexpr double kLengthTolerance = 1.7320508075688772 / 254;
+
+Status inspect_vertices(GltfGeometry geometry, GltfPrimitiveInspection& result) {
+  const std::size_t vertex_count = geometry.positions.size() / 3;
+  const auto normals = VectorView<const float>::packed(geometry.normals.data(), geometry.normals.size() / 3);
+  for (std::size_t v = 0; v < normals.count; ++v) {
+    if (!(std::fabs(length(to_double(normals[v])) - 1) <= kLengthTolerance)) ++result.off_length;
+  }
+  auto topology = Topology::triangles(vertex_count, std::move(geometry.corners));
+  if (!topology) return topology.error();
+  const Points points = weld_coincident({std::move(topology).value(), {{std::move(geometry.positions), 0, ""}}, {}});
+  std::vector<std::size_t> first_vertex(points.count, vertex_count);
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    std::size_t& first = first_vertex[points.point_of_vertex[v]];
+    if (first == vertex_count) {
+      first = v;
+      continue;
+    }
+    ++result.doubled;
+    if (normals.count == 0) continue;
+    const double angle = angle_between(to_double(normals[v]), to_double(normals[first]));
+    if (angle * kDegreesPerRadian > kSplitNormalTolerance) ++result.split;
+  }
+  return Success{};
+}
+
+Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, std::size_t mesh,
+                                                  std::size_t primitive) {
+  const GltfPrimitive& described = document.meshes()[mesh].primitives[primitive];
+  GltfPrimitiveInspection result;
+  result.mesh = mesh;
+  result.primitive = primitive;
+  for (const GltfPrimitive::Target& target : described.targets) {
+    if (!target.positions) continue;
+    ++result.moving;
+    result.moving_normals += target.normals ? 1U : 0U;
+    result.moving_tangents += target.tangents ? 1U : 0U;
+  }
+  auto geometry = document.geometry(mesh, primitive, {.shading = true, .targets = false});
+  if (!geometry) return geometry.error();
+  result.triangles = geometry.value().corners.size() / 3;
+  if (Status status = inspect_vertices(std::move(geometry).value(), result); !status) return status.error();
+  return result;
+}
+
+Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::size_t animation, std::size_t track) {
+  const auto keys = document.keys(animation, track);
+  if (!keys) return keys.error();
+  GltfTrackInspection result;
+  result.animation = animation;
+  result.track = track;
+  const std::vector<double>&times = keys.value().times, &values = keys.value().values;
+  if (times.empty()) return result;
+  result.first_time = times.front();
+  result.last_time = times.back();
+  // A cubic spline has three rows a key, of which the middle one is the weights.
+  const bool is_cubic = document.animations()[animation].tracks[track].interpolation == GltfInterpolation::kCubicSpline;
+  const std::size_t rows = times.size() * (is_cubic ? 3 : 1), width = values.size() / rows;
+  bool is_first = true;
+  for (std::size_t row = is_cubic ? 1U : 0U; row < rows; row += is_cubic ? 3 : 1) {
+    for (const double weight : std::span(values).subspan(row * width, width)) {
+      result.lowest = is_first ? weight : std::min(result.lowest, weight);
+      result.highest = is_first ? weight : std::max(result.highest, weight);
+      is_first = false;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Result<GltfInspection> inspect(const GltfDocument& document) {
+  GltfInspection result;
+  const std::vector<GltfMesh>& meshes = document.meshes();
+  result.instances.resize(meshes.size());
+  for (const GltfNode& node : document.nodes()) {
+    if (!node.mesh) continue;
+    ++result.instances[*node.mesh];
+    result.skinned_nodes += node.has_skin ? 1U : 0U;
+  }
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    for (std::size_t p = 0; p < meshes[m].primitives.size(); ++p) {
+      if (!meshes[m].primitives[p].has_faces()) {
+        ++result.without_faces;
+        continue;
+      }
+      auto primitive = inspect_primitive(document, m, p);
+      if (!primitive) return primitive.error();
+      result.primitives.push_back(primitive.value());
+    }
+  }
+  for (std::size_t a = 0; a < document.animations().size(); ++a) {
+    for (std::size_t t = 0; t < document.animations()[a].tracks.size(); ++t) {
+      auto track = inspect_track(document, a, t);
+      if (!track) return track.error();
+      result.tracks.push_back(track.value());
+    }
+  }
+  return result;
+}
+
+}  // namespace chronormal

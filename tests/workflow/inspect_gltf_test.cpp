@@ -1,0 +1,97 @@
+#include "chronormal/workflow/inspect_gltf.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/support/gltf_builder.h"
+
+namespace chronormal {
+namespace {
+
+using test::GltfBuilder, test::GltfFixture;
+
+GltfInspection inspect_document(const GltfBuilder& builder) {
+  const GltfFixture file(builder);
+  EXPECT_TRUE(file.ok()) << file.error();
+  auto found = inspect(*file);
+  EXPECT_TRUE(found.ok()) << found.error().text();
+  return std::move(found).value();
+}
+
+TEST(InspectGltf, targets_with_and_without_normals_are_counted) {
+  GltfBuilder builder = test::quad_document();
+  auto& primitive = builder.json["meshes"][0]["primitives"][0];
+  const std::vector<float> up = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, none(12, 0.0F);
+  primitive["attributes"]["NORMAL"] = builder.add_accessor("VEC3", up);
+  primitive["targets"][1]["NORMAL"] = builder.add_accessor("VEC3", none);
+  const GltfInspection found = inspect_document(builder);
+  ASSERT_EQ(found.primitives.size(), 1U);
+  EXPECT_EQ(found.primitives[0].triangles, 2U);
+  EXPECT_EQ(found.primitives[0].moving, 2U);
+  EXPECT_EQ(found.primitives[0].moving_normals, 1U);
+  EXPECT_EQ(found.primitives[0].moving_tangents, 0U);
+  EXPECT_EQ(found.primitives[0].off_length, 0U);
+  EXPECT_EQ(found.primitives[0].doubled, 0U);
+  EXPECT_EQ(found.instances, std::vector<std::size_t>{1});
+  EXPECT_EQ(found.skinned_nodes, 0U);
+}
+
+TEST(InspectGltf, normals_that_differ_at_one_place_are_split_and_wrong_lengths_are_counted) {
+  // 2 is at the place of 0 with the same normal, 3 with another, 4 with one that is only rounded.
+  GltfBuilder builder;
+  const std::vector<float> places = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0F, 0, 0, 1, 0};
+  const std::vector<float> normals = {0, 0, 1, 0, 0, 1.2F, 0, 0, 1, 0, 1, 0, 0, 1e-4F, 1, 0, 0, 0};
+  auto primitive = GltfBuilder::primitive(builder.add_positions(places),
+                                          builder.add_indices<std::uint8_t>({0, 1, 5, 2, 1, 5, 3, 4, 5}));
+  primitive["attributes"]["NORMAL"] = builder.add_accessor("VEC3", normals);
+  builder.add_mesh(primitive);
+  const GltfInspection found = inspect_document(builder);
+  EXPECT_EQ(found.primitives[0].doubled, 3U);
+  EXPECT_EQ(found.primitives[0].split, 1U);
+  EXPECT_EQ(found.primitives[0].off_length, 2U);
+  EXPECT_EQ(found.instances, std::vector<std::size_t>{0});
+}
+
+TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
+  GltfBuilder builder = test::quad_document();
+  const std::size_t animation = builder.add_animation("a");
+  builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, -0.5F});
+  const std::size_t spline = builder.add_animation("b");
+  // Tangents of 9 are no weights.
+  builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 9, 9, 9, 9, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
+  const GltfInspection found = inspect_document(builder);
+  ASSERT_EQ(found.tracks.size(), 2U);
+  EXPECT_EQ(found.tracks[0].first_time, 0.5);
+  EXPECT_EQ(found.tracks[0].last_time, 2);
+  EXPECT_EQ(found.tracks[0].lowest, -0.5);
+  EXPECT_EQ(found.tracks[0].highest, 1.5);
+  EXPECT_EQ(found.tracks[1].animation, 1U);
+  EXPECT_EQ(found.tracks[1].lowest, 0);
+  EXPECT_EQ(found.tracks[1].highest, 1);
+}
+
+TEST(InspectGltf, points_skins_and_instances_are_counted) {
+  GltfBuilder builder = test::quad_document();
+  builder.add_primitive(0, GltfBuilder::primitive(0, std::nullopt, {{{"POSITION", 2}}, {{"POSITION", 3}}}, 0));
+  builder.add_node(0);
+  const std::size_t joint = builder.add("nodes", GltfBuilder::Json::object());
+  builder.add("skins", {{"joints", {joint}}});
+  builder.add_node(0, {{"skin", 0}});
+  const GltfInspection found = inspect_document(builder);
+  EXPECT_EQ(found.primitives.size(), 1U);
+  EXPECT_EQ(found.without_faces, 1U);
+  EXPECT_EQ(found.instances, std::vector<std::size_t>{3});
+  EXPECT_EQ(found.skinned_nodes, 1U);
+}
+
+TEST(InspectGltf, broken_geometry_is_an_error) {
+  GltfBuilder builder = test::quad_document();
+  builder.json["accessors"][1]["count"] = 60000;
+  const GltfFixture file(builder);
+  EXPECT_TRUE(!file.ok() || !inspect(*file).ok());
+}
+
+}  // namespace
+}  // namespace chronormal
