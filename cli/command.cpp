@@ -53,6 +53,7 @@ void InputOptions::add_to(CLI::App& command) {
                   "every morph target is a segment")
       ->type_name("NAME")
       ->check([](const std::string& name) { return name.empty() ? "it must be a name or an index" : ""; }, "");
+  command.add_flag("--world", world, "vertices of a glTF file are where its nodes put them");
   command.add_flag("--allow-external", allow_external, "a glTF file may name files outside its folder");
   command.add_option("--sample", samples, morph_list())->type_name("NAME")->take_all()->allow_extra_args(false);
   command.add_option("--fps", frames_per_second, "frames per second of the keyframes (default 1)")->type_name("N");

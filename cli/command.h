@@ -35,8 +35,9 @@ struct InputOptions {
   std::string base;       ///< the mesh of which files are morph targets; empty where there is none
   std::string animation;  ///< of a glTF file; empty: its morph targets
   bool allow_external = false;
+  bool world = false;  ///< vertices of a glTF file are where its nodes put them
 
-  [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external}; }
+  [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external, world}; }
 
   void add_to(CLI::App& command);
 };
@@ -69,6 +70,7 @@ int report(const std::string& command, const Error& error);
 void add_compare_command(CLI::App& program, int& exit_code);
 void add_convert_command(CLI::App& program, int& exit_code);
 void add_inspect_command(CLI::App& program, int& exit_code);
+void add_sample_command(CLI::App& program, int& exit_code);
 
 }  // namespace chronormal::cli
 

@@ -48,8 +48,9 @@ Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptio
   if (!primitives.empty() || !options.animation.empty()) {
     GltfMotionOptions motion_options;
     motion_options.animation = options.animation;
+    motion_options.world = options.world;
     const bool is_mesh = !moves && options.animation.empty();
-    auto read = is_mesh ? read_gltf_mesh(document) : read_gltf_motion(document, motion_options);
+    auto read = is_mesh ? read_gltf_mesh(document, motion_options) : read_gltf_motion(document, motion_options);
     if (!read) return read.error();
     take_motion(read.value().motion, result, progress);
     result.is_star = moves && options.animation.empty();

@@ -37,6 +37,7 @@ int main(int argument_count, char** arguments) {
     add_compare_command(program, exit_code);
     add_convert_command(program, exit_code);
     add_inspect_command(program, exit_code);
+    add_sample_command(program, exit_code);
     // A word that is no command deserves a better answer than the parser's.
     const std::string_view first = argument_count > 1 ? arguments[1] : "";
     if (const std::string names = commands_unless_known(program, first); !names.empty()) {

@@ -1,10 +1,21 @@
 // Fuzz target of the OBJ reader: whatever the bytes are, the result is an error with a place, or a mesh that is valid
-// and no larger than the bytes can have said.
+// and no larger than the bytes can have said. How it is shaded belongs to the same mesh.
 #include "chronormal/io/obj.h"
 #include "mesh_invariants.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  chronormal::fuzz::check_mesh_invariants(chronormal::read_obj(bytes, "fuzz.obj"), size);
+  const auto mesh = chronormal::read_obj(bytes, "fuzz.obj");
+  chronormal::fuzz::check_mesh_invariants(mesh, size);
+  const auto shading = chronormal::read_obj_shading(bytes, "fuzz.obj");
+  if (!shading) {
+    chronormal::fuzz::require(!shading.error().place.empty(), "an error has a place");
+    return 0;
+  }
+  const auto& [topology, groups, normals] = shading.value();
+  chronormal::fuzz::require(mesh.ok() && topology == mesh.value().topology, "the shading is that of the mesh");
+  chronormal::fuzz::require(groups.empty() || groups.size() == topology.face_count(), "each face has a group");
+  chronormal::fuzz::require(normals.empty() || normals.size() == 3 * topology.corner_count(),
+                            "each corner has a normal");
   return 0;
 }

@@ -56,5 +56,7 @@
 #include "chronormal/workflow/elements.h"      // faces, vertices or corners, and their hard edges
 #include "chronormal/workflow/inspect.h"       // what a motion holds, and what in it is trouble for normals
 #include "chronormal/workflow/inspect_gltf.h"  // the same of a glTF file: stored normals, targets, tracks
+#include "chronormal/workflow/sample.h"        // normals at chosen times, or at weights of blend shapes
+#include "chronormal/workflow/sample_files.h"  // and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

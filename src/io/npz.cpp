@@ -20,6 +20,8 @@ namespace {
 using npy::Array;
 using npy::Kind;
 
+constexpr std::endian kOrder = std::endian::little;  // of what is written
+
 std::string element_place(const std::string& place, std::initializer_list<std::size_t> indices) {
   std::string text = place + "[";
   for (const std::size_t index : indices) text += (text.back() == '[' ? "" : ", ") + std::to_string(index);
@@ -176,9 +178,22 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
   return motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name);
 }
 
-Result<std::string> write_npz(const Motion& motion) {
-  if (Status status = check_is_sequence(motion); !status) return status.error();
-  const Topology& topology = motion.topology;
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_header("<f4", shape)) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t length : shape) count *= length;
+  bytes_.reserve(bytes_.size() + sizeof(float) * count);
+}
+
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values)
+    : bytes_(npy::write_header("<f8", shape)) {
+  for (const double value : values) binary::append(bytes_, value, kOrder);
+}
+
+void NpyBytes::append(std::span<const float> values) {
+  for (const float value : values) binary::append(bytes_, value, kOrder);
+}
+
+Result<std::string> write_npy_faces(const Topology& topology) {
   const std::size_t faces = topology.face_count(), corners = faces == 0 ? 3 : topology.face(0).size();
   for (std::size_t f = 0; f < faces; ++f) {
     if (topology.face(f).size() != corners)
@@ -187,22 +202,34 @@ Result<std::string> write_npz(const Motion& motion) {
                        " and face " + std::to_string(f) + " has " + std::to_string(topology.face(f).size()) +
                        "; triangulate the mesh"};
   }
+  std::string bytes = npy::write_header(topology.vertex_count() <= 0x80000000U ? "<i4" : "<u4", {faces, corners});
+  bytes.reserve(bytes.size() + 4 * topology.corner_count());
+  for (const std::uint32_t vertex : topology.corners()) binary::append(bytes, vertex, kOrder);
+  return bytes;
+}
 
-  constexpr std::endian kOrder = std::endian::little;
-  const std::size_t vertices = topology.vertex_count();
-  std::string positions = npy::write_header("<f4", {motion.keyframes.size(), vertices, 3});
-  positions.reserve(positions.size() + 12 * vertices * motion.keyframes.size());
-  for (const Motion::Keyframe& keyframe : motion.keyframes) {
-    for (const float coordinate : keyframe.positions) binary::append(positions, coordinate, kOrder);
-  }
-  std::string indices = npy::write_header(vertices <= 0x80000000U ? "<i4" : "<u4", {faces, corners});
-  indices.reserve(indices.size() + 4 * topology.corner_count());
-  for (const std::uint32_t vertex : topology.corners()) binary::append(indices, vertex, kOrder);
-  std::string times = npy::write_header("<f8", {motion.keyframes.size()});
-  for (const Motion::Keyframe& keyframe : motion.keyframes) binary::append(times, keyframe.time, kOrder);
-
-  const std::array<zip::Part, 3> parts = {{{"positions.npy", positions}, {"faces.npy", indices}, {"times.npy", times}}};
+std::string write_npz(std::span<const NpzMember> members) {
+  std::vector<std::string> names;
+  for (const NpzMember& member : members) names.push_back(std::string(member.name) + ".npy");
+  std::vector<zip::Part> parts;
+  for (std::size_t i = 0; i < members.size(); ++i) parts.push_back({names[i], members[i].npy});
   return zip::write(parts);
+}
+
+Result<std::string> write_npz(const Motion& motion) {
+  if (Status status = check_is_sequence(motion); !status) return status.error();
+  const Result<std::string> faces = write_npy_faces(motion.topology);
+  if (!faces) return faces.error();
+  NpyBytes positions({motion.keyframes.size(), motion.topology.vertex_count(), 3});
+  std::vector<double> times;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    positions.append(keyframe.positions);
+    times.push_back(keyframe.time);
+  }
+  const NpyBytes time_array({times.size()}, times);
+  const std::array<NpzMember, 3> members = {
+      {{"positions", positions.bytes()}, {"faces", faces.value()}, {"times", time_array.bytes()}}};
+  return write_npz(members);
 }
 
 }  // namespace chronormal

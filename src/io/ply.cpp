@@ -306,12 +306,36 @@ class BodyReader {
   PolygonBuilder faces_;
 };
 
-template <class T>
-void append_binary(std::string& bytes, T value, bool swap) {
-  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if (swap) std::reverse(raw.begin(), raw.end());
-  bytes.append(raw.data(), raw.size());
-}
+// The numbers of a file, one after the other, in one of the encodings.
+class RowWriter {
+ public:
+  RowWriter(std::string& bytes, PlyEncoding encoding)
+      : bytes_(bytes),
+        is_ascii_(encoding == PlyEncoding::kAscii),
+        swap_((encoding == PlyEncoding::kBinaryBigEndian) != (std::endian::native == std::endian::big)) {}
+
+  template <class T>
+  void add(T value) {
+    if (is_ascii_) {
+      scan::append_number(bytes_, value);
+      bytes_ += ' ';
+      return;
+    }
+    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    if (swap_) std::reverse(raw.begin(), raw.end());
+    bytes_.append(raw.data(), raw.size());
+  }
+  void add(const Vec3f& vector) {
+    for (const float component : {vector.x, vector.y, vector.z}) add(component);
+  }
+  void end_row() {
+    if (is_ascii_) bytes_.back() = '\n';
+  }
+
+ private:
+  std::string& bytes_;
+  bool is_ascii_, swap_;
+};
 
 }  // namespace
 
@@ -324,7 +348,15 @@ Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
 }
 
 std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {
+  return write_ply(topology, positions, {}, encoding);
+}
+
+std::string write_ply(const Topology& topology, VectorView<const float> positions, const PlyNormals& normals,
+                      PlyEncoding encoding) {
+  const bool has_vertex_normals = normals.of_vertices.count > 0, has_face_normals = normals.of_faces.count > 0;
   assert(positions.count == topology.vertex_count());
+  assert(!has_vertex_normals || normals.of_vertices.count == topology.vertex_count());
+  assert(!has_face_normals || normals.of_faces.count == topology.face_count());
   std::size_t most_corners = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     most_corners = std::max(most_corners, topology.face(f).size());
@@ -333,48 +365,33 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
   const char* const encoding_name = encoding == PlyEncoding::kAscii                ? "ascii"
                                     : encoding == PlyEncoding::kBinaryLittleEndian ? "binary_little_endian"
                                                                                    : "binary_big_endian";
+  const char* const normal_properties = "\nproperty float nx\nproperty float ny\nproperty float nz";
 
-  std::string bytes =
-      std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " + std::to_string(positions.count) +
-      "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(topology.face_count()) +
-      "\nproperty list " + (is_short ? "uchar " : "uint ") + index_type + " vertex_indices\nend_header\n";
+  std::string bytes = std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " +
+                      std::to_string(positions.count) + "\nproperty float x\nproperty float y\nproperty float z" +
+                      (has_vertex_normals ? normal_properties : "") + "\nelement face " +
+                      std::to_string(topology.face_count()) + "\nproperty list " + (is_short ? "uchar " : "uint ") +
+                      index_type + " vertex_indices" + (has_face_normals ? normal_properties : "") + "\nend_header\n";
+  if (encoding != PlyEncoding::kAscii)
+    bytes.reserve(bytes.size() + 12 * (positions.count + normals.of_vertices.count + normals.of_faces.count) +
+                  4 * (topology.corner_count() + topology.face_count()));
 
-  if (encoding == PlyEncoding::kAscii) {
-    for (std::size_t v = 0; v < positions.count; ++v) {
-      const Vec3f position = positions[v];
-      scan::append_number(bytes, position.x);
-      bytes += ' ';
-      scan::append_number(bytes, position.y);
-      bytes += ' ';
-      scan::append_number(bytes, position.z);
-      bytes += '\n';
-    }
-    for (std::size_t f = 0; f < topology.face_count(); ++f) {
-      const auto face = topology.face(f);
-      scan::append_number(bytes, face.size());
-      for (const std::uint32_t vertex : face) {
-        bytes += ' ';
-        scan::append_number(bytes, vertex);
-      }
-      bytes += '\n';
-    }
-    return bytes;
-  }
-
-  const bool swap = (encoding == PlyEncoding::kBinaryBigEndian) != (std::endian::native == std::endian::big);
-  bytes.reserve(bytes.size() + 12 * positions.count + 4 * (topology.corner_count() + topology.face_count()));
+  RowWriter row(bytes, encoding);
   for (std::size_t v = 0; v < positions.count; ++v) {
-    const Vec3f position = positions[v];
-    for (const float coordinate : {position.x, position.y, position.z}) append_binary(bytes, coordinate, swap);
+    row.add(positions[v]);
+    if (has_vertex_normals) row.add(normals.of_vertices[v]);
+    row.end_row();
   }
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const auto face = topology.face(f);
-    if (is_short) {
-      append_binary(bytes, static_cast<std::uint8_t>(face.size()), swap);
+    if (is_short && encoding != PlyEncoding::kAscii) {
+      row.add(static_cast<std::uint8_t>(face.size()));
     } else {
-      append_binary(bytes, static_cast<std::uint32_t>(face.size()), swap);
+      row.add(static_cast<std::uint32_t>(face.size()));
     }
-    for (const std::uint32_t vertex : face) append_binary(bytes, vertex, swap);
+    for (const std::uint32_t vertex : face) row.add(vertex);
+    if (has_face_normals) row.add(normals.of_faces[f]);
+    row.end_row();
   }
   return bytes;
 }

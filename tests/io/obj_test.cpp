@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "tests/support/random_edits.h"
 #include "tests/support/random_mesh.h"
 
 namespace chronormal {
@@ -165,6 +168,111 @@ RC_GTEST_PROP(WriteObj, what_was_written_reads_back_bit_for_bit, ()) {
 TEST(WriteObj, writes_the_fewest_digits) {
   const MeshFrame frame = read_good("v 0.1 -0 1e20\nv 1 2 3\nv 4 5 16777216\nf 3 1 2\n");
   EXPECT_EQ(write_obj(frame.topology, test::positions_of(frame)), "v 0.1 -0 1e+20\nv 1 2 3\nv 4 5 16777216\nf 3 1 2\n");
+}
+
+ObjShading shading_of(const std::string& bytes) {
+  Result<ObjShading> result = read_obj_shading(bytes, "walk.obj");
+  if (!result) {
+    ADD_FAILURE() << result.error().text();
+    return {};
+  }
+  return std::move(result).value();
+}
+
+std::string shading_error_of(const std::string& bytes) {
+  const Result<ObjShading> result = read_obj_shading(bytes, "walk.obj");
+  if (result) return "no error";
+  EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
+  return result.error().text();
+}
+
+TEST(ReadObjShading, groups_are_numbered_as_the_file_names_them) {
+  const ObjShading shading = shading_of(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ns 4\nf 1 2 3\nf 1 2 3\ns off\nf 1 2 3\ns fur # no dog\nf 1 2 3\ns 04\n"
+      "f 1 2 3\ns 0\nf 1 2 3\ns 4x\nf 1 2 3\n");
+  EXPECT_EQ(shading.group_of_face, (Corners{0, 1, 1, 0, 2, 1, 0, 3}));
+  EXPECT_TRUE(shading.normal_of_corner.empty());
+  EXPECT_EQ(shading.topology.face_count(), 8U);
+}
+
+TEST(ReadObjShading, normals_are_those_of_the_corners) {
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(shading_of(three + "vn 1 0 0\nvn 0 2 0\nf 1//2 2//-2 3/9/3\nvn 0 0 -.5\n").normal_of_corner,
+            (Positions{0, 2, 0, 1, 0, 0, 0, 0, -0.5F}));
+  EXPECT_EQ(shading_of(three + "vn 1 0 0\nf 1//1 2 3/1\nf 1// 2/1/ 3//1\n").normal_of_corner,
+            (Positions{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}))
+      << "corners without a normal have (0, 0, 0)";
+}
+
+TEST(ReadObjShading, is_empty_where_the_file_says_nothing) {
+  const ObjShading shading = shading_of(std::string("vn 0 0 1\nvt 0 0\n") + kTriangle);
+  EXPECT_TRUE(shading.group_of_face.empty());
+  EXPECT_TRUE(shading.normal_of_corner.empty());
+  EXPECT_EQ(shading.topology, read_good(kTriangle).topology);
+  EXPECT_EQ(shading_of(std::string("s off\n") + kTriangle).group_of_face, (Corners{0}));
+}
+
+TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(shading_error_of(three + "vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
+            "walk.obj, line 5: corner 1 of face 0 names normal 2, but the file has 1 normal");
+  EXPECT_EQ(shading_error_of(three + "f 1 2 3//-1\nvn 0 0 1\n"),
+            "walk.obj, line 4: corner 2 of face 0 names normal -1, but the file has 0 normals so far");
+  EXPECT_EQ(shading_error_of(three + "vn 0 0 1\nf 1 2 3//0\n"),
+            "walk.obj, line 5: corner 2 of face 0: normals are counted from 1, not from 0");
+  EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is not a finite number");
+  EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"), "walk.obj, line 2: z of normal 1: a number is missing");
+  for (const char* const index : {"4294967296", "99999999999999999999"})
+    EXPECT_EQ(
+        shading_error_of(three + "f 1 2 3//" + index + "\n"),
+        std::string("walk.obj, line 4: corner 2 of face 0: '") + index + "' is more normals than a mesh can have");
+  EXPECT_EQ(shading_error_of(three + "f 1 2 3//4294967295\n"),
+            "walk.obj, line 4: corner 2 of face 0 names normal 4294967295, but the file has 0 normals");
+  EXPECT_EQ(shading_error_of(three + "s\nf 1 2 3\n"),
+            "walk.obj, line 4: a smoothing group is missing: a number, a name, or off");
+  EXPECT_EQ(shading_error_of(three + "f 1 2 4\n"), error_of(three + "f 1 2 4\n"));
+  // Who does not ask for them is not told.
+  EXPECT_EQ(error_of(three + "vn 0 nan\ns\nf 1//0 2//99 3//99999999999999999999\n"), "no error");
+}
+
+TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {
+  const std::string whole =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nvn 0 0 1\nvn 1 0 0\ns 1\nf 1//1 2//2 3//-1\ns off\nf 2//1 4//1 3//1 1\n";
+  std::mt19937 random(5);
+  std::size_t good = 0, refused = 0;
+  for (int round = 0; round < 5000; ++round) {
+    const std::string bytes = test::with_random_edits(whole, random);
+    const Result<ObjShading> shading = read_obj_shading(bytes, "walk.obj");
+    const Result<MeshFrame> mesh = read_obj(bytes, "walk.obj");
+    if (!shading) {
+      EXPECT_TRUE(shading.error().place.starts_with("walk.obj, line ")) << shading.error().text();
+      ++refused;
+      continue;
+    }
+    ++good;
+    ASSERT_TRUE(mesh.ok()) << bytes;
+    const auto& [topology, groups, normals] = shading.value();
+    EXPECT_EQ(topology, mesh.value().topology);
+    EXPECT_TRUE(groups.empty() || groups.size() == topology.face_count());
+    EXPECT_TRUE(normals.empty() || normals.size() == 3 * topology.corner_count());
+    for (const float component : normals) EXPECT_TRUE(std::isfinite(component));
+  }
+  EXPECT_GT(good, 200U);
+  EXPECT_GT(refused, 500U);
+}
+
+TEST(WriteObj, normals_read_back_corner_by_corner) {
+  const MeshFrame frame = read_good("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 4\n");
+  const Positions normals = {0, 0, 1, 0, 0.6F, 0.8F};
+  const Corners of_corner = {0, 1, 0, 1, 1, 0, 0};
+  const std::string text = write_obj(frame.topology, test::positions_of(frame),
+                                     VectorView<const float>::packed(normals.data(), 2), of_corner);
+  EXPECT_TRUE(text.ends_with("v 0 1 0\nvn 0 0 1\nvn 0 0.6 0.8\nf 1//1 2//2 3//1\nf 1//2 2//2 3//1 4//1\n")) << text;
+  const ObjShading back = shading_of(text);
+  EXPECT_EQ(back.topology, frame.topology);
+  for (std::size_t c = 0; c < of_corner.size(); ++c) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(back.normal_of_corner.at(3 * c + k), normals[3 * of_corner[c] + k]);
+  }
 }
 
 }  // namespace

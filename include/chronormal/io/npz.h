@@ -14,8 +14,12 @@
 #ifndef CHRONORMAL_IO_NPZ_H_
 #define CHRONORMAL_IO_NPZ_H_
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/position_cache.h"
@@ -41,6 +45,35 @@ namespace chronormal {
 /// that the arrays can be mapped. The same motion gives the same bytes. Errors: kUsage without a place: blend shapes,
 /// and faces of different numbers of corners, which no (F, k) array holds.
 [[nodiscard]] Result<std::string> write_npz(const Motion& motion);
+
+/// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.
+class NpyBytes {
+ public:
+  /// An array of float32.
+  explicit NpyBytes(const std::vector<std::uint64_t>& shape);
+  /// A whole array.
+  NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
+
+  void append(std::span<const float> values);
+
+  /// The file, once all elements of the shape are there.
+  [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
+  [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// The faces of a mesh as write_npz() has them. Errors: kUsage for faces of different numbers of corners.
+[[nodiscard]] Result<std::string> write_npy_faces(const Topology& topology);
+
+struct NpzMember {
+  std::string_view name;  ///< of the array: "normals"
+  std::string_view npy;   ///< the bytes of its .npy file
+};
+
+/// Writes a .npz file of arrays, stored.
+[[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
 }  // namespace chronormal
 

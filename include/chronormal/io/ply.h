@@ -51,6 +51,16 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// digits that read back as the same float32. positions must have as many elements as the topology has vertices.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding);
 
+/// Normals for a file, as properties float nx, ny, nz; none where there are none.
+struct PlyNormals {
+  VectorView<const float> of_vertices;  ///< one for each vertex, after x, y, z
+  VectorView<const float> of_faces;     ///< one for each face, after its indices
+};
+
+/// The same with normals.
+[[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
+                                    const PlyNormals& normals, PlyEncoding encoding);
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_IO_PLY_H_

@@ -1,0 +1,354 @@
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/motion_readers.h"
+#include "chronormal/io/obj.h"
+#include "chronormal/io/readers.h"
+#include "chronormal/io/sequence.h"
+#include "chronormal/workflow/sample_files.h"
+#include "cli/command.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr std::size_t kMostTimes = 1000000;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string times;                 // as written; empty: none
+  std::vector<std::string> weights;  // a list per pose
+  std::string elements = "vertices";
+  std::string weighting = "area";
+  std::string length = "unit";
+  double crease_angle = 180;
+  std::string hard_edges;  // empty: by the crease angle
+  bool no_weld = false;
+  std::string format;  // empty: by the extension
+};
+
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+}
+
+std::string footer() {
+  std::string text = "Weightings:\n";
+  for (const WeightingInfo& weighting : kWeightings)
+    text += fmt::format("  {:<12}{}\n", weighting.name, weighting.summary);
+  return text +
+         "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
+         "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
+         "for the number. An element without a normal has (0, 0, 0).\n"
+         "\nExamples:\n"
+         "  chronormal sample walk/ --times 0:0.25:12 -o normals.npy\n"
+         "  chronormal sample body.obj walk.pc2 --times 1.5 --elements corners --crease 60 -o shaded.obj\n"
+         "  chronormal sample face.glb --weights 1,0,0 --weights 0.5,0.5,0 --weighting angle -o 'face_%d.ply'\n"
+         "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+// The parts of a list between separators.
+std::vector<std::string_view> split(std::string_view list, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t first = 0;;) {
+    const std::size_t end = list.find(separator, first);
+    parts.push_back(list.substr(first, end == std::string_view::npos ? end : end - first));
+    if (end == std::string_view::npos) return parts;
+    first = end + 1;
+  }
+}
+
+Result<double> parse_number(const std::string& option, std::string_view word) {
+  std::string_view digits = word;
+  while (digits.starts_with(' ')) digits.remove_prefix(1);
+  while (digits.ends_with(' ')) digits.remove_suffix(1);
+  if (digits.size() > 1 && digits.starts_with('+') && digits[1] != '-') digits.remove_prefix(1);
+  double value = 0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+    return misuse(option, fmt::format("'{}' is not a number", word));
+  return value;
+}
+
+// The times of A:STEP:B, of which the last is B itself if the steps lead there.
+Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
+  const auto wrong = [&](const char* why) { return misuse("--times", fmt::format("'{}': {}", text, why)); };
+  if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
+  double numbers[3] = {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Result<double> number = parse_number("--times", ends[i]);
+    if (!number) return number.error();
+    numbers[i] = number.value();
+  }
+  const auto [first, step, last] = numbers;
+  if (!(step > 0) || !(first <= last)) return wrong("the step must be positive, and the range ascend");
+  const double steps = (last - first) / step;
+  if (!(steps + static_cast<double>(times.size()) < static_cast<double>(kMostTimes)))
+    return wrong("these are more than 1,000,000 times");
+  const double rounded = std::round(steps);
+  const bool reaches = std::fabs(steps - rounded) <= 1e-9 * std::fmax(1, steps);
+  const auto count = static_cast<std::size_t>(reaches ? rounded : std::floor(steps));
+  for (std::size_t i = 0; i <= count; ++i)
+    times.push_back(reaches && i == count ? last : first + static_cast<double>(i) * step);
+  return Success{};
+}
+
+Result<std::vector<double>> parse_times(const std::string& list) {
+  std::vector<double> times;
+  for (const std::string_view part : split(list, ',')) {
+    const std::vector<std::string_view> ends = split(part, ':');
+    if (ends.size() > 1) {
+      if (Status status = append_range(ends, part, times); !status) return status.error();
+      continue;
+    }
+    const Result<double> time = parse_number("--times", part);
+    if (!time) return time.error();
+    times.push_back(time.value());
+  }
+  if (times.size() > kMostTimes) return misuse("--times", "these are more than 1,000,000 times");
+  return times;
+}
+
+Result<std::vector<double>> parse_weights(const std::string& list) {
+  std::vector<double> weights;
+  for (const std::string_view part : split(list, ',')) {
+    const Result<double> weight = parse_number("--weights", part);
+    if (!weight) return weight.error();
+    weights.push_back(weight.value());
+  }
+  return weights;
+}
+
+// What was asked for, after the words were understood.
+struct Request {
+  SampleOptions sample;
+  Moments moments;
+  SampleOutput output;
+};
+
+Result<SampleOptions> sample_options(const Options& options) {
+  const auto kind = make_element_kind(options.elements);
+  if (!kind) return misuse("--elements", kind.error().message);
+  const auto weighting = make_weighting(options.weighting);
+  if (!weighting) return misuse("--weighting", weighting.error().message);
+  if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
+  const bool by_area = weighting.value() == Weighting::kArea;
+  if (options.length == "area" && !by_area)
+    return misuse("--length", "only --weighting area has a length that means something");
+  if (kind.value() == ElementKind::kFaces && !by_area)
+    return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
+  if (kind.value() == ElementKind::kFaces && options.no_weld)
+    return misuse("--no-weld", "faces are not welded: it goes with vertices or corners");
+  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
+    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
+  if (options.crease_angle != 180 && kind.value() != ElementKind::kCorners)
+    return misuse("--crease", "only --elements corners can have hard edges");
+  if (!options.hard_edges.empty()) {
+    if (options.hard_edges != "groups" && options.hard_edges != "normals")
+      return misuse("--hard-edges", "it must be groups or normals");
+    if (kind.value() != ElementKind::kCorners)
+      return misuse("--hard-edges", "only --elements corners can have hard edges");
+    if (options.crease_angle != 180)
+      return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
+  }
+  return SampleOptions{{kind.value(), !options.no_weld, options.crease_angle},
+                       weighting.value(),
+                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
+}
+
+Result<SampleFormat> format_of(const Options& options) {
+  if (!options.format.empty()) {
+    const auto format = make_sample_format(options.format);
+    if (!format) return misuse("--format", format.error().message);
+    return format;
+  }
+  if (options.common.output == "-") return SampleFormat::kNpy;
+  if (const auto format = find_sample_format(options.common.output)) return *format;
+  return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
+}
+
+// Whether the input is read as targets that have weights.
+bool are_targets(const InputOptions& input) {
+  if (!input.base.empty()) return true;
+  return input.files.size() == 1 && is_gltf_file(input.files.front()) && input.animation.empty();
+}
+
+Result<Request> understand(const Options& options) {
+  Result<SampleOptions> sample = sample_options(options);
+  if (!sample) return sample.error();
+  const Result<SampleFormat> format = format_of(options);
+  if (!format) return format.error();
+  Request request{sample.value(), {}, {options.common.output, format.value(), options.common.force}};
+  if (!options.times.empty() && !options.weights.empty())
+    return misuse("--weights", "a motion has times, or targets with weights, not both");
+  if (!options.times.empty()) {
+    Result<std::vector<double>> times = parse_times(options.times);
+    if (!times) return times.error();
+    request.moments.times = std::move(times).value();
+  }
+  for (const std::string& list : options.weights) {
+    Result<std::vector<double>> weights = parse_weights(list);
+    if (!weights) return weights.error();
+    request.moments.weights.push_back(std::move(weights).value());
+  }
+  if (const Status status = check_input(options.input); !status) return status.error();
+  if (const auto files = sample_files(request.output, request.sample.elements.kind, request.moments.count()); !files)
+    return files.error();
+  return request;
+}
+
+std::string range_of(const Motion& motion) {
+  double first = motion.keyframes.front().time, last = first;
+  for (const auto& keyframe : motion.keyframes) {
+    first = std::fmin(first, keyframe.time);
+    last = std::fmax(last, keyframe.time);
+  }
+  return fmt::format("{} to {}", first, last);
+}
+
+// Whether the moments go with the motion. Those of a mesh that stands still become none.
+Status fit_moments(const Motion& motion, bool targets, Moments& moments) {
+  if (motion.segments.empty()) {
+    if (!moments.weights.empty()) return misuse("--weights", "the mesh has no targets");
+    for (const double time : moments.times) {
+      if (time != 0) return misuse("--times", "the mesh does not move: leave it out, or give 0");
+    }
+    if (moments.times.size() > 1) return misuse("--times", "the mesh does not move: one time is enough");
+    moments.times.clear();
+    return Success{};
+  }
+  if (targets) {
+    const std::size_t count = motion.segments.size();
+    const std::string how = fmt::format("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
+    if (!moments.times.empty()) return misuse("--times", "blend shapes have no times: " + how);
+    if (moments.weights.empty()) return misuse("--weights", "the input is blend shapes: " + how);
+    return Success{};
+  }
+  if (!moments.weights.empty())
+    return misuse("--weights", "only blend shapes have weights; this motion has --times from " + range_of(motion));
+  if (moments.times.empty()) return misuse("--times", "say at which times: the motion goes from " + range_of(motion));
+  return Success{};
+}
+
+// The file of the first keyframe or of the base: the mesh that says which edges are hard.
+Result<std::string> shading_file(const InputOptions& input) {
+  if (!input.base.empty()) return input.base;
+  for (const std::string& file : input.files) {
+    const std::string path = file.substr(0, file.rfind('#'));
+    const bool is_cache = find_cache_reader(file) != nullptr || find_cache_reader(path) != nullptr ||
+                          path.ends_with(".xml") || path.ends_with(".XML");
+    if (input.files.size() == 2 && is_cache) continue;
+    if (is_gltf_file(file) || find_motion_reader(file) != nullptr)
+      return misuse("--hard-edges", file + " is no OBJ file");
+    const auto frames = find_frames({&file, 1});
+    if (!frames) return frames.error();
+    return frames.value().front();
+  }
+  return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ file");
+}
+
+Result<ObjShading> read_shading(const InputOptions& input, const std::string& what, const Topology& topology) {
+  const Result<std::string> path = shading_file(input);
+  if (!path) return path.error();
+  if (path.value() == "-")
+    return misuse("--hard-edges", "the standard input can not be read twice: give the mesh as a file");
+  const Result<FileBytes> file = FileBytes::open(path.value());
+  if (!file) return file.error();
+  const std::string name = short_name(path.value());
+  const auto reader = choose_mesh_reader(file.value().bytes(), name);
+  if (!reader) return reader.error();
+  if (reader.value()->name != "obj") return misuse("--hard-edges", path.value() + " is no OBJ file");
+  Result<ObjShading> shading = read_obj_shading(file.value().bytes(), name);
+  if (!shading) return shading;
+  if (shading.value().topology != topology)
+    return invalid_input(path.value(), "the faces are not those of the motion: the file has changed meanwhile");
+  if (what == "groups" && shading.value().group_of_face.empty())
+    return invalid_input(path.value(), "the file has no smoothing groups (lines that begin with s)");
+  if (what == "normals" && shading.value().normal_of_corner.empty())
+    return invalid_input(path.value(), "the file has no normals (faces of the form v//vn)");
+  return shading;
+}
+
+int run(const Options& options) {
+  const auto fail = [](const Error& error) { return report("sample", error); };
+  Result<Request> understood = understand(options);
+  if (!understood) return fail(understood.error());
+  Request& request = understood.value();
+  Progress progress(options.common.quiet);
+  const auto input = read_input_or_mesh(options.input, progress);
+  if (!input) return fail(input.error());
+  const Motion& motion = input.value().motion;
+  const bool targets = are_targets(options.input) || (motion.segments.size() > 1 && is_blend_shapes(motion));
+  if (const Status status = fit_moments(motion, targets, request.moments); !status) return fail(status.error());
+
+  ObjShading shading;  // outlives the sampling
+  if (!options.hard_edges.empty()) {
+    Result<ObjShading> read = read_shading(options.input, options.hard_edges, motion.topology);
+    if (!read) return fail(read.error());
+    shading = std::move(read).value();
+    if (options.hard_edges == "groups")
+      request.sample.elements.group_of_face = shading.group_of_face;
+    else
+      request.sample.elements.normal_of_corner =
+          VectorView<const float>::packed(shading.normal_of_corner.data(), shading.normal_of_corner.size() / 3);
+  }
+  const auto written =
+      write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
+  progress.clear();
+  if (!written) return fail(written.error());
+  if (written.value().zeros > 0)
+    fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
+               written.value().zeros, written.value().normals, options.elements);
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_sample_command(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand("sample", "Write the normals of a motion at chosen times");
+  command->group("Commands");
+  auto options = std::make_shared<Options>();
+  options->input.add_to(*command);
+  command
+      ->add_option("--times", options->times,
+                   "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
+                   "a mesh does not move")
+      ->type_name("LIST");
+  command
+      ->add_option("--weights", options->weights,
+                   "a pose of blend shapes: one weight for each target; repeat it\n"
+                   "for more poses")
+      ->type_name("W1,W2,...")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--elements", options->elements, "which normals: faces, vertices (default), corners")
+      ->type_name("KIND");
+  command->add_option("--weighting", options->weighting, "how the faces around a vertex count (listed below)")
+      ->type_name("NAME");
+  command->add_option("--length", options->length, "unit (default), or area: of weighting area, n itself")
+      ->type_name("KIND");
+  command
+      ->add_option("--crease", options->crease_angle,
+                   "corners: edges between faces that differ by more than this\n"
+                   "in the first keyframe are hard (default 180: none)")
+      ->type_name("DEG");
+  command
+      ->add_option("--hard-edges", options->hard_edges,
+                   "corners: hard edges as the first .obj or the base has them, by its\n"
+                   "smoothing groups (s) or by its own normals (vn): groups, normals")
+      ->type_name("KIND");
+  command->add_flag("--no-weld", options->no_weld, "vertices at one point in all keyframes stay apart");
+  command->add_option("--format", options->format, "of OUT: npy (default for -), npz, ply, obj")->type_name("NAME");
+  options->common.add_to(*command, true);
+  command->footer(footer());
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,221 @@
+#include "chronormal/workflow/sample.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/group_normals.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
+
+// The fewest digits that read back as the same number, so that it can be pasted.
+std::string text_of(double number) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
+}
+
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+float clamped_to_float(double value) { return static_cast<float>(std::clamp(value, -kLargestFloat, kLargestFloat)); }
+
+VectorView<const float> positions_of(const Motion& motion, std::size_t keyframe) {
+  return VectorView<const float>::packed(motion.keyframes[keyframe].positions.data(), motion.topology.vertex_count());
+}
+
+// One keyframe that does not move.
+Segment standing_still(const Motion& motion) {
+  return {&motion.topology, positions_of(motion, 0), positions_of(motion, 0)};
+}
+
+std::vector<float> positions_at(const Segment& segment, double t) {
+  std::vector<float> positions(3 * segment.from.count);
+  const auto result = VectorView<float>::packed(positions.data(), segment.from.count);
+  for (std::size_t v = 0; v < segment.from.count; ++v)
+    result.set(v, to_float(lerp(to_double(segment.from[v]), to_double(segment.to[v]), t)));
+  return positions;
+}
+
+// Positions in double, as the point half way between two in float32: one takes what the other had to round. So a pose
+// is a segment at t = 1/2, and loses nothing.
+struct DoublePositions {
+  static constexpr double kMiddle = 0.5;
+  std::vector<float> from, to;
+
+  void push_back(double coordinate) {
+    const float rounded = clamped_to_float(2 * coordinate);
+    from.push_back(rounded);
+    to.push_back(static_cast<float>(2 * coordinate - double{rounded}));
+  }
+};
+
+std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
+  std::vector<Vec3d> normals(segment.topology->face_count());
+  parallel_for((normals.size() + kBlock - 1) / kBlock, [&](std::size_t i) {
+    const IndexRange faces{i * kBlock, std::min(kBlock, normals.size() - i * kBlock)};
+    face_normals_at(segment, t, faces, std::span(normals).subspan(faces.first, faces.count));
+  });
+  return normals;
+}
+
+}  // namespace
+
+bool is_blend_shapes(const Motion& motion) noexcept {
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    if (motion.segments[s].from != 0 || motion.segments[s].to != s + 1) return false;
+  }
+  return !motion.segments.empty() && motion.keyframes.size() == motion.segments.size() + 1;
+}
+
+Result<Instant> find_instant(const Motion& motion, double time) {
+  if (motion.segments.empty()) return misuse("the mesh stands still: it has no times");
+  if (motion.segments.size() > 1 && is_blend_shapes(motion))
+    return misuse("blend shapes have no times, but a weight for each target");
+  const auto start_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].from].time; };
+  const auto end_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].to].time; };
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  std::optional<std::size_t> found;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    first = std::min(first, start_of(s));
+    last = std::max(last, end_of(s));
+    if (start_of(s) <= time && time <= end_of(s)) found = s;
+  }
+  if (!found)
+    return misuse("there is no motion at time " + text_of(time) + ": it goes from " + text_of(first) + " to " +
+                  text_of(last));
+  const double t = (time - start_of(*found)) / (end_of(*found) - start_of(*found));
+  return Instant{*found, std::clamp(t, 0.0, 1.0)};
+}
+
+Status check_weights(const Motion& motion, std::span<const double> weights) {
+  if (!is_blend_shapes(motion)) return misuse("only blend shapes have weights; give times, where there is motion");
+  const std::size_t targets = motion.segments.size();
+  if (weights.size() != targets)
+    return misuse(std::string("a pose needs a weight for each target: there ") + (targets == 1 ? "is " : "are ") +
+                  counted(targets, "target") + ", but " + counted(weights.size(), "weight"));
+  for (std::size_t i = 0; i < targets; ++i) {
+    if (!std::isfinite(weights[i])) return misuse("the weight of target " + std::to_string(i) + " is not finite");
+  }
+  return Success{};
+}
+
+Result<NormalSampler> NormalSampler::make(const Motion& motion, const SampleOptions& options) {
+  assert(!motion.keyframes.empty());
+  const bool by_area = options.weighting == Weighting::kArea;
+  if (options.length == NormalLength::kArea && !by_area)
+    return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
+  NormalSampler sampler(motion, options);
+  if (options.elements.kind == ElementKind::kFaces) {
+    if (!by_area) return misuse("faces are not weighted: they have one normal");
+    return sampler;
+  }
+  Result<NormalGroups> groups = make_groups(motion, options.elements);
+  if (!groups) return groups.error();
+  sampler.groups_ = std::move(groups).value();
+  return sampler;
+}
+
+std::size_t NormalSampler::element_count() const noexcept {
+  return are_faces() ? motion_->topology.face_count() : groups_.size();
+}
+
+std::size_t NormalSampler::output_count() const noexcept {
+  return are_faces() ? motion_->topology.face_count() : groups_.element_of_output().size();
+}
+
+std::span<const std::uint32_t> NormalSampler::element_of_output() const noexcept {
+  return are_faces() ? std::span<const std::uint32_t>() : groups_.element_of_output();
+}
+
+std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
+  assert(pose.normals.size() == 3 * element_count());
+  if (are_faces()) return pose.normals;
+  std::vector<float> normals(3 * output_count());
+  groups_.copy_to_outputs(VectorView<const float>::packed(pose.normals.data(), element_count()),
+                          VectorView<float>::packed(normals.data(), output_count()));
+  return normals;
+}
+
+std::vector<float> NormalSampler::area_normals(const Segment& segment, double t) {
+  if (curve_segment_ != segment.index) {
+    curves_ =
+        NormalCurves(are_faces() ? all_face_control_normals(segment) : all_group_control_normals(segment, groups_));
+    curve_segment_ = segment.index;
+  }
+  std::vector<float> normals(3 * element_count());
+  const auto result = VectorView<float>::packed(normals.data(), element_count());
+  if (options_.length == NormalLength::kArea)
+    curves_.normals(t, result);
+  else
+    (void)curves_.unit_normals(t, result);  // who writes them counts those without a direction
+  return normals;
+}
+
+std::vector<float> NormalSampler::weighted_normals(const Segment& segment, double t) const {
+  const std::vector<Vec3d> exact =
+      are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, groups_, options_.weighting, t);
+  std::vector<float> normals;
+  normals.reserve(3 * exact.size());
+  for (const Vec3d& n : exact) {
+    const Vec3d scaled = options_.length == NormalLength::kArea ? n : unit(n);
+    for (const double component : {scaled.x, scaled.y, scaled.z}) normals.push_back(clamped_to_float(component));
+  }
+  return normals;
+}
+
+Pose NormalSampler::at(const Segment& segment, double t) {
+  const bool by_area = options_.weighting == Weighting::kArea;
+  return {positions_at(segment, t), by_area ? area_normals(segment, t) : weighted_normals(segment, t)};
+}
+
+Result<Pose> NormalSampler::at_time(double time) {
+  const Result<Instant> instant = find_instant(*motion_, time);
+  if (!instant) return instant.error();
+  return at(motion_->segment(instant.value().segment), instant.value().t);
+}
+
+Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
+  if (Status status = check_weights(*motion_, weights); !status) return status.error();
+  const auto base = positions_of(*motion_, 0);
+  std::vector<Vec3d> positions(base.count);
+  for (std::size_t v = 0; v < base.count; ++v) positions[v] = to_double(base[v]);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0) continue;
+    const auto target = positions_of(*motion_, i + 1);
+    for (std::size_t v = 0; v < base.count; ++v)
+      positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
+  }
+
+  DoublePositions pose;
+  Pose result;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (const double coordinate : {positions[v].x, positions[v].y, positions[v].z}) {
+      if (!(std::fabs(coordinate) <= kLargestFloat))
+        return misuse("these weights move vertex " + std::to_string(v) + " out of the range of float32");
+      pose.push_back(coordinate);
+      result.positions.push_back(static_cast<float>(coordinate));
+    }
+  }
+  const Segment segment{&motion_->topology, VectorView<const float>::packed(pose.from.data(), base.count),
+                        VectorView<const float>::packed(pose.to.data(), base.count)};
+  result.normals = weighted_normals(segment, DoublePositions::kMiddle);
+  return result;
+}
+
+Pose NormalSampler::at_rest() const {
+  return {motion_->keyframes[0].positions, weighted_normals(standing_still(*motion_), 0)};
+}
+
+}  // namespace chronormal

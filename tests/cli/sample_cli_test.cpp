@@ -1,0 +1,356 @@
+// What scripts and people get from `sample`: arrays and meshes with normals, exit codes, and the normals of other tools
+// where the environment variable CHRONORMAL_DATA says where their files are.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/array_file.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+class SampleCli : public testing::Test {
+ protected:
+  SampleCli() {
+    // A right angle that opens, with a seam: vertices 2 and 4, 3 and 5 are one point each.
+    folder_.write("a.obj",
+                  std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n") + kFaces);
+    folder_.write("b.obj",
+                  std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 1\nv 1 1 1\n") + kFaces);
+    folder_.write("quad.glb", test::quad_document().glb());
+  }
+
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
+    return run_shell(std::string(CHRONORMAL_PROGRAM) + " sample " + arguments, folder_.path(), input);
+  }
+  void expect_error(const std::string& arguments, int exit_code, const std::string& word) const {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
+  }
+  // The array that the arguments write to standard output, without a word on the other stream.
+  [[nodiscard]] test::ArrayFile array_of(const std::string& arguments) const {
+    const ProcessResult result = run(arguments + " -o -");
+    EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.err, "");
+    return result.exit_code == 0 ? test::parse_npy(result.out) : test::ArrayFile{};
+  }
+
+  static constexpr const char* kFaces = "s 1\nf 1 3 4 2\ns 2\nf 5 7 8 6\n";
+  test::TemporaryFolder folder_;
+};
+
+std::array<float, 3> row(const std::vector<float>& values, std::size_t i) {
+  return {values.at(3 * i), values.at(3 * i + 1), values.at(3 * i + 2)};
+}
+
+TEST_F(SampleCli, vertices_across_a_seam_are_exact_by_hand) {
+  const test::ArrayFile array = array_of("a.obj b.obj --times 0,0.5,1");
+  EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, 8, 3}));
+  const auto normals = array.as<float>();
+  // The second quad goes from (1, 0, 0) to (0, 0, 1): its normal at t is (-t, 0, 1 - t); at the seam (0, 0, 1) comes to
+  // it.
+  for (const auto& [time, t] : {std::pair{0U, 0.0}, std::pair{1U, 0.5}, std::pair{2U, 1.0}}) {
+    const double length = std::sqrt(t * t + (2 - t) * (2 - t));
+    for (const std::size_t v : {2U, 3U, 4U, 5U}) {
+      EXPECT_NEAR(row(normals, 8 * time + v)[0], -t / length, 1e-6) << t;
+      EXPECT_NEAR(row(normals, 8 * time + v)[2], (2 - t) / length, 1e-6) << t;
+      EXPECT_EQ(row(normals, 8 * time + v), row(normals, 8 * time + 2)) << "copies have the same bits";
+    }
+    EXPECT_EQ(row(normals, 8 * time), (std::array<float, 3>{0, 0, 1}));
+  }
+  const auto apart = array_of("a.obj b.obj --times 1 --no-weld").as<float>();
+  EXPECT_EQ(row(apart, 2), (std::array<float, 3>{0, 0, 1}));
+  EXPECT_EQ(row(apart, 4), (std::array<float, 3>{-1, 0, 0}));
+}
+
+TEST_F(SampleCli, elements_lengths_and_hard_edges) {
+  EXPECT_EQ(array_of("a.obj b.obj --times 0 --elements faces").shape, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_EQ(array_of("a.obj b.obj --times 0 --elements corners").shape, (std::vector<std::size_t>{1, 8, 3}));
+  const auto faces = array_of("a.obj b.obj --times 0.5 --elements faces --length area").as<float>();
+  EXPECT_EQ(row(faces, 0), (std::array<float, 3>{0, 0, 2}));
+  EXPECT_EQ(row(faces, 1), (std::array<float, 3>{-1, 0, 1}));
+  // In the first keyframe of b a the angle is 90 degrees.
+  const auto distinct = [this](const std::string& options) {
+    const auto normals = array_of("b.obj a.obj --times 0 --elements corners " + options).as<float>();
+    std::set<std::array<float, 3>> set;
+    for (std::size_t c = 0; c < 8; ++c) set.insert({row(normals, c)[0] + 0.0F, 0, row(normals, c)[2] + 0.0F});
+    return set.size();
+  };
+  EXPECT_EQ(distinct(""), 3U);
+  EXPECT_EQ(distinct("--crease 91"), 3U);
+  EXPECT_EQ(distinct("--crease 89"), 2U);
+  EXPECT_EQ(distinct("--hard-edges groups"), 2U);
+  expect_error("b.obj a.obj --times 0 --elements corners --hard-edges normals -o n.npy", 3,
+               "b.obj: the file has no normals");
+}
+
+TEST_F(SampleCli, times_are_a_list_or_a_range) {
+  const auto times_of = [this](const std::string& times, const std::string& more = "") {
+    const ProcessResult result = run("a.obj b.obj a.obj --times " + times + more + " --force -o t.npz");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return test::parse_npz(test::read_whole(folder_ / "t.npz")).at("times").as<double>();
+  };
+  EXPECT_EQ(times_of("0:0.5:2"), (std::vector<double>{0, 0.5, 1, 1.5, 2}));
+  EXPECT_EQ(times_of("0:0.7:2"), (std::vector<double>{0, 0.7, 1.4}));
+  EXPECT_EQ(times_of("1.9,0:1:1,+.25").size(), 4U);
+  const auto tenths = times_of("0:0.1:2");
+  EXPECT_EQ(tenths.size(), 21U);
+  EXPECT_EQ(tenths.back(), 2) << "the last is the end itself";
+  EXPECT_EQ(times_of("0.5:1:0.5"), (std::vector<double>{0.5}));
+  const auto thirds = times_of("0:0.1:0.3");  // 3 x 0.1 is more than 0.3, and 0.3 / 0.1 is less than 3
+  EXPECT_EQ(thirds.size(), 4U);
+  EXPECT_EQ(thirds.back(), 0.3);
+  EXPECT_EQ(times_of("0:0.01:0.04", " --fps 50").size(), 5U);
+  for (const char* const wrong : {"x", "0,,1", "1:2", "0:0:1", "0:-1:1", "1:1:0", "nan", "0:1e-9:1", "1e999", "''"})
+    expect_error(std::string("a.obj b.obj -o n.npy --times ") + wrong, 2, "--times");
+  expect_error("a.obj b.obj -o n.npy --times 0,1.5", 2, "there is no motion at time 1.5: it goes from 0 to 1");
+  expect_error("a.obj b.obj -o n.npy --times=-1", 2, "from 0 to 1");
+  expect_error("a.obj b.obj -o n.npy --times 1 --fps 30", 2, "from 0 to 0.03333333333333333");
+  expect_error("a.obj b.obj -o n.npy", 2, "0 to 1");
+}
+
+TEST_F(SampleCli, weights_are_for_blend_shapes) {
+  const ProcessResult npz = run("--base a.obj b.obj --weights 0 --weights=-0.5 --weights 1 -o w.npz");
+  EXPECT_EQ(npz.exit_code, 0) << npz.err;
+  const auto arrays = test::parse_npz(test::read_whole(folder_ / "w.npz"));
+  EXPECT_EQ(arrays.at("weights").shape, (std::vector<std::size_t>{3, 1}));
+  EXPECT_EQ(arrays.at("weights").as<double>(), (std::vector<double>{0, -0.5, 1}));
+  const auto positions = arrays.at("positions").as<float>();
+  EXPECT_EQ(row(positions, 8 + 6), (std::array<float, 3>{2.5, 0, -0.5}));
+  const std::vector<std::size_t> two_faces = {1, 2, 3};
+  EXPECT_EQ(array_of("--base a.obj b.obj a.obj --weights -0.5 --elements faces").shape, two_faces)
+      << "the base is no target";
+  EXPECT_EQ(array_of("quad.glb --weights 0.5,0 --elements faces").shape, two_faces);
+  const auto time = array_of("a.obj b.obj --times 0.25").as<float>();
+  const auto weight = array_of("--base a.obj b.obj --weights 0.25").as<float>();
+  for (std::size_t i = 0; i < time.size(); ++i) EXPECT_NEAR(time[i], weight[i], 1e-6);
+
+  expect_error("--base a.obj b.obj --times 0.5 -o n.npy", 2,
+               "blend shapes have no times: give --weights, 1 number for");
+  expect_error("quad.glb --times 0.5 -o n.npy", 2, "--weights, 2 numbers for each pose");
+  expect_error("--base a.obj b.obj -o n.npy", 2, "--weights");
+  expect_error("--base a.obj b.obj --weights 1,0 -o n.npy", 2, "there is 1 target, but 2 weights");
+  expect_error("--base a.obj b.obj --weights 1x -o n.npy", 2, "'1x' is not a number");
+  expect_error("--base a.obj b.obj --weights 1 --times 0 -o n.npy", 2, "not both");
+  expect_error("a.obj b.obj --weights 1 -o n.npy", 2, "--times from 0 to 1");
+  expect_error("a.obj --weights 1 -o n.npy", 2, "no targets");
+}
+
+TEST_F(SampleCli, a_single_mesh_is_one_pose) {
+  EXPECT_EQ(array_of("a.obj").shape, (std::vector<std::size_t>{1, 8, 3}));
+  EXPECT_EQ(array_of("a.obj --times 0").elements, array_of("a.obj").elements);
+  expect_error("a.obj --times 0.5 -o n.npy", 2, "does not move");
+  expect_error("a.obj --times 0,0 -o n.npy", 2, "one time is enough");
+  const ProcessResult piped = run("- -o -", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(test::parse_npy(piped.out).as<float>(), (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
+}
+
+TEST_F(SampleCli, meshes_go_to_a_file_each_or_one_to_standard_output) {
+  EXPECT_EQ(run("a.obj b.obj --times 0,1 -o out_%03d.ply").exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out_000.ply") && fs::exists(folder_ / "out_001.ply"));
+  const ProcessResult obj = run("a.obj b.obj --times 1 --elements faces --format obj -o -");
+  EXPECT_EQ(obj.exit_code, 0) << obj.err;
+  EXPECT_NE(obj.out.find("vn -1 0 0\nf 1//1 3//1 4//1 2//1\nf 5//2 7//2 8//2 6//2\n"), std::string::npos) << obj.out;
+  expect_error("a.obj b.obj --times 0,1 -o out.ply", 2, "%d");
+  expect_error("a.obj b.obj --times 0,1 --format obj -o -", 2, "standard output can take one");
+  expect_error("a.obj b.obj --times 0 --elements corners -o out.ply", 2, "corners");
+  expect_error("a.obj b.obj --times 0 -o out.stl", 2, ".npy, .npz, .ply or .obj");
+  expect_error("a.obj b.obj --times 0 -o n.npy --format stl", 2, "npy, npz, ply, obj");
+}
+
+TEST_F(SampleCli, exit_codes_and_files_that_exist) {
+  expect_error("a.obj b.obj --times 0", 2, "--output");
+  expect_error("a.obj missing.obj --times 0 -o n.npy", 1, "missing.obj");
+  folder_.write("bad.obj", "v 0 0 0\nf 1 1 2\n");
+  expect_error("a.obj bad.obj --times 0 -o n.npy", 3, "bad.obj");
+  folder_.write("n.npy", "old");
+  expect_error("a.obj b.obj --times 0 -o n.npy", 1, "--force");
+  expect_error("a.obj missing.obj --times 0 -o n.npy", 1, "--force");
+  EXPECT_EQ(test::read_whole(folder_ / "n.npy"), "old");
+  EXPECT_EQ(run("a.obj b.obj --times 0 -o n.npy --force").exit_code, 0);
+  EXPECT_EQ(test::parse_npy(test::read_whole(folder_ / "n.npy")).shape[1], 8U);
+  if (fs::exists("/dev/full")) expect_error("a.obj b.obj --times 0 --format npy -o /dev/full", 1, "/dev/full");
+}
+
+TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
+  const std::string input = "a.obj b.obj --times 0 -o n.npy ";
+  expect_error(input + "--elements edges", 2, "--elements: ");
+  expect_error(input + "--weighting sine", 2, "area-angle");
+  expect_error(input + "--length long", 2, "unit or area");
+  expect_error(input + "--length area --weighting angle", 2, "--length");
+  expect_error(input + "--elements faces --weighting angle", 2, "--weighting");
+  expect_error(input + "--elements faces --no-weld", 2, "--no-weld");
+  expect_error(input + "--crease 30", 2, "--elements corners");
+  expect_error(input + "--elements corners --crease 200", 2, "0 to 180");
+  expect_error(input + "--hard-edges groups", 2, "--elements corners");
+  expect_error(input + "--elements corners --hard-edges all", 2, "groups or normals");
+  expect_error(input + "--elements corners --hard-edges groups --crease 30", 2, "not both");
+  expect_error("--sample twist --times 0 --elements corners --hard-edges groups -o n.npy", 2, "built-in");
+  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges groups -o n.npy", 2, "no OBJ file");
+  EXPECT_EQ(run("a.obj b.obj --times 0 --elements corners --hard-edges groups -o -", "").exit_code, 0);
+  folder_.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_error("plain.obj --elements corners --hard-edges groups -o n.npy", 3, "no smoothing groups");
+}
+
+TEST_F(SampleCli, hard_edges_are_those_of_the_first_mesh) {
+  ASSERT_EQ(run_shell(std::string(CHRONORMAL_PROGRAM) + " convert b.obj a.obj -o cache.pc2", folder_.path()).exit_code,
+            0);
+  const std::string options = " --elements corners --hard-edges groups ";
+  const std::string expected = array_of("b.obj a.obj --times 0.25" + options).elements;
+  EXPECT_NE(array_of("b.obj a.obj --times 0.25 --elements corners").elements, expected);
+  EXPECT_EQ(array_of("cache.pc2 a.obj --times 0.25" + options).elements, expected);
+  EXPECT_EQ(array_of("a.obj cache.pc2 --times 0.25" + options).elements, expected);
+  EXPECT_EQ(array_of("--base b.obj a.obj --weights 0.25" + options).shape, (std::vector<std::size_t>{1, 8, 3}));
+  std::string smooth = test::read_whole(folder_ / "b.obj");
+  smooth.replace(smooth.find("s 2"), 3, "s 1");
+  folder_.write("smooth.obj", smooth);
+  EXPECT_NE(array_of("smooth.obj a.obj --times 0.25" + options).elements, expected) << "not of the second";
+}
+
+TEST_F(SampleCli, elements_without_a_normal_are_counted_on_stderr) {
+  folder_.write("lonely.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\n");
+  const ProcessResult result = run("lonely.obj -o -");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("1 of 4 normals of vertices are (0, 0, 0)"), std::string::npos) << result.err;
+  EXPECT_EQ(row(test::parse_npy(result.out).as<float>(), 3), (std::array<float, 3>{0, 0, 0}));
+}
+
+TEST_F(SampleCli, help_lists_weightings_and_examples) {
+  const ProcessResult help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* const word : {"--times", "--weights", "--hard-edges", "area-angle", "Exit codes", "%d"})
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+}
+
+// The normals that an OBJ file stores for its corners.
+std::vector<std::array<double, 3>> stored_normals(const fs::path& path) {
+  std::vector<std::array<double, 3>> normals, of_corners;
+  std::ifstream text(path);
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "vn") {
+      auto& n = normals.emplace_back();
+      words >> n[0] >> n[1] >> n[2];
+    }
+    while (word == "f" && words >> line)
+      of_corners.push_back(normals.at(std::stoul(line.substr(line.rfind('/') + 1)) - 1));
+  }
+  return of_corners;
+}
+
+class SampleCliGolden : public SampleCli {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("CHRONORMAL_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+    data_ = folder;
+  }
+
+  // The largest angle between what `sample` writes for the corners of a file and what it stores, in degrees.
+  [[nodiscard]] double largest_difference(const std::string& file, const std::string& options) const {
+    const std::string path = (data_ / file).string();
+    const auto expected = stored_normals(path);
+    const ProcessResult result = run(path + " --elements corners --no-weld " + options + " -o -");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    if (result.exit_code != 0) return 180;
+    const test::ArrayFile array = test::parse_npy(result.out);
+    const auto found = array.as<float>();
+    EXPECT_EQ(array.shape, (std::vector<std::size_t>{1, expected.size(), 3}));
+    double worst = 0;
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      const auto a = row(found, c);
+      const auto& b = expected[c];
+      double dot = 0, square_a = 0, square_b = 0, cross = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        dot += double{a[k]} * b[k];
+        square_a += double{a[k]} * a[k];
+        square_b += b[k] * b[k];
+        cross += std::pow(double{a[i]} * b[j] - double{a[j]} * b[i], 2);
+      }
+      if ((square_a > 0) != (square_b > 0)) return 180;  // one of them has no normal
+      worst = std::max(worst, std::atan2(std::sqrt(cross), dot) * kDegreesPerRadian);
+    }
+    return worst;
+  }
+
+  fs::path data_;
+};
+
+TEST_F(SampleCliGolden, normals_of_other_tools_are_met_to_a_hundredth_of_a_degree) {
+  std::vector<std::tuple<std::string, std::string, std::string>> cases = {
+      {"golden/static/groups.obj", "normals", "area"},
+      {"golden/static/textured_tetrahedron.obj", "groups", "angle"},
+      {"golden/static/textured_tetrahedron.obj", "normals", "angle"},
+      {"golden/static/spider.obj", "groups", "uniform"},
+      {"golden/static/spider.obj", "normals", "uniform"},
+      {"golden/blender_flat/blender_279_sausage_base_0.obj", "groups", "area"},
+      {"caches/max_cache_box/max_cache_box_44.obj", "normals", "angle"}};
+  for (const char* const folder : {"golden/maya_blend_inbetween", "golden/maya_cache_sine"}) {
+    for (const auto& entry : fs::directory_iterator(data_ / folder)) {
+      if (entry.path().extension() != ".obj") continue;
+      const std::string file = (fs::path(folder) / entry.path().filename()).string();
+      cases.emplace_back(file, "groups", "area-angle");
+      cases.emplace_back(file, "normals", "area-angle");
+    }
+  }
+  EXPECT_EQ(cases.size(), 25U);
+  for (const auto& [file, edges, weighting] : cases)
+    EXPECT_LT(largest_difference(file, "--hard-edges " + edges + " --weighting " + weighting), 0.01)
+        << file << " " << edges;
+}
+
+TEST_F(SampleCliGolden, another_weighting_or_no_hard_edges_are_not_met) {
+  const std::string spider = "golden/static/spider.obj";
+  for (const char* const weighting : {"area", "angle", "area-angle", "max"})
+    EXPECT_GT(largest_difference(spider, std::string("--hard-edges groups --weighting ") + weighting), 0.02);
+  EXPECT_GT(largest_difference(spider, "--weighting uniform"), 0.02);
+}
+
+TEST_F(SampleCliGolden, trimesh_weighs_vertices_by_area) {
+  const std::string path = (data_ / "golden/static/groups.obj").string();
+  const auto normals = array_of(path + " --no-weld").as<float>();
+  // Each vertex has one normal in this file.
+  std::ifstream text(path);
+  const auto of_corners = stored_normals(path);
+  std::size_t corner = 0, checked = 0;
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    while (word == "f" && words >> line) {
+      const std::size_t vertex = std::stoul(line.substr(0, line.find('/'))) - 1;
+      const auto& expected = of_corners.at(corner++);
+      const double length = std::hypot(expected[0], expected[1], expected[2]);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(row(normals, vertex)[k], expected[k] / length, 1.7e-4);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 1000U);
+}
+
+}  // namespace
+}  // namespace chronormal

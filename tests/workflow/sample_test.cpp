@@ -1,0 +1,375 @@
+#include "chronormal/workflow/sample.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference_elements.h"
+
+namespace chronormal {
+namespace {
+
+using reference::Real;
+using reference::Vector;
+
+constexpr double kTolerance = 2e-6;  // radians: that of the curves, and the rounding of three floats
+
+SampleOptions options_of(ElementKind kind, Weighting weighting = Weighting::kArea, double crease_angle = 180) {
+  SampleOptions options;
+  options.elements.kind = kind;
+  options.elements.crease_angle = crease_angle;
+  options.weighting = weighting;
+  return options;
+}
+
+Pose good(Result<Pose> pose) {
+  if (!pose) {
+    ADD_FAILURE() << pose.error().text();
+    return {};
+  }
+  return std::move(pose).value();
+}
+
+NormalSampler sampler_of(const Motion& motion, const SampleOptions& options) {
+  return NormalSampler::make(motion, options).value();
+}
+
+Vector vector_at(const std::vector<float>& values, std::size_t i) {
+  return {values.at(3 * i), values.at(3 * i + 1), values.at(3 * i + 2)};
+}
+
+// Which faces and corners the oracle sums for each output. Vertices at one place in both keyframes are one.
+std::vector<std::vector<reference::Corner>> corners_of_outputs(const reference::Mesh& mesh, ElementKind kind, bool weld,
+                                                               Real crease_angle) {
+  const auto all = reference::corners_of(mesh);
+  const std::vector<std::size_t> point = reference::flood(mesh.from.size(), [&](std::size_t a, std::size_t b) {
+    return a == b || (weld && mesh.from[a] == mesh.from[b] && mesh.to[a] == mesh.to[b]);
+  });
+  std::vector<std::vector<reference::Corner>> outputs;
+  if (kind == ElementKind::kFaces) {
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) outputs.push_back({{f, 0}});
+  } else if (kind == ElementKind::kVertices) {
+    outputs.resize(mesh.from.size());
+    for (std::size_t v = 0; v < mesh.from.size(); ++v) {
+      for (const auto& c : all) {
+        if (point[vertex_of(mesh, c)] == point[v]) outputs[v].push_back(c);
+      }
+    }
+  } else {
+    const auto classes = reference::crease_classes(mesh, point, crease_angle);
+    outputs.resize(all.size());
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        if (classes[c] == classes[k]) outputs[c].push_back(all[k]);
+      }
+    }
+  }
+  return outputs;
+}
+
+// The largest angle between normals and the oracle's, where it has one; where it has none, so must they.
+double largest_error(const reference::Mesh& mesh, const std::vector<std::vector<reference::Corner>>& outputs,
+                     const std::vector<float>& normals, const std::string& weighting, Real t) {
+  EXPECT_EQ(normals.size(), 3 * outputs.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const Vector expected = reference::element_normal(mesh, outputs[i], weighting, t), found = vector_at(normals, i);
+    EXPECT_EQ(reference::length(expected) == 0, reference::length(found) == 0) << i;
+    worst = std::max(worst, static_cast<double>(reference::angle(expected, found)));
+  }
+  return worst;
+}
+
+std::vector<Motion> motions() {
+  return {fixtures::smooth_morph(5), fixtures::shaken(fixtures::box_grid(2), 0.2, 3),
+          test::torn(fixtures::shaken(fixtures::icosphere(1), 0.2, 4))};
+}
+
+TEST(NormalSampler, faces_vertices_and_corners_are_exact_at_every_time) {
+  for (const Motion& motion : motions()) {
+    const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
+    for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices, ElementKind::kCorners}) {
+      for (const bool weld : {true, false}) {
+        SampleOptions options = options_of(kind, Weighting::kArea, kind == ElementKind::kCorners ? 33 : 180);
+        options.elements.weld = weld;
+        NormalSampler sampler = sampler_of(motion, options);
+        const auto outputs = corners_of_outputs(mesh, kind, weld, 33);
+        EXPECT_EQ(sampler.output_count(), outputs.size());
+        for (const double t : {0.0, 0.3, 0.5, 0.8125, 1.0}) {
+          const Pose pose = good(sampler.at_time(t));
+          EXPECT_LT(largest_error(mesh, outputs, sampler.normals_of_outputs(pose), "area", t), kTolerance) << t;
+          for (std::size_t v = 0; v < mesh.from.size(); ++v) {
+            const Vector p = reference::position(mesh, v, t);
+            for (std::size_t k = 0; k < 3; ++k)
+              EXPECT_FLOAT_EQ(pose.positions[3 * v + k], static_cast<float>(p[k])) << v << " at " << t;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(NormalSampler, every_weighting_is_computed_anew_at_each_time) {
+  for (const Motion& motion : motions()) {
+    const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
+    for (const WeightingInfo& weighting : kWeightings) {
+      NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kVertices, weighting.weighting));
+      const auto outputs = corners_of_outputs(mesh, ElementKind::kVertices, true, 180);
+      for (const double t : {0.0, 0.4, 1.0}) {
+        const auto normals = sampler.normals_of_outputs(good(sampler.at_time(t)));
+        EXPECT_LT(largest_error(mesh, outputs, normals, std::string(weighting.name), t), kTolerance) << weighting.name;
+      }
+    }
+  }
+}
+
+TEST(NormalSampler, length_area_is_n_itself) {
+  const Motion motion = fixtures::smooth_morph(5);
+  const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+    SampleOptions options = options_of(kind);
+    options.length = NormalLength::kArea;
+    NormalSampler sampler = sampler_of(motion, options);
+    const auto outputs = corners_of_outputs(mesh, kind, true, 180);
+    const auto normals = sampler.normals_of_outputs(good(sampler.at_time(0.7)));
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      const Vector expected = reference::element_normal(mesh, outputs[i], "area", 0.7L);
+      const Real error = reference::length(reference::subtract(expected, vector_at(normals, i)));
+      EXPECT_LT(error, 1e-6L * reference::length(expected)) << i;
+    }
+    const auto rest = sampler.normals_of_outputs(sampler.at_rest());
+    const Vector first = reference::element_normal(mesh, outputs[0], "area", 0);
+    EXPECT_NEAR(rest[2], static_cast<float>(first[2]), 1e-6);
+  }
+}
+
+// A base and two targets, far from the origin, with faces a thousandth of the distance.
+Motion star(double offset) {
+  Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.2, 11);
+  const Motion other = fixtures::shaken(fixtures::icosphere(1), 0.3, 12);
+  motion.keyframes.push_back(other.keyframes[1]);
+  motion.segments = {{0, 1}, {0, 2}};
+  return test::with_positions(motion, [offset](const fixtures::Point& p) {
+    return fixtures::Point{p[0] + offset, p[1] - offset, p[2] + offset};
+  });
+}
+
+TEST(NormalSampler, poses_of_weights_are_those_of_the_positions_in_double) {
+  for (const double offset : {0.0, 1000.0}) {
+    const Motion motion = star(offset);
+    const reference::Mesh to_first = test::reference_mesh(motion.segment(0));
+    const reference::Mesh to_second = test::reference_mesh(motion.segment(1));
+    for (const WeightingInfo& weighting : kWeightings) {
+      for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+        if (kind == ElementKind::kFaces && weighting.weighting != Weighting::kArea) continue;
+        NormalSampler sampler = sampler_of(motion, options_of(kind, weighting.weighting));
+        const auto outputs = corners_of_outputs(to_first, kind, true, 180);
+        for (const auto& weights : std::vector<std::vector<double>>{{0, 0}, {1, 0}, {0.3, 0.6}, {-0.25, 1.5}}) {
+          reference::Mesh pose = to_first;
+          for (std::size_t v = 0; v < pose.from.size(); ++v) {
+            const Vector first = reference::subtract(to_first.to[v], to_first.from[v]);
+            const Vector second = reference::subtract(to_second.to[v], to_second.from[v]);
+            pose.from[v] =
+                reference::add(to_first.from[v], reference::add(reference::scaled(Real(weights[0]), first),
+                                                                reference::scaled(Real(weights[1]), second)));
+          }
+          pose.to = pose.from;
+          const Pose found = good(sampler.at_weights(weights));
+          EXPECT_LT(largest_error(pose, outputs, sampler.normals_of_outputs(found), std::string(weighting.name), 0),
+                    kTolerance)
+              << weighting.name << " at " << offset;
+          EXPECT_FLOAT_EQ(found.positions[3], static_cast<float>(pose.from[1][0]));
+        }
+      }
+    }
+  }
+}
+
+TEST(NormalSampler, largest_positions_still_have_a_pose) {
+  Motion motion = star(0);
+  for (auto& keyframe : motion.keyframes) {
+    for (float& c : keyframe.positions) c *= 2e38F;
+  }
+  NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kFaces));
+  const Pose pose = good(sampler.at_weights(std::vector<double>{0, 0}));
+  EXPECT_EQ(pose.positions, motion.keyframes[0].positions);
+  for (const float component : pose.normals) EXPECT_TRUE(std::isfinite(component));
+  EXPECT_EQ(sampler.at_weights(std::vector<double>{99, 0}).error().code, ErrorCode::kUsage);
+}
+
+TEST(NormalSampler, copies_along_a_seam_have_the_same_bits) {
+  const Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.2, 4));
+  const auto distinct = [&motion](bool weld, Weighting weighting) {
+    SampleOptions options = options_of(ElementKind::kVertices, weighting);
+    options.elements.weld = weld;
+    NormalSampler sampler = sampler_of(motion, options);
+    const auto normals = sampler.normals_of_outputs(good(sampler.at_time(0.37)));
+    std::set<std::vector<float>> at_points;  // position and normal
+    for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) {
+      std::vector<float> both(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
+                              motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
+      both.insert(both.end(), normals.begin() + static_cast<std::ptrdiff_t>(3 * v),
+                  normals.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
+      at_points.insert(std::move(both));
+    }
+    return at_points.size();
+  };
+  for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {
+    EXPECT_EQ(distinct(true, weighting), 42U);
+    EXPECT_EQ(distinct(false, weighting), 240U);
+  }
+}
+
+// A cube whose top rises; sides and top are quads.
+Motion cube() { return fixtures::shaken(fixtures::box_grid(1), 0, 1); }
+
+TEST(NormalSampler, hard_edges_come_from_smoothing_groups_or_split_normals) {
+  const Motion motion = cube();
+  ASSERT_EQ(motion.topology.face_count(), 6U);
+  const auto count_normals = [&motion](const ElementOptions& elements) {
+    SampleOptions options;
+    options.elements = elements;
+    options.elements.kind = ElementKind::kCorners;
+    NormalSampler sampler = sampler_of(motion, options);
+    const auto normals = sampler.normals_of_outputs(sampler.at_rest());
+    std::set<std::vector<float>> distinct;
+    for (std::size_t c = 0; c < 24; ++c)
+      distinct.insert({normals[3 * c] + 0.0F, normals[3 * c + 1] + 0.0F, normals[3 * c + 2] + 0.0F});
+    return distinct.size();
+  };
+  ElementOptions elements;
+  EXPECT_EQ(count_normals(elements), 8U) << "smooth";
+  const std::vector<std::uint32_t> none(6, 0), all(6, 7), two = {1, 1, 2, 2, 1, 1};
+  elements.group_of_face = none;
+  EXPECT_EQ(count_normals(elements), 6U) << "every edge is hard";
+  elements.group_of_face = all;
+  EXPECT_EQ(count_normals(elements), 8U);
+  elements.group_of_face = two;
+  EXPECT_EQ(count_normals(elements), 6U) << "four edges of two faces each, and two faces";
+  elements.group_of_face = {};
+  std::vector<float> split;
+  for (std::size_t c = 0; c < 24; ++c) split.insert(split.end(), {0, 0, c < 4 ? 1.0F : -1.0F});
+  elements.normal_of_corner = VectorView<const float>::packed(split.data(), 24);
+  EXPECT_EQ(count_normals(elements), 9U) << "one face apart from the others: 1 + 4 + 4";
+
+  elements.normal_of_corner = VectorView<const float>::packed(split.data(), 23);
+  SampleOptions wrong;
+  wrong.elements = elements;
+  wrong.elements.kind = ElementKind::kCorners;
+  EXPECT_EQ(NormalSampler::make(motion, wrong).error().code, ErrorCode::kInvalidInput);
+}
+
+TEST(NormalSampler, elements_without_area_are_zero_and_limits_are_kept) {
+  // Vertex 4 has no face, the second face has no area; the first has none at t = 1 only.
+  Motion motion;
+  motion.topology = Topology::triangles(5, {0, 1, 2, 0, 3, 3}).value();
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 9, 9, 9}, 0, ""},
+                      {{0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 5, 5, 9, 9, 9}, 1, ""}};
+  motion.connect_as_sequence();
+  NormalSampler exact = sampler_of(motion, options_of(ElementKind::kVertices));
+  const auto limit = exact.normals_of_outputs(good(exact.at_time(1)));
+  EXPECT_EQ(limit, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0}));
+  NormalSampler anew = sampler_of(motion, options_of(ElementKind::kVertices, Weighting::kAngle));
+  EXPECT_EQ(anew.normals_of_outputs(good(anew.at_time(1))), std::vector<float>(15, 0.0F));
+}
+
+Motion three_keyframes() {
+  // The quarter turn of a face, and then on its way the other: one-sided normals differ at the middle keyframe.
+  Motion motion;
+  motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+  motion.keyframes = {
+      {{0, 0, 0, 1, 0, 0, 0, 1, 0}, 2, ""}, {{0, 0, 0, 1, 0, 0, 1, 0, 0}, 3, ""}, {{0, 0, 0, 1, 0, 0, 0, 0, 1}, 5, ""}};
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(FindInstant, keyframe_belongs_to_the_segment_that_begins_there) {
+  const Motion motion = three_keyframes();
+  const auto at = [&motion](double time) {
+    const Instant instant = find_instant(motion, time).value();
+    return std::pair{instant.segment, instant.t};
+  };
+  EXPECT_EQ(at(2), (std::pair<std::size_t, double>{0, 0}));
+  EXPECT_EQ(at(2.25), (std::pair<std::size_t, double>{0, 0.25}));
+  EXPECT_EQ(at(3), (std::pair<std::size_t, double>{1, 0}));
+  EXPECT_EQ(at(4), (std::pair<std::size_t, double>{1, 0.5}));
+  EXPECT_EQ(at(5), (std::pair<std::size_t, double>{1, 1}));
+
+  NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kFaces));
+  EXPECT_EQ(good(sampler.at_time(3)).normals, (std::vector<float>{0, -1, 0})) << "the limit from after";
+  EXPECT_EQ(good(sampler.at_time(2.5)).normals, (std::vector<float>{0, 0, 1})) << "curves of the right segment";
+  EXPECT_EQ(good(sampler.at_time(4)).normals, (std::vector<float>{0, -1, 0}));
+}
+
+TEST(FindInstant, time_without_motion_is_a_usage_error_with_the_range) {
+  const Motion motion = three_keyframes();
+  for (const double time : {1.999, 5.001, -3.0, std::nan("")}) {
+    const auto instant = find_instant(motion, time);
+    ASSERT_FALSE(instant.ok()) << time;
+    EXPECT_EQ(instant.error().code, ErrorCode::kUsage);
+    EXPECT_NE(instant.error().message.find("from 2 to 5"), std::string::npos) << instant.error().message;
+  }
+  Motion gap = motion;
+  gap.keyframes.push_back(gap.keyframes.back());
+  gap.keyframes[2].time = 4;
+  gap.keyframes.push_back(gap.keyframes.back());
+  gap.keyframes[4].time = 7;
+  gap.segments = {{0, 1}, {3, 4}};
+  EXPECT_TRUE(find_instant(gap, 6).ok());
+  EXPECT_FALSE(find_instant(gap, 3.5).ok());
+}
+
+TEST(FindInstant, blend_shapes_and_still_meshes_have_no_times) {
+  EXPECT_EQ(find_instant(star(0), 0.5).error().code, ErrorCode::kUsage);
+  Motion still = three_keyframes();
+  still.segments.clear();
+  EXPECT_EQ(find_instant(still, 2).error().code, ErrorCode::kUsage);
+  EXPECT_TRUE(is_blend_shapes(star(0)));
+  EXPECT_FALSE(is_blend_shapes(three_keyframes()));
+  EXPECT_FALSE(is_blend_shapes(still));
+}
+
+TEST(CheckWeights, asks_for_one_finite_weight_for_each_target) {
+  EXPECT_TRUE(check_weights(star(0), std::vector<double>{0, -7}).ok());
+  const auto message = [](const Motion& motion, const std::vector<double>& weights) {
+    const Status status = check_weights(motion, weights);
+    EXPECT_EQ(status.ok() ? ErrorCode::kFailed : status.error().code, ErrorCode::kUsage);
+    return status.ok() ? "" : status.error().message;
+  };
+  EXPECT_NE(message(star(0), {1}).find("2 targets, but 1 weight"), std::string::npos);
+  EXPECT_NE(message(star(0), {1, std::nan("")}).find("target 1"), std::string::npos);
+  EXPECT_NE(message(three_keyframes(), {1, 0}).find("blend shapes"), std::string::npos);
+}
+
+TEST(NormalSampler, refuses_what_has_no_meaning) {
+  const Motion motion = cube();
+  EXPECT_EQ(NormalSampler::make(motion, options_of(ElementKind::kFaces, Weighting::kAngle)).error().code,
+            ErrorCode::kUsage);
+  SampleOptions options = options_of(ElementKind::kVertices, Weighting::kUniform);
+  options.length = NormalLength::kArea;
+  EXPECT_EQ(NormalSampler::make(motion, options).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(NormalSampler::make(motion, options_of(ElementKind::kCorners, Weighting::kArea, 181)).error().code,
+            ErrorCode::kUsage);
+}
+
+TEST(NormalSampler, mesh_that_stands_still_has_normals) {
+  Motion still = cube();
+  still.segments.clear();
+  still.keyframes.resize(1);
+  for (const double crease : {180.0, 30.0}) {
+    NormalSampler sampler = sampler_of(still, options_of(ElementKind::kCorners, Weighting::kArea, crease));
+    const Pose pose = sampler.at_rest();
+    EXPECT_EQ(pose.normals.size(), crease == 180 ? 24U : 72U);
+    EXPECT_EQ(pose.positions, still.keyframes[0].positions);
+  }
+}
+
+}  // namespace
+}  // namespace chronormal
