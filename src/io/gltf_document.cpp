@@ -68,6 +68,17 @@ const std::vector<GltfNode>& GltfDocument::nodes() const noexcept { return state
 const std::vector<GltfAnimation>& GltfDocument::animations() const noexcept { return state_->model.animations; }
 const std::vector<std::string>& GltfDocument::extensions() const noexcept { return state_->model.extensions; }
 
+AffineTransform GltfDocument::world_transform(std::size_t node) const noexcept {
+  const auto& transforms = state_->model.transforms;
+  AffineTransform result;
+  for (std::optional<std::uint32_t> at = static_cast<std::uint32_t>(node); at; at = nodes()[*at].parent) {
+    const auto found = std::lower_bound(transforms.begin(), transforms.end(), *at,
+                                        [](const auto& entry, std::size_t index) { return entry.first < index; });
+    if (found != transforms.end() && found->first == *at) result = composed(found->second, result);
+  }
+  return result;
+}
+
 bool GltfDocument::recognises(std::string_view first_bytes) noexcept {
   if (is_glb(first_bytes)) return true;
   if (first_bytes.starts_with("\xEF\xBB\xBF")) first_bytes.remove_prefix(3);

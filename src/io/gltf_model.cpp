@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -232,11 +233,47 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   node.has_skin = item.has("skin");
   if (const auto mesh = item.find_index("mesh", kMostNodes, "meshes")) node.mesh = static_cast<std::uint32_t>(*mesh);
   node.weights = parse_weights(item);
+  parse_transform(item, index);
   const std::optional<JsonView> children = item.array("children");
   for (std::size_t c = 0; children && c < children->size(); ++c) {
     const std::optional<std::size_t> child = children->item(c).as_index(kMostNodes, "nodes");
     if (!child) return;
     children_.emplace_back(static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(*child));
+  }
+}
+
+void Parser::parse_transform(const JsonView& item, std::size_t index) {
+  // The numbers of an array that must have `count` of them; false where there is none.
+  const auto read = [&](const char* key, std::size_t count, double* result) {
+    const std::optional<JsonView> array = item.array(key);
+    if (!array) return false;
+    if (array->size() != count) {
+      array->complain("this must be " + std::to_string(count) + " numbers, not " + std::to_string(array->size()));
+      return false;
+    }
+    for (std::size_t i = 0; i < count; ++i) result[i] = array->item(i).as_number();
+    return true;
+  };
+  std::array<double, 16> matrix{};
+  std::array<double, 3> translation = {0, 0, 0}, scale = {1, 1, 1};
+  std::array<double, 4> rotation = {0, 0, 0, 1};
+  const bool has_matrix = read("matrix", 16, matrix.data());
+  const bool has_translation = read("translation", 3, translation.data());
+  const bool has_rotation = read("rotation", 4, rotation.data());
+  const bool has_scale = read("scale", 3, scale.data());
+  const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
+  if (has_matrix) {
+    if (has_translation || has_rotation || has_scale)
+      return item.complain("matrix", "a node has either a matrix or translation, rotation and scale");
+    const double* m = matrix.data();
+    model_.transforms.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
+  } else if (has_translation || has_rotation || has_scale) {
+    const double length = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] +
+                                    (rotation[2] * rotation[2] + rotation[3] * rotation[3]));
+    if (!(std::fabs(length - 1) < 1e-2)) return item.complain("rotation", "the quaternion is not of length 1");
+    for (double& component : rotation) component /= length;
+    model_.transforms.emplace_back(index,
+                                   affine_transform({vector(translation.data()), rotation, vector(scale.data())}));
   }
 }
 

@@ -95,6 +95,7 @@ struct Model {
   std::vector<GltfMesh> meshes;
   std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
   std::vector<GltfNode> nodes;
+  std::vector<std::pair<std::size_t, AffineTransform>> transforms;  ///< of nodes that have one, in their order
   std::vector<GltfAnimation> animations;
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
   std::vector<std::string> extensions;

@@ -53,6 +53,7 @@ class Parser {
   std::optional<Compression> parse_compression(const JsonView& item, const BufferView& view);
   void parse_accessor(const JsonView& item);
   void parse_sparse(const JsonView& item, Accessor& accessor);
+  void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
   /// The member "weights" of a mesh or node; empty where there is none.

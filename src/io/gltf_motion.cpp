@@ -20,7 +20,7 @@ using gltf::WeightCurve;
 // The primitives of a motion, one after the other, and what moves them.
 class Assembly {
  public:
-  explicit Assembly(const GltfDocument& document) : document_(document) {}
+  Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
 
   // Adds the primitives with faces of a mesh.
   void add_mesh(std::optional<std::size_t> node, std::size_t mesh) {
@@ -29,6 +29,22 @@ class Assembly {
       if (!primitives[p].has_faces()) continue;
       result_.parts.push_back({node, mesh, p, vertex_count_, primitives[p].vertex_count, 0, 0});
       vertex_count_ += primitives[p].vertex_count;
+      const bool moves = world_ && node && !document_.nodes()[*node].has_skin;
+      transforms_.push_back(moves ? document_.world_transform(*node) : AffineTransform());
+    }
+  }
+
+  // Adds the meshes that `wanted` names, in the world as often as nodes carry them.
+  template <class Wanted>
+  void add_meshes(const Wanted& wanted) {
+    if (world_) {
+      for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
+        if (const auto mesh = document_.nodes()[n].mesh; mesh && wanted(*mesh)) add_mesh(n, *mesh);
+      }
+    } else {
+      for (std::size_t m = 0; m < document_.meshes().size(); ++m) {
+        if (wanted(m)) add_mesh(std::nullopt, m);
+      }
     }
   }
 
@@ -63,11 +79,16 @@ class Assembly {
   // Reads geometry and faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
-    for (GltfPart& part : result_.parts) {
+    for (std::size_t p = 0; p < parts().size(); ++p) {
+      GltfPart& part = result_.parts[p];
       Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
       if (!geometry) return geometry.error();
       part.first_face = corners.size() / 3;
       part.face_count = geometry.value().corners.size() / 3;
+      if (normal_matrix(transforms_[p]).mirrored) {
+        for (std::size_t c = 0; c + 2 < geometry.value().corners.size(); c += 3)
+          std::swap(geometry.value().corners[c + 1], geometry.value().corners[c + 2]);
+      }
       for (const std::uint32_t vertex : geometry.value().corners)
         corners.push_back(static_cast<std::uint32_t>(part.first_vertex + vertex));
       geometry.value().corners = {};
@@ -81,6 +102,7 @@ class Assembly {
   }
 
   [[nodiscard]] const GltfGeometry& geometry(std::size_t part) const { return geometries_[part]; }
+  [[nodiscard]] const AffineTransform& transform(std::size_t part) const { return transforms_[part]; }
 
   // Adds a keyframe; weights(part) gives the weights of the targets of a part, as a span.
   template <class Weights>
@@ -98,6 +120,12 @@ class Assembly {
         const double weight = part_weights[k];
         if (weight == 0) continue;
         for (std::size_t i = 0; i < deltas.size(); ++i) sums[i] += weight * static_cast<double>(deltas[i]);
+      }
+      for (std::size_t i = 0; world_ && i + 2 < sums.size(); i += 3) {
+        const Vec3d placed = transforms_[p]({sums[i], sums[i + 1], sums[i + 2]});
+        sums[i] = placed.x;
+        sums[i + 1] = placed.y;
+        sums[i + 2] = placed.z;
       }
       for (std::size_t i = 0; i < sums.size(); ++i) {
         if (const char* const fault = binary::coordinate_fault(sums[i]))
@@ -124,9 +152,11 @@ class Assembly {
 
  private:
   const GltfDocument& document_;
+  bool world_;
   GltfMotion result_;
   std::size_t vertex_count_ = 0;
-  std::vector<GltfGeometry> geometries_;  // beside parts
+  std::vector<GltfGeometry> geometries_;     // beside parts
+  std::vector<AffineTransform> transforms_;  // beside parts
 };
 
 std::string target_name(const GltfDocument& document, std::size_t target) {
@@ -137,13 +167,11 @@ std::string target_name(const GltfDocument& document, std::size_t target) {
 }
 
 Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOptions& options) {
-  Assembly assembly(document);
+  Assembly assembly(document, options.world);
+  assembly.add_meshes([&](std::size_t mesh) { return document.meshes()[mesh].target_count > 0; });
   std::size_t target_count = 0;
-  for (std::size_t m = 0; m < document.meshes().size(); ++m) {
-    if (document.meshes()[m].target_count == 0) continue;
-    assembly.add_mesh(std::nullopt, m);
-    target_count = std::max(target_count, document.meshes()[m].target_count);
-  }
+  for (const GltfPart& part : assembly.parts())
+    target_count = std::max(target_count, document.meshes()[part.mesh].target_count);
   if (assembly.empty())
     return invalid_input(document.name(), "no mesh with faces has morph targets, so that nothing moves");
   if (Status status = assembly.check_memory(target_count + 1, options.most_bytes); !status) return status.error();
@@ -166,7 +194,7 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)
-      : document_(document), animation_(animation), options_(options), assembly_(document) {}
+      : document_(document), animation_(animation), options_(options), assembly_(document, options.world) {}
 
   Result<GltfMotion> read() {
     if (Status status = read_curves(); !status) return status.error();
@@ -234,16 +262,25 @@ class AnimationReader {
     std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
     for (std::size_t p = 0; p < assembly_.parts().size(); ++p) {
       const GltfGeometry& geometry = assembly_.geometry(p);
-      for (std::size_t i = 0; i < geometry.positions.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], double{geometry.positions[i]});
-        high[i % 3] = std::max(high[i % 3], double{geometry.positions[i]});
+      const AffineTransform& transform = assembly_.transform(p);
+      const auto vector = [](const std::vector<float>& values, std::size_t at) {
+        return Vec3d{double{values[at]}, double{values[at + 1]}, double{values[at + 2]}};
+      };
+      for (std::size_t at = 0; at + 2 < geometry.positions.size(); at += 3) {
+        const Vec3d position = transform(vector(geometry.positions, at));
+        const double coordinates[] = {position.x, position.y, position.z};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], coordinates[axis]);
+          high[axis] = std::max(high[axis], coordinates[axis]);
+        }
       }
       std::vector<double>& reach = reach_.emplace_back();
       for (const GltfGeometry::Target& target : geometry.targets) {
         double longest = 0;
-        for (std::size_t i = 0; i + 2 < target.positions.size(); i += 3)
-          longest = std::max(longest, std::hypot(double{target.positions[i]}, double{target.positions[i + 1]},
-                                                 double{target.positions[i + 2]}));
+        for (std::size_t at = 0; at + 2 < target.positions.size(); at += 3) {
+          const Vec3d way = transform(vector(target.positions, at)) - transform.offset;
+          longest = std::max(longest, std::hypot(way.x, way.y, way.z));
+        }
         reach.push_back(longest);
         size_ = std::max(size_, longest);
       }
@@ -337,11 +374,11 @@ Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMoti
   return AnimationReader(document, animation.value(), options).read();
 }
 
-Result<GltfMotion> read_gltf_mesh(const GltfDocument& document) {
-  Assembly assembly(document);
-  for (std::size_t m = 0; m < document.meshes().size(); ++m) assembly.add_mesh(std::nullopt, m);
+Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options) {
+  Assembly assembly(document, options.world);
+  assembly.add_meshes([](std::size_t) { return true; });
   if (assembly.empty()) return invalid_input(document.name(), "there is no mesh with faces");
-  if (Status status = assembly.check_memory(1, GltfMotionOptions().most_bytes); !status) return status.error();
+  if (Status status = assembly.check_memory(1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
   const auto default_weights = [&](std::size_t p) {
     return std::span<const double>(document.meshes()[assembly.parts()[p].mesh].weights);

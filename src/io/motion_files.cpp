@@ -92,9 +92,12 @@ bool is_movable(const GltfDocument& document) {
 }
 
 Result<Motion> motion_of(const GltfDocument& document, const MotionOptions& options, bool allow_mesh) {
+  GltfMotionOptions gltf_options;
+  gltf_options.animation = options.animation;
+  gltf_options.world = options.world;
   Result<GltfMotion> read = allow_mesh && options.animation.empty() && !is_movable(document)
-                                ? read_gltf_mesh(document)
-                                : read_gltf_motion(document, {options.animation});
+                                ? read_gltf_mesh(document, gltf_options)
+                                : read_gltf_motion(document, gltf_options);
   if (!read) return read.error();
   return std::move(read.value().motion);
 }

@@ -32,7 +32,7 @@ class MotionFiles : public ::testing::Test {
   [[nodiscard]] Result<Motion> read(const std::vector<std::string>& names, double frames_per_second = 1) const {
     std::vector<std::string> paths;
     for (const std::string& name : names) paths.push_back(folder_ / name);
-    return read_motion(paths, {frames_per_second, "", false});
+    return read_motion(paths, {frames_per_second, "", false, false});
   }
   void expect_turning(const std::vector<std::string>& names, double first, double second, double rate = 1) const {
     SCOPED_TRACE(names.front());

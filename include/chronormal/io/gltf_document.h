@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/normals/transform.h"
 
 namespace chronormal {
 
@@ -125,6 +126,9 @@ class GltfDocument {
   [[nodiscard]] const std::vector<GltfMesh>& meshes() const noexcept;
   [[nodiscard]] const std::vector<GltfNode>& nodes() const noexcept;
   [[nodiscard]] const std::vector<GltfAnimation>& animations() const noexcept;
+  /// Where a node puts its mesh: its matrix, or its scale, rotation and translation, and those of its ancestors, as
+  /// they stand in the file. O(ancestors).
+  [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
 

@@ -7,8 +7,11 @@
 /// jump at them, where no segment is; a jump at the last key leads out of the motion. CUBICSPLINE tracks are cut into
 /// straight pieces so short that no vertex is farther from its true place than a stated distance.
 ///
-/// Vertices are those of the file, neither welded nor transformed by nodes or skins, part after part: in the order of
-/// meshes and primitives for targets, of nodes and primitives for an animation.
+/// Vertices are those of the file, not welded, part after part: in the order of meshes and primitives for targets, of
+/// nodes and primitives for an animation or in the world. They are where the mesh has them, or in the world where its
+/// nodes put them as they stand in the file (animations of nodes and skins are not applied; by the specification, a
+/// node with a skin does not move its mesh). Where a node mirrors, faces are turned round, so that their normals keep
+/// the outward side.
 #ifndef CHRONORMAL_IO_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_MOTION_H_
 
@@ -25,6 +28,7 @@ namespace chronormal {
 
 struct GltfMotionOptions {
   std::string animation;  ///< name or index; empty: the targets
+  bool world = false;     ///< vertices where nodes put them, once for each node
   /// The largest distance between a cut cubic spline and the true one, in parts of the diagonal of the bounding box.
   double curve_tolerance = 1e-5;
   /// The most memory that keyframes may take, in bytes: a small file can ask for much.
@@ -33,7 +37,7 @@ struct GltfMotionOptions {
 
 /// One primitive of the motion: where its vertices and faces came from.
 struct GltfPart {
-  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing for targets
+  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing where nodes do not matter
   std::size_t mesh = 0, primitive = 0;
   std::size_t first_vertex = 0, vertex_count = 0;
   std::size_t first_face = 0, face_count = 0;
@@ -54,8 +58,9 @@ struct GltfMotion {
 [[nodiscard]] Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMotionOptions& options);
 
 /// Reads all primitives with faces at the default weights of their meshes, as one keyframe without a segment. (So the
-/// result is not valid by itself.) Errors: of GltfDocument; kInvalidInput where there are none.
-[[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document);
+/// result is not valid by itself.) The animation of the options is not used.
+/// Errors: of GltfDocument; kInvalidInput where there are none, or they take more than most_bytes.
+[[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options = {});
 
 }  // namespace chronormal
 

@@ -23,6 +23,7 @@ struct MotionOptions {
   double frames_per_second = 1;  ///< from 1e-9 to 1e9
   std::string animation;         ///< of a glTF file, by name or index; empty: its morph targets (io/gltf_motion.h)
   bool allow_external = false;   ///< a glTF file may name buffers outside its folder
+  bool world = false;            ///< vertices of a glTF file are where its nodes put them
 };
 
 /// Reads the motion that the inputs stand for. The result is valid (motion/validate.h).
