@@ -68,31 +68,11 @@ bool is_gltf(const std::string& path, std::string_view bytes) {
   return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
 }
 
-// What is on the standard input, which can be read only once: a whole motion, or a mesh.
-Result<Motion> read_stream(std::string_view bytes, double frames_per_second) {
-  const std::string name = "<stdin>";
-  for (const MotionReader& reader : motion_readers()) {
-    if (reader.recognises(bytes)) return reader.read(bytes, name, frames_per_second);
-  }
-  auto mesh = read_mesh(bytes, name);
-  if (!mesh) return mesh.error();
-  MeshFrame frame = std::move(mesh).value();
-  return Motion{std::move(frame.topology), {{std::move(frame.positions), 0, name}}, {}};
-}
-
 bool is_one_file(const InputOptions& options) {
   if (options.files.size() != 1 || !options.base.empty()) return false;
   const std::string& path = options.files.front();
   std::error_code code;
   return path == "-" || is_gltf_file(path) || std::filesystem::is_regular_file(path, code);
-}
-
-Result<NamedMotion> read_moving_or_still(const InputOptions& options, Progress& progress) {
-  if (options.files.empty() || !options.base.empty()) return read_input(options, progress);
-  auto motion = read_motion_or_mesh(options.files, options.motion_options(), progress.callback("reading"));
-  progress.clear();
-  if (!motion) return motion.error();
-  return NamedMotion{name_of_files(options.files), std::move(motion).value()};
 }
 
 Result<Inspected> inspect_input(const InputOptions& options, Progress& progress) {
@@ -105,15 +85,14 @@ Result<Inspected> inspect_input(const InputOptions& options, Progress& progress)
     auto file = std::make_unique<FileBytes>(std::move(opened).value());
     if (is_gltf(path, file->bytes())) return inspect_gltf(std::move(file), options, progress);
     if (path == "-") {
-      if (!options.animation.empty()) return Error{ErrorCode::kUsage, "--animation", "only a glTF file has animations"};
-      const auto motion = read_stream(file->bytes(), options.frames_per_second);
+      const auto motion = read_motion_or_mesh(file->bytes(), path, options.motion_options());
       if (!motion) return motion.error();
       result.name = path;
       take_motion(motion.value(), result, progress);
       return result;
     }
   }
-  const auto input = read_moving_or_still(options, progress);
+  const auto input = read_input_or_mesh(options, progress);
   if (!input) return input.error();
   result.name = input.value().name;
   take_motion(input.value().motion, result, progress);

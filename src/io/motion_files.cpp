@@ -109,29 +109,21 @@ Result<Motion> mesh_as_motion(std::string_view bytes, const std::string& input) 
   return Motion{std::move(frame.topology), {{std::move(frame.positions), 0, file_name_of(input)}}, {}};
 }
 
-// Reads one file that is a whole motion: by its extension, or else by its content.
-Result<Motion> read_whole(const std::string& input, const MotionOptions& options, bool allow_mesh) {
-  const GltfOptions gltf_options{options.allow_external};
-  if (is_gltf_file(input)) {
-    const Result<GltfDocument> document = GltfDocument::open(input, gltf_options);
-    if (!document) return document.error();
-    return motion_of(document.value(), options, allow_mesh);
-  }
-  const Result<FileBytes> file = FileBytes::open(input);
-  if (!file) return file.error();
-  const std::string_view bytes = file.value().bytes();
+// Reads the bytes of one input that is a whole motion: by its extension, or else by its content.
+Result<Motion> read_whole(std::string_view bytes, const std::string& input, const MotionOptions& options,
+                          bool allow_mesh) {
   const std::string name = file_name_of(input);
-  const MotionReader* reader = find_motion_reader(input);
+  const MotionReader* reader = is_gltf_file(input) ? nullptr : find_motion_reader(input);
   for (const MotionReader& candidate : motion_readers()) {
-    if (reader == nullptr && candidate.recognises(bytes)) reader = &candidate;
+    if (reader == nullptr && !is_gltf_file(input) && candidate.recognises(bytes)) reader = &candidate;
   }
-  const bool is_gltf = reader == nullptr && GltfDocument::recognises(bytes);
+  const bool is_gltf = is_gltf_file(input) || (reader == nullptr && GltfDocument::recognises(bytes));
   if (!options.animation.empty() && !is_gltf) return not_animated(input);
   if (reader != nullptr) return reader->read(bytes, name, options.frames_per_second);
   if (is_gltf) {
     std::optional<std::string> folder;
     if (input != "-") folder = std::filesystem::path(input).parent_path().string();
-    const Result<GltfDocument> document = GltfDocument::read(bytes, name, folder, gltf_options);
+    const Result<GltfDocument> document = GltfDocument::read(bytes, name, folder, {options.allow_external});
     if (!document) return document.error();
     return motion_of(document.value(), options, allow_mesh);
   }
@@ -141,11 +133,14 @@ Result<Motion> read_whole(const std::string& input, const MotionOptions& options
                        "(.gltf, .glb, .npz, .md2); a sequence of .obj or .ply files needs two or more");
 }
 
+Status check_frame_rate(const MotionOptions& options) {
+  if (options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9) return Success{};
+  return Error{ErrorCode::kUsage, "", "the frame rate (--fps) must be a number from 1e-9 to 1e9"};
+}
+
 Result<Motion> read_inputs(std::span<const std::string> inputs, const MotionOptions& options, bool allow_mesh,
                            const Progress& progress) {
-  if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
-    return Error{ErrorCode::kUsage, "", "the frame rate (--fps) must be a number from 1e-9 to 1e9"};
-
+  if (Status status = check_frame_rate(options); !status) return status.error();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::optional<CacheInput> cache = as_cache(inputs[i]);
     if (!cache) continue;
@@ -159,7 +154,9 @@ Result<Motion> read_inputs(std::span<const std::string> inputs, const MotionOpti
       return Error{ErrorCode::kUsage, input, "the file is a whole motion: give it alone"};
   }
   if (inputs.size() == 1 && may_be_whole(inputs[0])) {
-    Result<Motion> motion = read_whole(inputs[0], options, allow_mesh);
+    const Result<FileBytes> file = FileBytes::open(inputs[0]);
+    if (!file) return file.error();
+    Result<Motion> motion = read_whole(file.value().bytes(), inputs[0], options, allow_mesh);
     if (motion && progress) progress(1, 1);
     return motion;
   }
@@ -186,6 +183,11 @@ bool is_gltf_file(const std::string& input) {
 Result<Motion> read_motion(std::span<const std::string> inputs, const MotionOptions& options,
                            const Progress& progress) {
   return read_inputs(inputs, options, false, progress);
+}
+
+Result<Motion> read_motion_or_mesh(std::string_view bytes, const std::string& input, const MotionOptions& options) {
+  if (Status status = check_frame_rate(options); !status) return status.error();
+  return read_whole(bytes, input, options, true);
 }
 
 Result<Motion> read_motion_or_mesh(std::span<const std::string> inputs, const MotionOptions& options,

@@ -12,6 +12,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/sequence.h"
@@ -45,6 +46,10 @@ struct MotionOptions {
 [[nodiscard]] Result<Motion> read_motion_or_mesh(
     std::span<const std::string> inputs, const MotionOptions& options,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// The same for one input whose bytes are there already, the standard input ("-") above all.
+[[nodiscard]] Result<Motion> read_motion_or_mesh(std::string_view bytes, const std::string& input,
+                                                 const MotionOptions& options);
 
 /// Whether an input is a glTF file by its extension.
 [[nodiscard]] bool is_gltf_file(const std::string& input);
