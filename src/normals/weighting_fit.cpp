@@ -332,6 +332,16 @@ Sampled sample(const Segment& segment, std::span<const Vec3d> of_faces, const El
   return result;
 }
 
+// Whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish with its area
+// only; of other polygons that is true of uniform weights.
+bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
+  if (faces.empty()) return false;
+  for (const std::uint32_t face : faces) {
+    if (face != faces.front()) return false;
+  }
+  return weighting == Weighting::kUniform || segment.topology->face(faces.front()).size() == 3;
+}
+
 }  // namespace
 
 WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting) {
@@ -362,6 +372,10 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
 
   parallel_blocks(groups.size(), kBlock, [&](IndexRange elements) {
     for (std::size_t e = elements.first; e < elements.end(); ++e) {
+      if (is_direction_of_one_face(segment, groups.faces(e), weighting)) {
+        face_control_normals(segment, {groups.faces(e).front(), 1}, {&fit.normals[e], 1});
+        continue;
+      }
       Element element{&segment, intervals, groups.corners(e), groups.faces(e), weighting, {}};
       std::array<Vec3d, kSamples + 1> truth;
       std::array<Vec3d, 3> node;

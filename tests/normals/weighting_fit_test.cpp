@@ -79,7 +79,9 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   for (std::size_t e = 0; e < std::min(elements, groups.size()); ++e) {
     const double error =
         sampled_error(mesh, corners[e], std::string(weighting_name(weighting)), fit.normals[e], samples);
-    EXPECT_LE(error, fit.bounds[e]) << weighting_name(weighting) << ", element " << e;
+    // A single triangle has its exact direction and the bound 0, which knows nothing of the last bits.
+    const double rounding = fit.bounds[e] == 0 ? 1e-12 : 0;
+    EXPECT_LE(error, fit.bounds[e] + rounding) << weighting_name(weighting) << ", element " << e;
     EXPECT_LE(fit.bounds[e], std::numbers::pi);
     ++summary.elements;
     if (fit.bounds[e] >= std::numbers::pi) continue;
@@ -242,9 +244,26 @@ TEST(WeightingFit, shuffled_faces_give_the_same_bits) {
 // ---- what cannot be bounded ----------------------------------------------------------------------------------------
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_turns_inside_out) {
-  const Motion motion = fixtures::inside_out_soup(5);
+  // Of the two faces of vertex 0 the first turns over, through no area.
+  const Motion motion = fixtures::make_motion(fixtures::make_triangles(5, {0, 1, 2, 0, 3, 4}),
+                                              {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 1}, {0, -1, 1}},
+                                              {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 1}, {0, -1, 1}});
   const WeightingFit fit = fit_weighting(motion.segment(0), vertices_of(motion), Weighting::kUniform);
-  for (const double bound : fit.bounds) EXPECT_EQ(bound, std::numbers::pi);
+  EXPECT_EQ(fit.bounds[0], std::numbers::pi);
+}
+
+TEST(WeightingFit, a_single_triangle_has_its_own_direction_by_every_weighting) {
+  for (const Motion& motion : {fixtures::moderate_soup(50), fixtures::inside_out_soup(5)}) {
+    std::vector<ControlNormals> of_faces(motion.topology.face_count());
+    face_control_normals(motion.segment(0), {0, of_faces.size()}, of_faces);
+    for (const Weighting weighting : kFitted) {
+      const WeightingFit fit = fit_weighting(motion.segment(0), vertices_of(motion), weighting);
+      for (std::size_t e = 0; e < fit.bounds.size(); ++e) {
+        EXPECT_EQ(fit.bounds[e], 0);
+        EXPECT_EQ(fit.normals[e], of_faces[e / 3]);
+      }
+    }
+  }
 }
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_begins_without_area) {

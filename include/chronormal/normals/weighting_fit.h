@@ -12,7 +12,7 @@
 ///            jumps there, unless it is area-angle), where the sum vanishes, or where the quadratic is off by more than
 ///            a right angle. Where corners are nearly straight, or edges nearly without length, bounds by angle and
 ///            area-angle are looser. NormalCurves adds its own 1e-6 rad. Elements without any area have zero control
-///            normals and the bound 0.
+///            normals and the bound 0; those of a single triangle have its direction, which is exact, and the bound 0.
 /// Source     Moore, Interval Analysis (1966), for Taylor coefficients in intervals.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_FIT_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_FIT_H_
@@ -32,7 +32,7 @@ struct WeightingFit {
 };
 
 /// Fits all elements of a segment. For area the control normals are those of group_normals.h, and the bounds are 0.
-/// On all cores; some 0.1 ms per element of mild motion, more where the motion is strong. The same bits for every
+/// On all cores; some 0.1 ms per element of mild motion, up to 1.5 ms where it is strong. The same bits for every
 /// number of threads.
 [[nodiscard]] WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting);
 
