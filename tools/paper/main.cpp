@@ -6,8 +6,8 @@
 #include <exception>
 
 #include "paper/morphs.h"
-#include "paper/page.h"
 #include "paper/sections.h"
+#include "support/page.h"
 
 namespace chronormal::paper {
 namespace {

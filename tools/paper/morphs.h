@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "chronormal/chronormal.h"
+#include "support/statistics.h"
 
 namespace chronormal::paper {
+
+using namespace pages;
 
 inline constexpr double kPi = 3.14159265358979323846;
 
@@ -73,11 +76,6 @@ class PreparedScheme {
   std::vector<ControlNormals> control_normals_;
   std::unique_ptr<Scheme> scheme_;
 };
-
-[[nodiscard]] double sum(const std::vector<double>& values);
-[[nodiscard]] double largest(const std::vector<double>& values);
-/// The value below which a share of the values lies.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
 
 }  // namespace chronormal::paper
 

@@ -2,9 +2,11 @@
 #ifndef PAPER_SECTIONS_H_
 #define PAPER_SECTIONS_H_
 
-#include "paper/page.h"
+#include "support/page.h"
 
 namespace chronormal::paper {
+
+using namespace pages;
 
 void write_table1(Page& page);   ///< the quality of the paper's schemes, and of ours
 void write_table2(Page& page);   ///< what they cost; the only section with times in it

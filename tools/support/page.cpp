@@ -1,4 +1,4 @@
-#include "paper/page.h"
+#include "support/page.h"
 
 #include <fmt/core.h>
 
@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace chronormal::paper {
+namespace chronormal::pages {
 namespace {
 
 constexpr std::size_t kWidth = 118;
@@ -117,4 +117,4 @@ std::string listed(const std::vector<std::string>& items) {
   return text;
 }
 
-}  // namespace chronormal::paper
+}  // namespace chronormal::pages

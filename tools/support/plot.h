@@ -1,12 +1,12 @@
 /// Pictures for the document: data here, lines by gnuplot, the same bytes on every run.
-#ifndef PAPER_PLOT_H_
-#define PAPER_PLOT_H_
+#ifndef SUPPORT_PLOT_H_
+#define SUPPORT_PLOT_H_
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace chronormal::paper {
+namespace chronormal::pages {
 
 /// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
 enum class Colour { kBlack, kBlue, kOrange, kGreen, kPurple, kSky, kRed, kGrey };
@@ -74,6 +74,6 @@ struct Figure {
 /// Writes the picture as SVG on white. Throws std::runtime_error where gnuplot fails.
 void draw(const Figure& figure, const std::string& path);
 
-}  // namespace chronormal::paper
+}  // namespace chronormal::pages
 
-#endif  // PAPER_PLOT_H_
+#endif  // SUPPORT_PLOT_H_

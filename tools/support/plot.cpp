@@ -1,4 +1,4 @@
-#include "paper/plot.h"
+#include "support/plot.h"
 
 #include <fmt/core.h>
 #include <sys/wait.h>
@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace chronormal::paper {
+namespace chronormal::pages {
 namespace {
 
 const char* hex(Colour colour) {
@@ -153,4 +153,4 @@ void draw(const Figure& figure, const std::string& path) {
   std::ofstream(path, std::ios::binary) << svg;
 }
 
-}  // namespace chronormal::paper
+}  // namespace chronormal::pages

@@ -2,16 +2,16 @@
 ///
 /// No figure is typed into the prose of a section. Where a sentence claims more than the figure in it says ("worse than
 /// linear"), the section also calls require(): a page that would state something untrue is not written.
-#ifndef PAPER_PAGE_H_
-#define PAPER_PAGE_H_
+#ifndef SUPPORT_PAGE_H_
+#define SUPPORT_PAGE_H_
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "paper/plot.h"
+#include "support/plot.h"
 
-namespace chronormal::paper {
+namespace chronormal::pages {
 
 class Page {
  public:
@@ -55,6 +55,6 @@ void require(bool holds, std::string_view claim);
 /// "a, b and c"
 [[nodiscard]] std::string listed(const std::vector<std::string>& items);
 
-}  // namespace chronormal::paper
+}  // namespace chronormal::pages
 
-#endif  // PAPER_PAGE_H_
+#endif  // SUPPORT_PAGE_H_

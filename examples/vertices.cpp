@@ -1,0 +1,56 @@
+#include <cstdio>
+#include <iterator>
+#include <vector>
+
+#include "chronormal/chronormal.h"
+
+namespace {
+
+using namespace chronormal;
+
+// Vertices 0 and 1 at x = 0, and so on along the strip; 4 and 5 at the places of 2 and 3.
+Motion::Keyframe strip(double time, float down) {
+  constexpr float kX[] = {0, 1, 1, 2, 2.5F, 3}, kHeight[] = {0, 0.3F, 0.3F, 0, -1, -2};
+  Motion::Keyframe keyframe{{}, time, {}};
+  for (std::size_t i = 0; i < std::size(kX); ++i) {
+    for (const float y : {0.0F, 1.0F})
+      keyframe.positions.insert(keyframe.positions.end(), {kX[i], y, down * kHeight[i]});
+  }
+  return keyframe;
+}
+
+}  // namespace
+
+int main() {
+  // A strip of four quads, folded along the edge between the second and the third, that opens flat over one second. At
+  // the edge between the first two it is cut, as at a seam of texture: vertices 2, 3 and 4, 5 are at the same places.
+  Motion motion;
+  motion.topology =
+      Topology::polygons(12, {0, 4, 8, 12, 16}, {0, 2, 3, 1, 4, 6, 7, 5, 6, 8, 9, 7, 8, 10, 11, 9}).value();
+  motion.keyframes = {strip(0, 1), strip(1, 0)};
+  motion.connect_as_sequence();
+
+  // Once: vertices that coincide in all keyframes are one, and edges of more than 40 degrees in keyframe 0 are hard.
+  const auto groups = NormalGroups::by_crease_angle(motion, weld_coincident(motion), 40);
+  if (!groups.ok()) {
+    std::fprintf(stderr, "%s\n", groups.error().text().c_str());
+    return 1;
+  }
+  // Once per segment: sums of the control normals of faces, exact for every t between.
+  const NormalCurves curves(all_group_control_normals(motion.segment(0), groups.value()));
+
+  // As often as you like: the different normals as a stream, then a copy to every corner that shows them.
+  const std::size_t corners = groups.value().element_of_output().size();
+  std::vector<float> different(3 * curves.size()), normals(3 * corners);
+  std::printf("%zu corners, %zu different normals\n", corners, curves.size());
+  std::printf("   t      seam, left     seam, right     crease, left    crease, right\n");
+  for (const double t : {0.0, 0.5, 1.0}) {
+    (void)curves.unit_normals(t, VectorView<float>::packed(different.data(), curves.size()));
+    groups.value().copy_to_outputs(VectorView<const float>::packed(different.data(), curves.size()),
+                                   VectorView<float>::packed(normals.data(), corners));
+    std::printf("%.2f", t);
+    for (const std::size_t corner : {1U, 4U, 5U, 8U})  // of faces 0, 1, 1 and 2
+      std::printf("   (%5.2f, %5.2f)", normals[3 * corner], normals[3 * corner + 2]);
+    std::printf("\n");
+  }
+}
