@@ -7,12 +7,13 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/make_human_target.h"
 #include "chronormal/io/targets.h"
+#include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
 
 std::string morph_list() {
-  std::string list = "a built-in morph, may be repeated:";
+  std::string list = "a built-in morph (compare --each takes several):";
   for (const BuiltinMorph& morph : builtin_morphs()) list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
   return list;
 }
@@ -67,6 +68,8 @@ Status check_input(const InputOptions& options) {
   const auto misuse = [](std::string place, std::string message) {
     return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
   };
+  if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
+    return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
     return misuse("--animation", "it chooses among those of a glTF file: name one");
   if (!options.base.empty()) {
@@ -115,7 +118,7 @@ Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& pr
 }
 
 int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, error.text());
+  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
   if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
   return static_cast<int>(error.code);
 }

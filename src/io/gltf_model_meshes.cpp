@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "io/binary.h"
@@ -262,9 +263,14 @@ void Parser::parse_animation(const JsonView& item) {
     if (target->required_text("path") == "weights" && target->has("node"))
       parse_track(item, channel, c, animation, sources, driven_nodes);
   }
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_track;
-  for (std::size_t t = 0; t < sources.size(); ++t)
-    animation.tracks[t].same_keys_as = first_track.try_emplace({sources[t].input, sources[t].output}, t).first->second;
+  // The same numbers mean the same weights only by the same interpolation, for as many targets.
+  std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
+  for (std::size_t t = 0; t < sources.size(); ++t) {
+    GltfTrack& track = animation.tracks[t];
+    const std::size_t target_count = model_.meshes[*model_.nodes[track.node].mesh].target_count;
+    const std::tuple curve(sources[t].input, sources[t].output, track.interpolation, target_count);
+    track.same_keys_as = first_track.try_emplace(curve, t).first->second;
+  }
   model_.animations.push_back(std::move(animation));
   model_.track_sources.push_back(std::move(sources));
 }

@@ -17,6 +17,9 @@ namespace {
 
 using gltf::WeightCurve;
 
+// A face that speaks for a quarter of an hour needs some 200,000 at the usual tolerance.
+constexpr std::size_t kMostPieces = 250000;
+
 // The primitives of a motion, one after the other, and what moves them.
 class Assembly {
  public:
@@ -54,6 +57,7 @@ class Assembly {
   // Whether so many keyframes can be had, with what they are made from: targets, corners, and other_bytes of weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kBytesPerCorner = 2 * sizeof(std::uint32_t);
+    constexpr std::size_t kBytesPerKeyframe = 128;  // with its segment and its place on the heap
     std::size_t left = most_bytes;
     bool enough = true;
     const auto take = [&](std::size_t count, std::size_t size) {
@@ -61,6 +65,7 @@ class Assembly {
       if (enough) left -= count * size;
     };
     take(other_bytes, 1);
+    take(keyframes, kBytesPerKeyframe);
     for (const GltfPart& part : parts()) {
       const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
       const std::size_t copies = keyframes + primitive.targets.size() + 1;  // fewer than 2^40 each
@@ -79,10 +84,14 @@ class Assembly {
   // Reads geometry and faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
+    std::uint32_t body = 0;  // a mesh, as one node carries it
     for (std::size_t p = 0; p < parts().size(); ++p) {
       GltfPart& part = result_.parts[p];
       Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
       if (!geometry) return geometry.error();
+      const bool new_body = p > 0 && (part.mesh != parts()[p - 1].mesh || part.node != parts()[p - 1].node);
+      body += new_body ? 1 : 0;
+      result_.motion.body_of_vertex.insert(result_.motion.body_of_vertex.end(), part.vertex_count, body);
       part.first_face = corners.size() / 3;
       part.face_count = geometry.value().corners.size() / 3;
       if (normal_matrix(transforms_[p]).mirrored) {
@@ -172,8 +181,8 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   std::size_t target_count = 0;
   for (const GltfPart& part : assembly.parts())
     target_count = std::max(target_count, document.meshes()[part.mesh].target_count);
-  if (assembly.empty())
-    return invalid_input(document.name(), "no mesh with faces has morph targets, so that nothing moves");
+  if (assembly.empty() || !has_moving_targets(document))
+    return invalid_input(document.name(), "no mesh with faces has morph targets that move it, so that nothing moves");
   if (Status status = assembly.check_memory(target_count + 1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
 
@@ -204,8 +213,6 @@ class AnimationReader {
     if (Status status = assembly_.read(true); !status) return status.error();
     measure();
     if (Status status = cut(); !status) return status.error();
-    if (Status status = assembly_.check_memory(2 * pieces_.size(), options_.most_bytes, weight_bytes_); !status)
-      return status.error();
     for (std::size_t piece = 0; piece + 1 < pieces_.size(); ++piece) {
       if (Status status = add_segment(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
     }
@@ -310,17 +317,17 @@ class AnimationReader {
     for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
       const double from = keys_[k], duration = keys_[k + 1] - from, a = acceleration(from, keys_[k + 1]);
       const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
-      const double most = static_cast<double>(options_.most_bytes) / 24;
-      if (!(wanted <= most))
+      if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces)))
         return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                             "the cubic splines bend too much to be cut into straight pieces");
+                             "the cubic splines bend too much: they would be cut into more than " +
+                                 std::to_string(kMostPieces) + " straight pieces");
       const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const std::size_t keyframes = 2 * (pieces_.size() + count);
+      if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
       for (std::size_t i = 0; i < count; ++i)
         pieces_.push_back(from + duration * (static_cast<double>(i) / static_cast<double>(count)));
       const double h = duration / static_cast<double>(count);
       curve_error = std::max(curve_error, h * h * a / 8);
-      if (Status status = assembly_.check_memory(2 * pieces_.size(), options_.most_bytes, weight_bytes_); !status)
-        return status;
     }
     pieces_.push_back(keys_.back());
     assembly_.set_curve_error(curve_error);
@@ -366,6 +373,18 @@ class AnimationReader {
 };
 
 }  // namespace
+
+bool has_moving_targets(const GltfDocument& document) noexcept {
+  for (const GltfMesh& mesh : document.meshes()) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      const auto& targets = primitive.targets;
+      if (primitive.has_faces() &&
+          std::any_of(targets.begin(), targets.end(), [](const auto& t) { return t.positions; }))
+        return true;
+    }
+  }
+  return false;
+}
 
 Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMotionOptions& options) {
   if (options.animation.empty()) return read_targets(document, options);

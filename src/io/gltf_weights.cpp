@@ -1,6 +1,7 @@
 #include "io/gltf_weights.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace chronormal::gltf {
@@ -15,6 +16,7 @@ double WeightCurve::tangent(std::size_t key, bool out, std::size_t target) const
 }
 
 void WeightCurve::at(double time, bool just_before, std::span<double> weights) const noexcept {
+  assert(weights.size() == target_count_);
   const std::vector<double>& times = keys_.times;
   // The key at or before the time: before it, where the weights just before a key are asked for.
   const auto after = just_before ? std::lower_bound(times.begin(), times.end(), time)
@@ -42,6 +44,7 @@ void WeightCurve::at(double time, bool just_before, std::span<double> weights) c
 }
 
 void WeightCurve::curvature(double from_time, double to_time, std::span<double> bounds) const noexcept {
+  assert(bounds.size() == target_count_);
   const std::vector<double>& times = keys_.times;
   std::fill(bounds.begin(), bounds.end(), 0.0);
   if (interpolation_ != GltfInterpolation::kCubicSpline || from_time < times.front() || to_time > times.back()) return;

@@ -14,8 +14,6 @@ namespace chronormal::gltf {
 /// them as appendix C of the glTF specification has it.
 class WeightCurve {
  public:
-  /// Constant weights.
-  explicit WeightCurve(std::vector<double> weights) : target_count_(weights.size()), keys_{{0.0}, std::move(weights)} {}
   /// keys as GltfDocument::keys() gives them.
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
@@ -34,7 +32,7 @@ class WeightCurve {
   [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
 
   std::size_t target_count_;
-  GltfInterpolation interpolation_ = GltfInterpolation::kStep;
+  GltfInterpolation interpolation_;
   GltfKeys keys_;
 };
 

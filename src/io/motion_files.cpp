@@ -84,18 +84,11 @@ bool may_be_whole(const std::string& input) {
   return find_mesh_reader(input) == nullptr && std::filesystem::is_regular_file(input, code);
 }
 
-bool is_movable(const GltfDocument& document) {
-  for (const GltfMesh& mesh : document.meshes()) {
-    if (mesh.target_count > 0) return true;
-  }
-  return false;
-}
-
 Result<Motion> motion_of(const GltfDocument& document, const MotionOptions& options, bool allow_mesh) {
   GltfMotionOptions gltf_options;
   gltf_options.animation = options.animation;
   gltf_options.world = options.world;
-  Result<GltfMotion> read = allow_mesh && options.animation.empty() && !is_movable(document)
+  Result<GltfMotion> read = allow_mesh && options.animation.empty() && !has_moving_targets(document)
                                 ? read_gltf_mesh(document, gltf_options)
                                 : read_gltf_motion(document, gltf_options);
   if (!read) return read.error();

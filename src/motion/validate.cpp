@@ -18,6 +18,10 @@ Status validate(const Motion& motion) {
   const std::size_t vertex_count = motion.topology.vertex_count();
   if (motion.topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
 
+  if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != vertex_count)
+    return invalid_input("", "there are " + std::to_string(motion.body_of_vertex.size()) + " bodies for " +
+                                 std::to_string(vertex_count) + " vertices");
+
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const Motion::Keyframe& keyframe = motion.keyframes[k];
     if (keyframe.positions.size() % 3 != 0 || keyframe.positions.size() / 3 != vertex_count)

@@ -164,6 +164,10 @@ Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const P
 
     for (std::size_t first = 0, end = 0; first < spokes.size(); first = end) {
       while (end < spokes.size() && spokes[end].to == spokes[first].to) ++end;
+      if (degrees == 180) {
+        for (std::size_t i = first + 1; i < end; ++i) sets.join(spokes[first].corner, spokes[i].corner);
+        continue;
+      }
       if (end - first > kMostFacesAtSmoothEdge) continue;
       for (std::size_t i = first; i < end; ++i) {
         for (std::size_t k = i + 1; k < end; ++k) {

@@ -10,8 +10,10 @@ namespace {
 // A total order of coordinates in which -0 and 0 are the same.
 std::uint32_t key(float coordinate) { return std::bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// Negative where vertex a comes first, 0 where the two coincide in all keyframes.
+// Negative where vertex a comes first, 0 where the two are of one body and coincide in all keyframes.
 int compare(const Motion& motion, std::uint32_t a, std::uint32_t b) {
+  if (const auto& bodies = motion.body_of_vertex; !bodies.empty() && bodies[a] != bodies[b])
+    return bodies[a] < bodies[b] ? -1 : 1;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const float* const p = keyframe.positions.data() + 3 * std::size_t{a};
     const float* const q = keyframe.positions.data() + 3 * std::size_t{b};

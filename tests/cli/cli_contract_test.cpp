@@ -66,6 +66,15 @@ TEST_F(Cli, version_and_help_go_to_stdout) {
     EXPECT_NE(compare_help.out.find(word), std::string::npos) << word;
 }
 
+TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["E"],"extensionsRequired":["\u001b[31mE\n"]})";
+  const ProcessResult result = run("inspect -", gltf);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("\\x1b[31mE"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+}
+
 TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   write_two_frames();
   expect_error(run(""), 2, {"--help"});
@@ -73,6 +82,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare --sample twist a.obj b.obj"), 2, {"--each"});
   expect_error(run("compare"), 2, {"nothing to read", "compare --help"});
   expect_error(run("compare --no-such-option"), 2, {"--no-such-option"});
+  expect_error(run("inspect - --fps 0"), 2, {"--fps"});
   expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --samples x"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chronormal/motion/validate.h"
+#include "chronormal/normals/weld.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 
@@ -373,6 +374,75 @@ TEST(GltfStep, beside_a_linear_track_each_keeps_its_own_way) {
     ASSERT_EQ(read.size(), expected.size());
     for (std::size_t k = 0; k < read.size(); ++k) ASSERT_NEAR(read[k], expected[k], 1e-6) << time;
   }
+}
+
+// A triangle whose third vertex rises by 1, on two nodes; the keys are 0 and 1, at 0 s and 1 s.
+GltfBuilder two_nodes() {
+  GltfBuilder builder;
+  const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const auto lift = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 1});
+  builder.add_mesh(GltfBuilder::primitive(base, std::nullopt, GltfBuilder::Json::array({{{"POSITION", lift}}})));
+  builder.add_node(0);
+  builder.add_node(0);
+  const auto animation = builder.add_animation("both");
+  builder.add_track<float>(animation, 0, {0, 1, 2}, {0, 1, 1});
+  builder.add_track<float>(animation, 1, {0, 1, 2}, {0, 1, 1}, "STEP");
+  return builder;
+}
+
+TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
+  GltfBuilder builder = two_nodes();
+  auto& samplers = builder.json["animations"][0]["samplers"];
+  samplers[1]["input"] = samplers[0]["input"];
+  samplers[1]["output"] = samplers[0]["output"];
+  const GltfMotion result = motion_of(builder, "both");
+  // The second node stands until 1 s and jumps there: halfway only the first has moved.
+  const Motion& motion = result.motion;
+  ASSERT_EQ(motion.keyframes.size(), 4U);
+  EXPECT_EQ(motion.keyframes[1].positions[3 * 2 + 2], 1);
+  EXPECT_EQ(motion.keyframes[1].positions[3 * 5 + 2], 0);
+  EXPECT_EQ(motion.keyframes[2].positions[3 * 5 + 2], 1);
+}
+
+TEST(GltfSharedKeys, mean_different_weights_for_another_number_of_targets) {
+  // Three targets, LINEAR, on the first node; one target, CUBICSPLINE, on the second; both of the same six numbers.
+  GltfBuilder builder = two_nodes();
+  const auto& target = builder.json["meshes"][0]["primitives"][0]["targets"][0];
+  auto three = builder.json["meshes"][0]["primitives"][0];
+  three["targets"] = {target, target, target};
+  const auto mesh = builder.add_mesh(three);
+  builder.json["nodes"][0]["mesh"] = mesh;
+  auto& samplers = builder.json["animations"][0]["samplers"];
+  const auto times = builder.add_accessor("SCALAR", std::vector<float>{0, 1});
+  const auto weights = builder.add_accessor("SCALAR", std::vector<float>{0, 0, 0, 0, 1, 0});
+  for (auto& sampler : samplers) {
+    sampler["input"] = times;
+    sampler["output"] = weights;
+  }
+  samplers[1]["interpolation"] = "CUBICSPLINE";
+  const GltfMotion result = motion_of(builder, "both");
+  EXPECT_EQ(result.motion.keyframes.back().positions[3 * 2 + 2], 1) << "0 + 1 + 0 of three targets";
+  EXPECT_EQ(result.motion.keyframes.back().positions[3 * 5 + 2], 1) << "the value of the last key, between tangents";
+}
+
+TEST(GltfBodies, meshes_and_nodes_are_never_one_point) {
+  const GltfMotion result = motion_of(two_nodes(), "both");
+  EXPECT_EQ(result.motion.body_of_vertex, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1}));
+  // In the keyframe at 0 s both triangles lie on each other.
+  const Motion start{result.motion.topology, {result.motion.keyframes[0]}, {}, result.motion.body_of_vertex};
+  EXPECT_EQ(weld_coincident(start).count, 6U);
+}
+
+TEST(GltfTargets, that_move_normals_alone_are_no_motion) {
+  GltfBuilder builder = two_nodes();
+  const auto normals = builder.add_positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  auto& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = normals;
+  primitive["targets"][0] = {{"NORMAL", normals}};
+  EXPECT_NE(error_of(builder).message.find("nothing moves"), std::string::npos);
+  const GltfFixture file(builder);
+  ASSERT_TRUE(file.ok());
+  EXPECT_FALSE(has_moving_targets(*file));
 }
 
 TEST(GltfMemory, keyframes_beyond_what_is_allowed_are_refused_before_they_are_made) {

@@ -192,5 +192,19 @@ TEST(GltfSpline, one_that_would_need_too_much_memory_is_refused) {
   EXPECT_TRUE(result.error().place.starts_with("a.gltf")) << result.error().text();
 }
 
+TEST(GltfSpline, that_would_need_more_pieces_than_any_is_refused_at_once) {
+  GltfBuilder builder = test::quad_document();
+  builder.add_track<float>(builder.add_animation("steep"), 0, {0, 1}, {0, 0, 0, 0, 1e9F, 0, 0, 0, 0, 0, 0, 0},
+                           "CUBICSPLINE");
+  const GltfFixture file(builder);
+  ASSERT_TRUE(file.ok()) << file.error();
+  GltfMotionOptions options;
+  options.animation = "steep";
+  const Result<GltfMotion> motion = read_gltf_motion(*file, options);
+  ASSERT_FALSE(motion.ok());
+  EXPECT_EQ(motion.error().code, ErrorCode::kInvalidInput);
+  EXPECT_NE(motion.error().place.find("/animations/"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace chronormal

@@ -159,8 +159,8 @@ TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbo
 }
 
 TEST(CreaseAngle, an_edge_of_seventeen_faces_is_hard) {
-  EXPECT_EQ(creased(pages(std::vector<double>(16, 0)), 180).size(), 2u + 16u);
-  EXPECT_EQ(creased(pages(std::vector<double>(17, 0)), 180).size(), 3u * 17u);
+  EXPECT_EQ(creased(pages(std::vector<double>(16, 0)), 179).size(), 2u * 2u + 16u) << "two windings";
+  EXPECT_EQ(creased(pages(std::vector<double>(17, 0)), 179).size(), 3u * 17u);
 }
 
 TEST(CreaseAngle, neighbours_wound_in_opposite_ways_have_a_hard_edge) {
@@ -319,6 +319,14 @@ RC_GTEST_PROP(SplitNormals, equal_a_flood_over_all_pairs_of_corners, ()) {
     return reference::angle(at(a), at(b)) <= 3 * reference::kPi / 180;
   });
   RC_ASSERT(std::vector<std::size_t>(groups.element_of_corner().begin(), groups.element_of_corner().end()) == expected);
+}
+
+TEST(CreaseAngle, of_180_makes_edges_smooth_of_however_many_faces) {
+  std::vector<double> angles;
+  for (int page = 0; page < 40; ++page) angles.push_back(9.0 * page);
+  const Motion motion = pages(angles);
+  EXPECT_EQ(creased(motion, 180).size(), 42u) << "one for each end of the hinge, and one for each tip";
+  EXPECT_EQ(creased(motion, 179).size(), 120u) << "below, an edge of more than 16 faces is hard";
 }
 
 }  // namespace

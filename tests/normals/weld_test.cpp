@@ -57,5 +57,12 @@ RC_GTEST_PROP(Weld, equals_a_comparison_of_all_pairs, ()) {
   RC_ASSERT(std::vector<std::size_t>(points.point_of_vertex.begin(), points.point_of_vertex.end()) == expected);
 }
 
+TEST(Weld, vertices_of_two_bodies_are_never_one_point) {
+  Motion motion =
+      two_keyframes({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{2, 0, 0}, {3, 0, 0}, {2, 0, 0}, {2, 0, 0}});
+  motion.body_of_vertex = {0, 0, 0, 1};
+  EXPECT_EQ(weld_coincident(motion).point_of_vertex, (std::vector<std::uint32_t>{0, 1, 0, 2}));
+}
+
 }  // namespace
 }  // namespace chronormal

@@ -1,8 +1,8 @@
 /// How far interpolated normals are from exact ones: the measure of the paper's Table 1.
 ///
 /// For one element, the angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed; for a
-/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero, or for
-/// which the scheme has no direction, is counted as degenerate and left out.
+/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero is
+/// counted as degenerate and left out; one for which only the scheme has no direction is counted as missing.
 ///
 /// Units      radians inside; what is shown to people is in degrees.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_H_

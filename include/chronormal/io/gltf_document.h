@@ -66,7 +66,8 @@ struct GltfNode {
 /// The animation of the weights of one node.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
-  std::size_t same_keys_as = 0;  ///< the first track of the animation that has the same keys: itself, or one before it
+  /// The first track of the animation that gives the same weights: the same keys, interpolation and number of targets.
+  std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
 };

@@ -7,11 +7,11 @@
 /// jump at them, where no segment is; a jump at the last key leads out of the motion. CUBICSPLINE tracks are cut into
 /// straight pieces so short that no vertex is farther from its true place than a stated distance.
 ///
-/// Vertices are those of the file, not welded, part after part: in the order of meshes and primitives for targets, of
-/// nodes and primitives for an animation or in the world. They are where the mesh has them, or in the world where its
-/// nodes put them as they stand in the file (animations of nodes and skins are not applied; by the specification, a
-/// node with a skin does not move its mesh). Where a node mirrors, faces are turned round, so that their normals keep
-/// the outward side.
+/// Each mesh is a body of its own, and so is each node that carries it. Vertices are those of the file, not welded,
+/// part after part: in the order of meshes and primitives for targets, of nodes and primitives for an animation or in
+/// the world. They are where the mesh has them, or in the world where its nodes put them as they stand in the file
+/// (animations of nodes and skins are not applied; by the specification, a node with a skin does not move its mesh).
+/// Where a node mirrors, faces are turned round, so that their normals keep the outward side.
 #ifndef CHRONORMAL_IO_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_MOTION_H_
 
@@ -49,6 +49,9 @@ struct GltfMotion {
   /// A bound of the distance between cut cubic splines and the true ones, in units of the file; 0 without any.
   double curve_error = 0;
 };
+
+/// Whether a target moves the positions of a primitive with faces.
+[[nodiscard]] bool has_moving_targets(const GltfDocument& document) noexcept;
 
 /// Reads the motion that the options name. Only parts that can move take part: primitives with faces and targets, and
 /// for an animation those that it drives. The result is valid (motion/validate.h).

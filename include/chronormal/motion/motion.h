@@ -10,6 +10,7 @@
 #define CHRONORMAL_MOTION_MOTION_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ struct Motion {
   Topology topology;
   std::vector<Keyframe> keyframes;
   std::vector<SegmentKeys> segments;
+  /// (V), which of several separate objects each vertex belongs to: those of two are never one point, wherever they
+  /// are. Empty: all are one.
+  std::vector<std::uint32_t> body_of_vertex = {};
 
   /// View of one segment. Precondition: the motion is valid (motion/validate.h) and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;

@@ -8,8 +8,8 @@
 namespace chronormal {
 
 /// Checks what the rest of the library takes for granted: at least one face and one segment, every keyframe with
-/// 3 x vertex_count finite coordinates, segments between keyframes that exist, and finite times that ascend along
-/// every segment. (A Topology checks its own indices when it is built.)
+/// 3 x vertex_count finite coordinates, a body for each vertex or none, segments between keyframes that exist, and
+/// finite times that ascend along every segment. (A Topology checks its own indices when it is built.)
 ///
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);

@@ -55,7 +55,7 @@ class NormalGroups {
   ///   * an edge of 3 to 16 faces is smooth between those pairs of them that satisfy the angle; an edge of more is
   ///   hard;
   ///   * a face without a normal in keyframe 0 counts as 180 degrees from every other.
-  /// A crease angle of 180 makes every edge smooth. Errors: kUsage where it is outside [0, 180].
+  /// A crease angle of 180 makes every edge smooth, whatever its faces. Errors: kUsage where it is outside [0, 180].
   [[nodiscard]] static Result<NormalGroups> by_crease_angle(const Motion& motion, const Points& points, double degrees);
 
   /// Outputs are corners. Two corners of a point share a normal if their faces are in the same smoothing group, whether

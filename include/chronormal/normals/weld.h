@@ -26,9 +26,10 @@ struct Points {
 /// Every vertex is a point of its own.
 [[nodiscard]] Points separate_points(std::size_t vertex_count);
 
-/// Vertices whose coordinates are equal in all keyframes are one point. Equal means equal float32, to the last bit, but
-/// -0 equals 0: there is no tolerance, since vertices that are merely close may belong to two sides of a slit.
-/// O(V log V), and the number of keyframes times as much where vertices coincide. The motion must be valid.
+/// Vertices of one body (motion/motion.h) whose coordinates are equal in all keyframes are one point. Equal means equal
+/// float32, to the last bit, but -0 equals 0: there is no tolerance, since vertices that are merely close may belong to
+/// two sides of a slit. O(V log V), and the number of keyframes times as much where vertices coincide. The motion must
+/// be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
 
 }  // namespace chronormal
