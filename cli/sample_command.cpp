@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "chronormal/io/file.h"
+#include "chronormal/io/gltf_motion.h"
 #include "chronormal/io/motion_readers.h"
 #include "chronormal/io/obj.h"
 #include "chronormal/io/readers.h"
@@ -245,13 +246,39 @@ Result<std::string> shading_file(const InputOptions& input) {
     const bool is_cache = find_cache_reader(file) != nullptr || find_cache_reader(path) != nullptr ||
                           path.ends_with(".xml") || path.ends_with(".XML");
     if (input.files.size() == 2 && is_cache) continue;
-    if (is_gltf_file(file) || find_motion_reader(file) != nullptr)
-      return misuse("--hard-edges", file + " is no OBJ file");
+    if (is_gltf_file(file)) return file;
+    if (find_motion_reader(file) != nullptr) return misuse("--hard-edges", file + " is no OBJ or glTF file");
     const auto frames = find_frames({&file, 1});
     if (!frames) return frames.error();
     return frames.value().front();
   }
-  return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ file");
+  return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
+}
+
+// A glTF file as it was read before, with the normals that it stores.
+Result<ObjShading> read_gltf_shading(const InputOptions& input, const std::string& path) {
+  const Result<GltfDocument> document = GltfDocument::open(path, {input.allow_external});
+  if (!document) return document.error();
+  GltfMotionOptions options;
+  options.animation = input.animation;
+  options.world = input.world;
+  const bool is_mesh = input.animation.empty() && !has_moving_targets(document.value());
+  Result<GltfMotion> motion =
+      is_mesh ? read_gltf_mesh(document.value(), options) : read_gltf_motion(document.value(), options);
+  if (!motion) return motion.error();
+  Result<std::vector<float>> normals = read_gltf_corner_normals(document.value(), motion.value());
+  if (!normals) return normals.error();
+  return ObjShading{std::move(motion.value().motion.topology), {}, std::move(normals).value()};
+}
+
+Result<ObjShading> read_obj_file_shading(const std::string& path) {
+  const Result<FileBytes> file = FileBytes::open(path);
+  if (!file) return file.error();
+  const std::string name = short_name(path);
+  const auto reader = choose_mesh_reader(file.value().bytes(), name);
+  if (!reader) return reader.error();
+  if (reader.value()->name != "obj") return misuse("--hard-edges", path + " is no OBJ or glTF file");
+  return read_obj_shading(file.value().bytes(), name);
 }
 
 Result<ObjShading> read_shading(const InputOptions& input, const std::string& what, const Topology& topology) {
@@ -259,20 +286,17 @@ Result<ObjShading> read_shading(const InputOptions& input, const std::string& wh
   if (!path) return path.error();
   if (path.value() == "-")
     return misuse("--hard-edges", "the standard input can not be read twice: give the mesh as a file");
-  const Result<FileBytes> file = FileBytes::open(path.value());
-  if (!file) return file.error();
-  const std::string name = short_name(path.value());
-  const auto reader = choose_mesh_reader(file.value().bytes(), name);
-  if (!reader) return reader.error();
-  if (reader.value()->name != "obj") return misuse("--hard-edges", path.value() + " is no OBJ file");
-  Result<ObjShading> shading = read_obj_shading(file.value().bytes(), name);
+  const bool is_gltf = is_gltf_file(path.value());
+  Result<ObjShading> shading = is_gltf ? read_gltf_shading(input, path.value()) : read_obj_file_shading(path.value());
   if (!shading) return shading;
   if (shading.value().topology != topology)
     return invalid_input(path.value(), "the faces are not those of the motion: the file has changed meanwhile");
   if (what == "groups" && shading.value().group_of_face.empty())
-    return invalid_input(path.value(), "the file has no smoothing groups (lines that begin with s)");
+    return is_gltf ? misuse("--hard-edges", "a glTF file has no smoothing groups: give normals")
+                   : invalid_input(path.value(), "the file has no smoothing groups (lines that begin with s)");
   if (what == "normals" && shading.value().normal_of_corner.empty())
-    return invalid_input(path.value(), "the file has no normals (faces of the form v//vn)");
+    return invalid_input(path.value(), is_gltf ? "no primitive of the motion has normals"
+                                               : "the file has no normals (faces of the form v//vn)");
   return shading;
 }
 
@@ -341,7 +365,7 @@ void add_sample_command(CLI::App& program, int& exit_code) {
       ->type_name("DEG");
   command
       ->add_option("--hard-edges", options->hard_edges,
-                   "corners: hard edges as the first .obj or the base has them, by its\n"
+                   "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
                    "smoothing groups (s) or by its own normals (vn): groups, normals")
       ->type_name("KIND");
   command->add_flag("--no-weld", options->no_weld, "vertices at one point in all keyframes stay apart");

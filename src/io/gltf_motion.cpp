@@ -374,6 +374,23 @@ class AnimationReader {
 
 }  // namespace
 
+Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const GltfMotion& motion) {
+  const auto corners = motion.motion.topology.corners();
+  std::vector<float> result;
+  for (const GltfPart& part : motion.parts) {
+    const Result<GltfGeometry> geometry = document.geometry(part.mesh, part.primitive, {true, false});
+    if (!geometry) return geometry.error();
+    const std::vector<float>& normals = geometry.value().normals;
+    if (normals.empty()) continue;
+    result.resize(3 * corners.size(), 0.0F);
+    for (std::size_t c = 3 * part.first_face; c < 3 * (part.first_face + part.face_count); ++c) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        result[3 * c + axis] = normals[3 * (corners[c] - part.first_vertex) + axis];
+    }
+  }
+  return result;
+}
+
 bool has_moving_targets(const GltfDocument& document) noexcept {
   for (const GltfMesh& mesh : document.meshes()) {
     for (const GltfPrimitive& primitive : mesh.primitives) {

@@ -105,6 +105,31 @@ TEST_F(SampleCli, elements_lengths_and_hard_edges) {
                "b.obj: the file has no normals");
 }
 
+TEST_F(SampleCli, gltf_files_have_hard_edges_by_their_own_normals) {
+  // Two triangles that meet at a right angle along x, with vertices of their own there and one target; the normals of
+  // the seam agree (smooth) or differ (hard).
+  const auto distinct = [this](const std::vector<float>& normals) {
+    test::GltfBuilder builder;
+    const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, /**/ 0, 0, 0, 0, 0, -1, 1, 0, 0});
+    const auto lift = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 1, /**/ 0, 0, 0, 0, 0, 0, 0, 0, 0});
+    auto primitive =
+        test::GltfBuilder::primitive(base, std::nullopt, test::GltfBuilder::Json::array({{{"POSITION", lift}}}));
+    primitive["attributes"]["NORMAL"] = builder.add_positions(normals);
+    builder.add_mesh(primitive);
+    folder_.write("corner.glb", builder.glb());
+    const auto result = array_of("corner.glb --weights 0 --elements corners --hard-edges normals").as<float>();
+    std::set<std::array<float, 3>> set;
+    for (std::size_t c = 0; c < 6; ++c) {
+      const auto n = row(result, c);
+      set.insert({n[0] + 0.0F, n[1] + 0.0F, n[2] + 0.0F});
+    }
+    return set.size();
+  };
+  EXPECT_EQ(distinct({0, 0, 1, 0, 0, 1, 0, 0, 1, /**/ 0, 1, 0, 0, 1, 0, 0, 1, 0}), 2U);
+  const float half = 0.70710678F;
+  EXPECT_EQ(distinct({0, half, half, 0, half, half, 0, 0, 1, /**/ 0, half, half, 0, 1, 0, 0, half, half}), 3U);
+}
+
 TEST_F(SampleCli, times_are_a_list_or_a_range) {
   const auto times_of = [this](const std::string& times, const std::string& more = "") {
     const ProcessResult result = run("a.obj b.obj a.obj --times " + times + more + " --force -o t.npz");
@@ -207,7 +232,8 @@ TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
   expect_error(input + "--elements corners --hard-edges all", 2, "groups or normals");
   expect_error(input + "--elements corners --hard-edges groups --crease 30", 2, "not both");
   expect_error("--sample twist --times 0 --elements corners --hard-edges groups -o n.npy", 2, "built-in");
-  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges groups -o n.npy", 2, "no OBJ file");
+  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges groups -o n.npy", 2, "no smoothing groups");
+  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges normals -o n.npy", 3, "has normals");
   EXPECT_EQ(run("a.obj b.obj --times 0 --elements corners --hard-edges groups -o -", "").exit_code, 0);
   folder_.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_error("plain.obj --elements corners --hard-edges groups -o n.npy", 3, "no smoothing groups");

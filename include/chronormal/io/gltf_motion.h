@@ -65,6 +65,12 @@ struct GltfMotion {
 /// Errors: of GltfDocument; kInvalidInput where there are none, or they take more than most_bytes.
 [[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options = {});
 
+/// The normals that a file stores, one for each corner of a motion that was read from it: (corners, 3), those of the
+/// base and in the space of the mesh; (0, 0, 0) where a primitive has none. Empty where none has. Errors: of
+/// GltfDocument.
+[[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document,
+                                                                  const GltfMotion& motion);
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_IO_GLTF_MOTION_H_
