@@ -16,6 +16,8 @@
 namespace chronormal::cli {
 namespace {
 
+constexpr const char* kStdin = "<stdin>";  // as errors have it
+
 struct Options {
   InputOptions input;
   CommonOptions common;
@@ -31,9 +33,10 @@ void take_motion(const Motion& motion, Inspected& result, Progress& progress) {
 
 Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptions& options, Progress& progress) {
   const std::string& path = options.files.front();
+  const std::string name = path == "-" ? kStdin : path;
   std::optional<std::string> folder;
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
-  auto opened = GltfDocument::read(file->bytes(), path == "-" ? "<stdin>" : short_name(path), folder,
+  auto opened = GltfDocument::read(file->bytes(), path == "-" ? name : short_name(path), folder,
                                    {.allow_external = options.allow_external});
   if (!opened) return opened.error();
   GltfDocument document = std::move(opened).value();
@@ -42,9 +45,11 @@ Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptio
   const auto& primitives = inspection.value().primitives;
   const bool moves = std::any_of(primitives.begin(), primitives.end(), [](const auto& p) { return p.moving > 0; });
   Inspected result;
-  result.name = path;
+  result.name = name;
   std::vector<GltfPart> parts;
   double curve_error = 0;
+  std::size_t split = 0;
+  std::optional<std::size_t> animation;
   if (!primitives.empty() || !options.animation.empty()) {
     GltfMotionOptions motion_options;
     motion_options.animation = options.animation;
@@ -52,13 +57,18 @@ Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptio
     const bool is_mesh = !moves && options.animation.empty();
     auto read = is_mesh ? read_gltf_mesh(document, motion_options) : read_gltf_motion(document, motion_options);
     if (!read) return read.error();
+    if (!options.animation.empty()) animation = document.find_animation(options.animation).value();
+    const auto counted_split = count_split_normals(document, read.value());
+    if (!counted_split) return counted_split.error();
+    split = counted_split.value();
     take_motion(read.value().motion, result, progress);
     result.is_star = moves && options.animation.empty();
     parts = std::move(read.value().parts);
     curve_error = read.value().curve_error;
   }
-  result.gltf =
-      InspectedGltf{std::move(file), std::move(document), std::move(inspection).value(), std::move(parts), curve_error};
+  result.gltf = InspectedGltf{std::move(file),  std::move(document), std::move(inspection).value(),
+                              std::move(parts), curve_error,         split,
+                              animation};
   return result;
 }
 
@@ -87,7 +97,7 @@ Result<Inspected> inspect_input(const InputOptions& options, Progress& progress)
     if (path == "-") {
       const auto motion = read_motion_or_mesh(file->bytes(), path, options.motion_options());
       if (!motion) return motion.error();
-      result.name = path;
+      result.name = kStdin;
       take_motion(motion.value(), result, progress);
       return result;
     }

@@ -125,12 +125,9 @@ Json animations_json(const InspectedGltf& gltf) {
         {{"name", animation.name}, {"channels", animation.channel_count}, {"weight_tracks", Json::array()}});
   for (const GltfTrackInspection& found : gltf.inspection.tracks) {
     const GltfTrack& track = document.animations()[found.animation].tracks[found.track];
-    const char* const interpolation = track.interpolation == GltfInterpolation::kStep          ? "STEP"
-                                      : track.interpolation == GltfInterpolation::kCubicSpline ? "CUBICSPLINE"
-                                                                                               : "LINEAR";
     animations[found.animation]["weight_tracks"].push_back({{"node", track.node},
                                                             {"node_name", document.nodes()[track.node].name},
-                                                            {"interpolation", interpolation},
+                                                            {"interpolation", interpolation_name(track.interpolation)},
                                                             {"keys", track.key_count},
                                                             {"first_time", found.first_time},
                                                             {"last_time", found.last_time},
@@ -143,7 +140,8 @@ Json animations_json(const InspectedGltf& gltf) {
 Json gltf_json(const InspectedGltf& gltf) {
   Json parts = Json::array();
   for (const GltfPart& part : gltf.parts)
-    parts.push_back({{"mesh", part.mesh},
+    parts.push_back({{"node", part.node ? Json(*part.node) : Json()},
+                     {"mesh", part.mesh},
                      {"primitive", part.primitive},
                      {"first_vertex", part.first_vertex},
                      {"vertices", part.vertex_count},
@@ -154,6 +152,9 @@ Json gltf_json(const InspectedGltf& gltf) {
           {"skinned_nodes", gltf.inspection.skinned_nodes},
           {"meshes", meshes_json(gltf)},
           {"animations", animations_json(gltf)},
+          {"animation", gltf.animation ? Json(*gltf.animation) : Json()},
+          {"curve_error", gltf.curve_error},
+          {"split_normals", gltf.split},
           {"parts", std::move(parts)}};
 }
 

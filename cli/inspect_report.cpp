@@ -179,11 +179,6 @@ std::string primitive_table(const InspectedGltf& gltf) {
   return '\n' + table.text() + rows_left_out(primitives.size(), "primitives");
 }
 
-const char* interpolation_name(GltfInterpolation interpolation) {
-  if (interpolation == GltfInterpolation::kStep) return "STEP";
-  return interpolation == GltfInterpolation::kCubicSpline ? "CUBICSPLINE" : "LINEAR";
-}
-
 std::string named_or_numbered(const std::string& name, const char* kind, std::size_t number) {
   return name.empty() ? fmt::format("{} {}", kind, number) : printable(name, kLongestCell);
 }

@@ -93,15 +93,6 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
                         "the direction of the normal there is that of the rounding");
 }
 
-// How many stored normals are split in what was looked at.
-std::size_t count_split(const Inspected& input) {
-  std::size_t split = 0;
-  if (!input.gltf) return 0;
-  for (const GltfPrimitiveInspection& primitive : input.gltf->inspection.primitives)
-    split += input.segments.empty() || primitive.moving > 0 ? primitive.split : 0;
-  return split;
-}
-
 void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   const Inspection& found = *input.inspection;
   const Surface& surface = found.surface;
@@ -120,8 +111,11 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
       "doubled_face", surface.doubled_faces,
       have(faces(surface.doubled_faces.count), surface.doubled_faces.count) + " the vertices of another face",
       "they count twice in a normal per vertex");
+  troubles.on_surface("repeating_face", surface.repeating_faces,
+                      have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " a point twice",
+                      "a triangle has no area then; a larger face counts with both corners in a normal per vertex");
   std::string meaning = "a normal per vertex breaks there, unless such vertices are taken as one point";
-  if (const std::size_t split = count_split(input); split > 0)
+  if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning = fmt::format("a normal per vertex breaks there; at {} of them so do the stored normals: hard edges",
                           grouped(split));
   troubles.add("doubled_vertex", found.doubled.count,
@@ -132,6 +126,14 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.add("parting_vertex", parting,
                have(vertices(parting), parting) + " the place of another at the first keyframe only", "",
                "they come apart: they must not be welded by their first positions");
+}
+
+// "Head, primitive 1", and the node where several have the mesh.
+std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
+  std::string label = fmt::format("{}, primitive {}", mesh_label(gltf.document, part.mesh), part.primitive);
+  if (part.node && gltf.inspection.instances[part.mesh] > 1)
+    label += ", " + with_name(fmt::format("node {}", *part.node), gltf.document.nodes()[*part.node].name);
+  return label;
 }
 
 void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
@@ -229,8 +231,7 @@ std::string face_label(const Inspected& input, std::size_t face) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (face >= part.first_face && face - part.first_face < part.face_count)
-        return fmt::format("face {} of {}, primitive {}", face - part.first_face,
-                           mesh_label(input.gltf->document, part.mesh), part.primitive);
+        return fmt::format("face {} of {}", face - part.first_face, part_label(*input.gltf, part));
     }
   }
   return fmt::format("face {}", face);
@@ -240,11 +241,15 @@ std::string vertex_label(const Inspected& input, std::size_t vertex) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (vertex >= part.first_vertex && vertex - part.first_vertex < part.vertex_count)
-        return fmt::format("vertex {} of {}, primitive {}", vertex - part.first_vertex,
-                           mesh_label(input.gltf->document, part.mesh), part.primitive);
+        return fmt::format("vertex {} of {}", vertex - part.first_vertex, part_label(*input.gltf, part));
     }
   }
   return fmt::format("vertex {}", vertex);
+}
+
+const char* interpolation_name(GltfInterpolation interpolation) {
+  if (interpolation == GltfInterpolation::kStep) return "STEP";
+  return interpolation == GltfInterpolation::kCubicSpline ? "CUBICSPLINE" : "LINEAR";
 }
 
 std::string mesh_label(const GltfDocument& document, std::size_t mesh) {

@@ -23,6 +23,8 @@ struct InspectedGltf {
   GltfInspection inspection;
   std::vector<GltfPart> parts;  ///< where the vertices and faces of the motion came from; of a mesh that is still too
   double curve_error = 0;       ///< as in GltfMotion
+  std::size_t split = 0;        ///< of count_split_normals()
+  std::optional<std::size_t> animation;  ///< the one that is looked at; nothing: the targets, or what stands still
 };
 
 /// One input, and what is known of it.
@@ -54,6 +56,9 @@ struct Trouble {
 [[nodiscard]] std::string segment_label(const Inspected& input, std::size_t segment);
 [[nodiscard]] std::string face_label(const Inspected& input, std::size_t face);
 [[nodiscard]] std::string vertex_label(const Inspected& input, std::size_t vertex);
+
+/// "LINEAR", as glTF has it.
+[[nodiscard]] const char* interpolation_name(GltfInterpolation interpolation);
 
 /// The name of a mesh, or "mesh 3" where it has none.
 [[nodiscard]] std::string mesh_label(const GltfDocument& document, std::size_t mesh);

@@ -66,9 +66,11 @@ void survey_edges(const Topology& topology, const Points& points, Surface& surfa
     });
     for_each_group(begin, end, same_edge, [&surface](auto first, auto last) {
       ++surface.edges;
-      if (last - first == 1) surface.open_edges.add(first->face);
-      if (last - first > 2) surface.non_manifold_edges.add(first->face);
-      if (last - first != 2) return;
+      std::size_t faces = 0;  // a face with a point twice may go along an edge more than once
+      for (auto use = first; use != last; ++use) faces += use == first || use->face != (use - 1)->face ? 1U : 0U;
+      if (faces == 1) surface.open_edges.add(first->face);
+      if (faces > 2) surface.non_manifold_edges.add(first->face);
+      if (faces != 2 || last - first != 2) return;
       const EdgeUse &a = *first, &b = *(first + 1);
       if (a.is_forward == b.is_forward) surface.turned_edges.add(a.face);
       if (a.near_vertex != b.near_vertex || a.far_vertex != b.far_vertex) surface.seam_edges.add(a.face);
@@ -76,40 +78,45 @@ void survey_edges(const Topology& topology, const Points& points, Surface& surfa
   }
 }
 
-// Whether the face, seen from its lowest point, goes on to the lower of its two neighbours: two triangles over the same
-// points are wound the same way exactly if they agree in this.
-bool starts_low(std::span<const std::uint32_t> face, const Points& points) {
-  const auto point = [&](std::size_t corner) { return points.point_of_vertex[face[corner % face.size()]]; };
-  std::size_t lowest = 0;
-  for (std::size_t c = 1; c < face.size(); ++c) lowest = point(c) < point(lowest) ? c : lowest;
-  return point(lowest + 1) < point(lowest + face.size() - 1);
+// Turns the points of a face, which are all different, so that the lowest comes first, and reverses them if need be so
+// that the lower one of its neighbours is next. Faces with the same outline are equal then, and wound the same way if
+// they agree in the result: whether it was not reversed.
+bool make_canonical(std::span<std::uint32_t> outline) {
+  std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+  if (outline[1] < outline.back()) return true;
+  std::reverse(outline.begin() + 1, outline.end());
+  return false;
 }
 
 void survey_faces(const Topology& topology, const Points& points, Surface& surface) {
-  // The points of every face, sorted; `starts` is where those of a face begin.
+  // The outline of every face, as make_canonical() has it; `starts` is where that of a face begins.
   std::vector<std::uint32_t> corners;
   corners.reserve(topology.corner_count());
   std::vector<std::size_t> starts = {0};
   starts.reserve(topology.face_count() + 1);
-  std::vector<bool> repeats(topology.face_count());
+  std::vector<bool> repeats(topology.face_count()), starts_low(topology.face_count());
+  std::vector<std::uint32_t> sorted;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const auto face = topology.face(f);
     for (const std::uint32_t vertex : face) corners.push_back(points.point_of_vertex[vertex]);
-    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(starts.back());
-    std::sort(first, corners.end());
-    if (std::adjacent_find(first, corners.end()) != corners.end()) {
+    const std::span<std::uint32_t> outline = std::span(corners).subspan(starts.back());
+    sorted.assign(outline.begin(), outline.end());
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
       repeats[f] = true;
       surface.repeating_faces.add(f);
+    } else {
+      starts_low[f] = make_canonical(outline);
     }
     starts.push_back(corners.size());
     surface.triangles += face.size() == 3 ? 1U : 0U;
     surface.most_corners = std::max(surface.most_corners, face.size());
   }
-  const auto corners_of = [&](std::uint32_t f) {
+  const auto outline_of = [&](std::uint32_t f) {
     return std::span<const std::uint32_t>(corners).subspan(starts[f], starts[f + 1] - starts[f]);
   };
-  const auto same_corners = [&](std::uint32_t a, std::uint32_t b) {
-    return std::equal(corners_of(a).begin(), corners_of(a).end(), corners_of(b).begin(), corners_of(b).end());
+  const auto same_outline = [&](std::uint32_t a, std::uint32_t b) {
+    return std::equal(outline_of(a).begin(), outline_of(a).end(), outline_of(b).begin(), outline_of(b).end());
   };
 
   Buckets<std::uint32_t> faces(points.count, [&](auto put) {
@@ -121,14 +128,14 @@ void survey_faces(const Topology& topology, const Points& points, Surface& surfa
     const auto begin = faces.items.begin() + static_cast<std::ptrdiff_t>(faces.offsets[lowest]);
     const auto end = faces.items.begin() + static_cast<std::ptrdiff_t>(faces.offsets[lowest + 1]);
     std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
-      const auto p = corners_of(a), q = corners_of(b);
-      if (!same_corners(a, b)) return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+      const auto p = outline_of(a), q = outline_of(b);
+      if (!same_outline(a, b)) return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
       return a < b;
     });
-    for_each_group(begin, end, same_corners, [&](auto first, auto last) {
+    for_each_group(begin, end, same_outline, [&](auto first, auto last) {
       std::array<std::size_t, 2> seen{};  // by the way they are wound
       for (auto f = first; f != last; ++f) {
-        std::size_t& alike = seen[starts_low(topology.face(*f), points) ? 1 : 0];
+        std::size_t& alike = seen[starts_low[*f] ? 1 : 0];
         if (alike++ > 0) surface.doubled_faces.add(*f);
       }
       if (const std::size_t pairs = std::min(seen[0], seen[1]); pairs > 0) surface.back_to_back.add(*first, pairs);

@@ -176,7 +176,8 @@ Inspection inspect(const Motion& motion, const std::function<void(std::size_t do
 
   const Points points = weld_coincident(motion);
   result.doubled = find_copies(points);
-  result.doubled_at_start = find_copies(weld_coincident({topology, {motion.keyframes.front()}, {}}));
+  result.doubled_at_start =
+      find_copies(weld_coincident({topology, {motion.keyframes.front()}, {}, motion.body_of_vertex}));
   result.surface = survey(topology, points);
 
   // The first segment at a keyframe judges it; one without a segment is judged as if it stood still.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
+#include "chronormal/core/polynomial.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weld.h"
@@ -59,6 +61,19 @@ Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, 
   return result;
 }
 
+// Widens the range to what a weight does between two keys, where the tangents lead it past both.
+void add_spline(const Bernstein<double, 3>& weight, GltfTrackInspection& result) {
+  const auto [lowest, highest] = std::minmax_element(weight.begin(), weight.end());
+  if (result.lowest <= *lowest && *highest <= result.highest) return;
+  const Bernstein<double, 2> slope = {weight[1] - weight[0], weight[2] - weight[1], weight[3] - weight[2]};
+  const Roots<2> turns = roots_in_unit_interval(slope);
+  for (std::size_t i = 0; i < turns.count; ++i) {
+    const double extreme = evaluate(weight, turns.t[i]);
+    result.lowest = std::min(result.lowest, extreme);
+    result.highest = std::max(result.highest, extreme);
+  }
+}
+
 Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::size_t animation, std::size_t track) {
   const auto keys = document.keys(animation, track);
   if (!keys) return keys.error();
@@ -80,10 +95,40 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
       is_first = false;
     }
   }
+  for (std::size_t key = 0; is_cubic && key + 1 < times.size(); ++key) {
+    const double third = (times[key + 1] - times[key]) / 3;
+    for (std::size_t i = 0; i < width; ++i) {
+      const auto row = [&](std::size_t r) { return values[(3 * key + r) * width + i]; };
+      const double from = row(1), to = row(4);
+      add_spline({from, from + third * row(2), to - third * row(3), to}, result);
+    }
+  }
   return result;
 }
 
 }  // namespace
+
+Result<std::size_t> count_split_normals(const GltfDocument& document, const GltfMotion& motion) {
+  const Points points = weld_coincident(motion.motion);
+  std::vector<std::optional<Vec3d>> first_normal(points.count);
+  std::size_t split = 0;
+  for (const GltfPart& part : motion.parts) {
+    if (!document.meshes()[part.mesh].primitives[part.primitive].has_normals) continue;
+    const auto geometry = document.geometry(part.mesh, part.primitive, {.shading = true, .targets = false});
+    if (!geometry) return geometry.error();
+    const auto normals =
+        VectorView<const float>::packed(geometry.value().normals.data(), geometry.value().normals.size() / 3);
+    for (std::size_t v = 0; v < normals.count; ++v) {
+      std::optional<Vec3d>& first = first_normal[points.point_of_vertex[part.first_vertex + v]];
+      const Vec3d normal = to_double(normals[v]);
+      if (!first)
+        first = normal;
+      else if (angle_between(normal, *first) * kDegreesPerRadian > kSplitNormalTolerance)
+        ++split;
+    }
+  }
+  return split;
+}
 
 Result<GltfInspection> inspect(const GltfDocument& document) {
   GltfInspection result;

@@ -84,6 +84,34 @@ TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
   EXPECT_EQ(survey_vertices(quads).triangles, 1U);
 }
 
+TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
+  const auto pair = [](Corners second) {
+    Corners corners = {0, 1, 3, 2};
+    corners.insert(corners.end(), second.begin(), second.end());
+    return survey_vertices(fixtures::make_polygons(4, {0, 4, 8}, corners));
+  };
+  EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
+  EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
+  // The same four points, crossed: neither.
+  for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
+    EXPECT_EQ(pair(crossed).back_to_back, Found{});
+    EXPECT_EQ(pair(crossed).doubled_faces, Found{});
+  }
+}
+
+TEST(Surface, edge_that_one_face_has_twice_is_open) {
+  const Surface alone = survey_vertices(fixtures::make_polygons(3, {0, 4}, {0, 1, 0, 2}));
+  EXPECT_EQ(alone.edges, 2U);
+  EXPECT_EQ(alone.open_edges, (Found{2, 0}));
+  EXPECT_EQ(alone.turned_edges, Found{});
+  EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
+  // A second face at one of them makes it closed, and not non-manifold.
+  const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
+  EXPECT_EQ(both.edges, 4U);
+  EXPECT_EQ(both.open_edges.count, 3U);
+  EXPECT_EQ(both.non_manifold_edges, Found{});
+}
+
 TEST(Surface, faces_that_share_a_vertex_are_one_piece) {
   EXPECT_EQ(survey_triangles(9, {0, 1, 2, 3, 4, 5, 6, 7, 8}).pieces, 3U);
   EXPECT_EQ(survey_triangles(9, {0, 1, 2, 3, 4, 5, 5, 7, 2}).pieces, 1U);
@@ -143,26 +171,33 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
       points.point_of_vertex.push_back(static_cast<std::uint32_t>(is_new ? points.count : wanted));
       points.count += is_new ? 1U : 0U;
     }
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> edges;
-    std::map<std::multiset<std::uint32_t>, std::vector<std::size_t>> faces;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::size_t>> edges;
+    std::map<Corners, std::vector<std::size_t>> faces;  // by the first of all turned and reversed outlines
     std::set<std::uint32_t> used;
     std::size_t repeating = 0, pairs = 0;
     std::vector<std::set<std::uint32_t>> pieces;
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
       const auto face = topology.face(f);
-      std::multiset<std::uint32_t> corners;
+      Corners corners;
       for (std::size_t c = 0; c < face.size(); ++c) {
         const std::uint32_t a = points.point_of_vertex[face[c]];
         const std::uint32_t b = points.point_of_vertex[face[(c + 1) % face.size()]];
-        corners.insert(a);
+        corners.push_back(a);
         used.insert(face[c]);
-        if (a != b) edges[std::minmax(a, b)].push_back(f);
+        if (a != b) edges[std::minmax(a, b)].insert(f);
       }
       std::set<std::uint32_t> merged(corners.begin(), corners.end());
-      if (merged.size() < corners.size())
+      if (merged.size() < corners.size()) {
         ++repeating;
-      else
-        faces[corners].push_back(f);
+      } else {
+        Corners least = corners;
+        for (std::size_t turn = 0; turn < 2 * corners.size(); ++turn) {
+          std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+          if (turn == corners.size()) std::reverse(corners.begin(), corners.end());
+          least = std::min(least, corners);
+        }
+        faces[least].push_back(f);
+      }
       std::erase_if(pieces, [&merged](const std::set<std::uint32_t>& piece) {
         const bool touches =
             std::any_of(piece.begin(), piece.end(), [&merged](std::uint32_t p) { return merged.count(p) > 0; });
@@ -173,8 +208,8 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     }
     Found open, non_manifold;
     for (const auto& [edge, at] : edges) {
-      if (at.size() == 1) open.add(at[0]);
-      if (at.size() > 2) non_manifold.add(at[0]);
+      if (at.size() == 1) open.add(*at.begin());
+      if (at.size() > 2) non_manifold.add(*at.begin());
     }
     for (const auto& [corners, at] : faces) pairs += at.size() - 1;
 

@@ -185,6 +185,32 @@ TEST_F(InspectCli, errors_and_output_are_as_in_other_commands) {
   expect_words(text_of("--help"), {"--json", "--base", "Exit codes"});
 }
 
+TEST_F(InspectCli, face_with_a_point_twice_is_told) {
+  folder_.write("rep.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1 3\n");
+  expect_words(text_of("rep.obj"), {"2 edges; 2 open", "1 face has a point twice (face 0)"});
+}
+
+TEST_F(InspectCli, standard_input_has_one_name) {
+  const std::string mesh = test::read_whole(folder_ / "a.obj"), gltf = test::read_whole(folder_ / "quad.glb");
+  EXPECT_TRUE(text_of("-", mesh).starts_with("<stdin>: "));
+  EXPECT_TRUE(text_of("-", gltf).starts_with("<stdin>: "));
+}
+
+TEST_F(InspectCli, gltf_parts_name_their_nodes_and_the_animation_is_named) {
+  test::GltfBuilder builder = test::quad_document();
+  builder.add_node(0, {{"name", "twin"}, {"translation", {5, 0, 0}}});
+  builder.add_track(builder.add_animation("wave"), 0, {0, 1}, std::vector<float>{0, 0, 1, 0});
+  folder_.write("twins.glb", builder.glb());
+  const Json still = json_of("twins.glb")["gltf"], world = json_of("twins.glb --world")["gltf"];
+  EXPECT_EQ(still["animation"], nullptr);
+  EXPECT_EQ(still["curve_error"], 0);
+  EXPECT_EQ(still["parts"][0]["node"], nullptr);
+  ASSERT_EQ(world["parts"].size(), 2U);
+  EXPECT_EQ(world["parts"][1]["node"], 1);
+  EXPECT_EQ(json_of("twins.glb --animation wave")["gltf"]["animation"], 0);
+  expect_words(text_of("twins.glb --world"), {"of quad, primitive 0, node 0"});
+}
+
 TEST_F(InspectCli, every_builtin_morph_is_inspected) {
   for (const char* const name : {"cloth", "bend", "twist", "eversion", "soup"}) {
     const Json json = json_of(std::string("--sample ") + name);

@@ -59,8 +59,8 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
   const std::size_t animation = builder.add_animation("a");
   builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, -0.5F});
   const std::size_t spline = builder.add_animation("b");
-  // Tangents of 9 are no weights.
-  builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 9, 9, 9, 9, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
+  // The tangents before the first key and after the last are no weights, and lead nowhere.
+  builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 0, 0, 0, 0, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
   ASSERT_EQ(found.tracks.size(), 2U);
   EXPECT_EQ(found.tracks[0].first_time, 0.5);
@@ -70,6 +70,39 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
   EXPECT_EQ(found.tracks[1].animation, 1U);
   EXPECT_EQ(found.tracks[1].lowest, 0);
   EXPECT_EQ(found.tracks[1].highest, 1);
+}
+
+TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
+  GltfBuilder builder = test::quad_document();
+  const std::size_t animation = builder.add_animation("a");
+  // The first weight is 20 t (1 - t), with 5 in the middle; the second -9 t (1 - t)^2 / 2, with -2/3 at t = 1/3, over
+  // the two seconds from the first key to the second. To the third key nothing moves.
+  builder.add_track(animation, 0, {1, 3, 4},
+                    std::vector<float>{0, 0, 0, 0, 10, -2.25F, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 7}, "CUBICSPLINE");
+  const GltfInspection found = inspect_document(builder);
+  EXPECT_NEAR(found.tracks[0].highest, 5, 1e-12);
+  EXPECT_NEAR(found.tracks[0].lowest, -2.0 / 3, 1e-12);
+}
+
+TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) {
+  // 3 and 4 are at the places of 0 and 1 with other normals; 3 parts from 0. The second primitive lies on the first.
+  GltfBuilder builder;
+  const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0});
+  const std::size_t target = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
+  auto primitive =
+      GltfBuilder::primitive(base, builder.add_indices<std::uint8_t>({0, 1, 2, 3, 4, 5}), {{{"POSITION", target}}});
+  const auto with_normals = [&](const std::vector<float>& normals) {
+    primitive["attributes"]["NORMAL"] = builder.add_accessor("VEC3", normals);
+    return primitive;
+  };
+  const std::size_t mesh = builder.add_mesh(with_normals({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, 0}));
+  const auto split_of = [](const GltfBuilder& document) {
+    const GltfFixture file(document);
+    return count_split_normals(*file, read_gltf_motion(*file, {}).value()).value();
+  };
+  EXPECT_EQ(split_of(builder), 1U);
+  builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));
+  EXPECT_EQ(split_of(builder), 2U);
 }
 
 TEST(InspectGltf, points_skins_and_instances_are_counted) {

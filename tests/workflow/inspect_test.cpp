@@ -129,6 +129,13 @@ TEST(Inspect, vertices_that_part_later_are_doubled_at_the_start_only) {
   EXPECT_EQ(found.surface.unreferenced, (Found{1, 6}));
   EXPECT_EQ(found.surface.pieces, 1U);
   EXPECT_EQ(found.surface.edges, 6U);
+
+  // Of two bodies they are two triangles that only lie on each other.
+  motion.body_of_vertex = {0, 0, 0, 1, 1, 1, 1};
+  const Inspection apart = inspect(motion);
+  EXPECT_EQ(apart.doubled.count, 0U);
+  EXPECT_EQ(apart.doubled_at_start.count, 0U);
+  EXPECT_EQ(apart.surface.pieces, 2U);
 }
 
 TEST(Inspect, flagged_and_bytes_are_those_of_normal_curves) {

@@ -3,10 +3,14 @@
 /// Files double vertices, for texture seams or hard edges, and a surface that is whole then looks torn. So everything
 /// here counts points (normals/weld.h) and not vertices. An edge has two of them, and is
 ///
-///     open           if one face has it: the border of the surface
+///     open           if one face has it, once or twice: the border of the surface
 ///     non-manifold   if more than two faces have it
 ///     turned         if two faces have it and go along it the same way: one of them is wound the wrong way round
 ///     seam           if two faces have it, but not by the same vertices: the file keeps it apart
+///
+/// The last two are asked where both faces have the edge once. Two faces lie on each other if they have the same
+/// outline: the same points in the same cyclic order, or in the reversed one. The same points in another order are
+/// another face, as are both halves of a quad that is crossed. A face that has a point twice lies on no other one.
 ///
 /// Threads    pure.
 /// Cost       sorting within the edges and faces of each point: near linear.
@@ -42,8 +46,8 @@ struct Surface {
   std::size_t pieces = 0;  ///< parts without a common point
   Found unreferenced;      ///< vertices that no face has
   Found repeating_faces;   ///< faces that have a point twice: a triangle has no area then
-  Found doubled_faces;     ///< faces with the points of a lower one, wound the same way
-  Found back_to_back;      ///< pairs of faces with the same points, wound against each other
+  Found doubled_faces;     ///< faces with the outline of a lower one, wound the same way
+  Found back_to_back;      ///< pairs of faces with the same outline, wound against each other
   std::size_t triangles = 0;
   std::size_t most_corners = 0;  ///< of one face
 };

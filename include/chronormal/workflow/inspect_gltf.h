@@ -9,6 +9,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
+#include "chronormal/io/gltf_motion.h"
 
 namespace chronormal {
 
@@ -28,7 +29,7 @@ struct GltfPrimitiveInspection {
 struct GltfTrackInspection {
   std::size_t animation = 0, track = 0;
   double first_time = 0, last_time = 0;
-  double lowest = 0, highest = 0;  ///< of the weights at the keys
+  double lowest = 0, highest = 0;  ///< of the weights, between the keys too
 };
 
 struct GltfInspection {
@@ -42,6 +43,12 @@ struct GltfInspection {
 /// Reads all geometry and all weight tracks, one after the other. Memory: that of the largest primitive, and what the
 /// document keeps. Errors: of GltfDocument.
 [[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
+
+/// Counts the vertices of a motion that are at the place of a lower one in all keyframes and have another normal stored
+/// than the lowest one there that has any: some of Inspection::doubled, across primitives too. (Vertices at one place
+/// are of one mesh and one node, so that their normals need no transform.) Memory and errors as of inspect(). The
+/// motion must be one of this document.
+[[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const GltfMotion& motion);
 
 }  // namespace chronormal
 
