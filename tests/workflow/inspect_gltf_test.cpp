@@ -103,6 +103,12 @@ TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) 
   EXPECT_EQ(split_of(builder), 1U);
   builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));
   EXPECT_EQ(split_of(builder), 2U);
+  // A third primitive lies elsewhere, so that its normals are nobody else's.
+  const std::size_t elsewhere = builder.add_positions({5, 0, 0, 6, 0, 0, 5, 1, 0, 5, 0, 1, 6, 0, 1, 5, -1, 0});
+  auto third = with_normals({0, 0, -1, 0, 0, -1, 0, 0, -1, 0, -1, 0, 0, -1, 0, 0, -1, 0});
+  third["attributes"]["POSITION"] = elsewhere;
+  builder.add_primitive(mesh, third);
+  EXPECT_EQ(split_of(builder), 2U);
 }
 
 TEST(InspectGltf, points_skins_and_instances_are_counted) {
