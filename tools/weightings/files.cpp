@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "weightings/sections.h"
 
@@ -75,7 +74,7 @@ const std::vector<Golden>& all_golden() {
   return all;
 }
 
-// A mesh with what its reader leaves out: the normal of each corner, and the smoothing group of each face.
+// A mesh with the normal of each corner, and the smoothing group of each face.
 struct StoredNormals {
   Motion motion;  // the mesh, twice
   std::vector<float> of_corner;
@@ -96,30 +95,11 @@ StoredNormals read_stored(const std::filesystem::path& path) {
   for (const double time : {0.0, 1.0}) stored.motion.keyframes.push_back({mesh.value().positions, time, {}});
   stored.motion.connect_as_sequence();
 
-  std::vector<std::array<float, 3>> normals;
-  std::uint32_t group = 0;
-  std::ifstream text(path);
-  for (std::string line; std::getline(text, line);) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "vn") {
-      auto& n = normals.emplace_back();
-      words >> n[0] >> n[1] >> n[2];
-    } else if (word == "s") {
-      words >> word;
-      group = 0;  // also where it says "off"
-      std::from_chars(word.data(), word.data() + word.size(), group);
-    } else if (word == "f") {
-      stored.group_of_face.push_back(group);
-      while (words >> word) {
-        std::size_t index = 0;
-        std::from_chars(word.data() + word.rfind('/') + 1, word.data() + word.size(), index);
-        const auto& n = normals.at(index - 1);
-        stored.of_corner.insert(stored.of_corner.end(), n.begin(), n.end());
-      }
-    }
-  }
+  auto shading = read_obj_shading(file.value().bytes(), path.filename().string());
+  if (!shading) throw std::runtime_error(shading.error().text());
+  stored.of_corner = std::move(shading.value().normal_of_corner);
+  stored.group_of_face = std::move(shading.value().group_of_face);
+  stored.group_of_face.resize(stored.motion.topology.face_count(), 0);  // in no group where the file has none
   return stored;
 }
 
