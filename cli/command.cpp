@@ -60,6 +60,35 @@ void InputOptions::add_to(CLI::App& command) {
   command.add_option("--fps", frames_per_second, "frames per second of the keyframes (default 1)")->type_name("N");
 }
 
+void ElementArguments::add_to(CLI::App& command) {
+  const auto marked = [this](const char* name) { return kind == name ? fmt::format("{} (default)", name) : name; };
+  command
+      .add_option("--elements", kind,
+                  fmt::format("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners")))
+      ->type_name("KIND");
+  command
+      .add_option("--crease", crease_angle,
+                  "corners: edges between faces that differ by more than this\n"
+                  "in the first keyframe are hard (default 180: none)")
+      ->type_name("DEG");
+  command.add_flag("--no-weld", no_weld, "vertices at one point in all keyframes stay apart");
+}
+
+Result<ElementOptions> ElementArguments::options() const {
+  const auto misuse = [](std::string option, std::string message) {
+    return Error{ErrorCode::kUsage, std::move(option), std::move(message)};
+  };
+  const auto found = make_element_kind(kind);
+  if (!found) return misuse("--elements", found.error().message);
+  if (!(crease_angle >= 0 && crease_angle <= 180))
+    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
+  if (crease_angle != 180 && found.value() != ElementKind::kCorners)
+    return misuse("--crease", "only --elements corners can have hard edges");
+  if (no_weld && found.value() == ElementKind::kFaces)
+    return misuse("--no-weld", "faces are not welded: it goes with vertices or corners");
+  return ElementOptions{found.value(), !no_weld, crease_angle};
+}
+
 std::string name_of_files(const std::vector<std::string>& files) {
   return files.size() == 1 ? files.front() : short_name(files.front()) + " ... " + short_name(files.back());
 }

@@ -12,6 +12,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/motion_files.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/workflow/elements.h"
 #include "cli/progress.h"
 
 namespace chronormal::cli {
@@ -40,6 +41,17 @@ struct InputOptions {
   [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external, world}; }
 
   void add_to(CLI::App& command);
+};
+
+/// The options that choose which normals: --elements, --crease, --no-weld.
+struct ElementArguments {
+  std::string kind;           ///< set to what is usual for the command
+  double crease_angle = 180;  ///< degrees
+  bool no_weld = false;
+
+  void add_to(CLI::App& command);
+  /// What was asked for. Errors: kUsage for a kind that does not exist, and for options that do not go with it.
+  [[nodiscard]] Result<ElementOptions> options() const;
 };
 
 struct NamedMotion {

@@ -16,9 +16,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> schemes;  // empty: those that are usual for the elements
   std::size_t samples = 21;
-  std::string elements = "faces";
-  double crease_angle = 180;
-  bool no_weld = false;
+  ElementArguments elements{"faces"};
   std::string access = "random";
   bool each = false;
   bool json = false;
@@ -54,12 +52,9 @@ std::string footer() {
 }
 
 Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
-  const CompareOptions compare_options{
-      options.schemes,
-      options.samples,
-      options.access == "sequential" ? Access::kSequential : Access::kRandom,
-      progress.callback("comparing"),
-      {make_element_kind(options.elements).value(), !options.no_weld, options.crease_angle}};
+  const CompareOptions compare_options{options.schemes, options.samples,
+                                       options.access == "sequential" ? Access::kSequential : Access::kRandom,
+                                       progress.callback("comparing"), options.elements.options().value()};
   auto comparison = compare(input.motion, compare_options);
   progress.clear();
   if (!comparison) return comparison.error();
@@ -116,15 +111,7 @@ int run(const Options& options) {
     if (name.empty()) return report("compare", {ErrorCode::kUsage, "--schemes", "there is an empty name in the list"});
     if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
   }
-  const auto kind = make_element_kind(options.elements);
-  if (!kind) return report("compare", {ErrorCode::kUsage, "--elements", kind.error().message});
-  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
-    return report("compare", {ErrorCode::kUsage, "--crease", "it must be an angle from 0 to 180 degrees"});
-  if (options.crease_angle != 180 && kind.value() != ElementKind::kCorners)
-    return report("compare", {ErrorCode::kUsage, "--crease", "only --elements corners can have hard edges"});
-  if (options.no_weld && kind.value() == ElementKind::kFaces)
-    return report("compare",
-                  {ErrorCode::kUsage, "--no-weld", "faces are not welded: it goes with vertices or corners"});
+  if (const auto elements = options.elements.options(); !elements) return report("compare", elements.error());
   if (const Status output = check_output(options.common.output, options.common.force); !output)
     return report("compare", output.error());
 
@@ -162,14 +149,7 @@ void add_compare_command(CLI::App& program, int& exit_code) {
           "which schemes, in which order (listed below)")
       ->type_name("A,B,...");
   command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")->type_name("N");
-  command->add_option("--elements", options->elements, "which normals: faces (default), vertices, corners")
-      ->type_name("KIND");
-  command
-      ->add_option("--crease", options->crease_angle,
-                   "corners: edges between faces that differ by more than this\n"
-                   "in the first keyframe are hard (default 180: none)")
-      ->type_name("DEG");
-  command->add_flag("--no-weld", options->no_weld, "vertices at one point in all keyframes stay apart");
+  options->elements.add_to(*command);
   command->add_option("--access", options->access, "random (default), or sequential: played step by step")
       ->type_name("KIND")
       ->check(CLI::IsMember({"random", "sequential"}).description(""));

@@ -26,13 +26,11 @@ struct Options {
   CommonOptions common;
   std::string times;                 // as written; empty: none
   std::vector<std::string> weights;  // a list per pose
-  std::string elements = "vertices";
+  ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
-  double crease_angle = 180;
   std::string hard_edges;  // empty: by the crease angle
-  bool no_weld = false;
-  std::string format;  // empty: by the extension
+  std::string format;      // empty: by the extension
 };
 
 Error misuse(std::string place, std::string message) {
@@ -135,32 +133,25 @@ struct Request {
 };
 
 Result<SampleOptions> sample_options(const Options& options) {
-  const auto kind = make_element_kind(options.elements);
-  if (!kind) return misuse("--elements", kind.error().message);
+  Result<ElementOptions> elements = options.elements.options();
+  if (!elements) return elements.error();
+  const ElementKind kind = elements.value().kind;
   const auto weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
   const bool by_area = weighting.value() == Weighting::kArea;
   if (options.length == "area" && !by_area)
     return misuse("--length", "only --weighting area has a length that means something");
-  if (kind.value() == ElementKind::kFaces && !by_area)
+  if (kind == ElementKind::kFaces && !by_area)
     return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
-  if (kind.value() == ElementKind::kFaces && options.no_weld)
-    return misuse("--no-weld", "faces are not welded: it goes with vertices or corners");
-  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
-    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
-  if (options.crease_angle != 180 && kind.value() != ElementKind::kCorners)
-    return misuse("--crease", "only --elements corners can have hard edges");
   if (!options.hard_edges.empty()) {
     if (options.hard_edges != "groups" && options.hard_edges != "normals")
       return misuse("--hard-edges", "it must be groups or normals");
-    if (kind.value() != ElementKind::kCorners)
-      return misuse("--hard-edges", "only --elements corners can have hard edges");
-    if (options.crease_angle != 180)
+    if (kind != ElementKind::kCorners) return misuse("--hard-edges", "only --elements corners can have hard edges");
+    if (options.elements.crease_angle != 180)
       return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
   }
-  return SampleOptions{{kind.value(), !options.no_weld, options.crease_angle},
-                       weighting.value(),
+  return SampleOptions{elements.value(), weighting.value(),
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
 }
 
@@ -329,7 +320,7 @@ int run(const Options& options) {
   if (!written) return fail(written.error());
   if (written.value().zeros > 0)
     fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
-               written.value().zeros, written.value().normals, options.elements);
+               written.value().zeros, written.value().normals, options.elements.kind);
   return kExitDone;
 }
 
@@ -352,23 +343,16 @@ void add_sample_command(CLI::App& program, int& exit_code) {
       ->type_name("W1,W2,...")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--elements", options->elements, "which normals: faces, vertices (default), corners")
-      ->type_name("KIND");
+  options->elements.add_to(*command);
   command->add_option("--weighting", options->weighting, "how the faces around a vertex count (listed below)")
       ->type_name("NAME");
   command->add_option("--length", options->length, "unit (default), or area: of weighting area, n itself")
       ->type_name("KIND");
   command
-      ->add_option("--crease", options->crease_angle,
-                   "corners: edges between faces that differ by more than this\n"
-                   "in the first keyframe are hard (default 180: none)")
-      ->type_name("DEG");
-  command
       ->add_option("--hard-edges", options->hard_edges,
                    "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
                    "smoothing groups (s) or by its own normals (vn): groups, normals")
       ->type_name("KIND");
-  command->add_flag("--no-weld", options->no_weld, "vertices at one point in all keyframes stay apart");
   command->add_option("--format", options->format, "of OUT: npy (default for -), npz, ply, obj")->type_name("NAME");
   options->common.add_to(*command, true);
   command->footer(footer());

@@ -13,6 +13,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
+#include "tests/support/child_process.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -57,14 +58,7 @@ std::string first_difference(const std::string& a, const std::string& b) {
 }
 
 TEST(Weightings, page_and_picture_are_what_the_generator_writes) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
-#endif
-#ifdef __has_feature
-#if __has_feature(address_sanitizer)
-  GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
-#endif
-#endif
+  if (test::is_sanitized()) GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
   const test::TemporaryFolder folder;
   const ProcessResult result = run_shell(
       std::string(CHRONORMAL_BUILD_DIR) + "/tools/weightings/chronormal_weightings --partial .", folder.path());

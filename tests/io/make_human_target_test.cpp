@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/random_edits.h"
 #include "tests/support/target_bytes.h"
 
 namespace chronormal {
@@ -234,25 +235,7 @@ TEST(MakeHumanTarget, random_edits_are_errors_or_targets) {
   for (const std::string& original : {kLift, packed}) {
     for (int round = 0; round < 8000; ++round) {
       SCOPED_TRACE(round);
-      std::string bytes = original;
-      for (std::size_t edits = 1 + random() % 6; edits > 0 && !bytes.empty(); --edits) {
-        const std::size_t at = random() % bytes.size(), from = random() % bytes.size();
-        switch (random() % 4) {
-          case 0:
-            bytes[at] = static_cast<char>(random());
-            break;
-          case 1:
-            bytes.insert(at, 1, static_cast<char>(random()));
-            break;
-          case 2:
-            bytes.erase(at, 1 + random() % 8);
-            break;
-          default:
-            bytes.insert(at, bytes.substr(from, random() % 24));
-            break;
-        }
-      }
-      (void)check(bytes);
+      (void)check(test::with_random_edits(original, random));
     }
   }
 }
