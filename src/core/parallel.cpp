@@ -1,19 +1,51 @@
 #include "chronormal/core/parallel.h"
 
+#include <algorithm>
+
 #ifdef CHRONORMAL_HAVE_TBB
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
 
 namespace chronormal {
+namespace {
+
+constexpr std::size_t kMostThreads = 64;
+
+thread_local std::size_t thread_limit = 0;  // of the innermost ThreadLimit, 0: none
+
+}  // namespace
+
+ThreadLimit::ThreadLimit(std::size_t threads) : before_(thread_limit) {
+  thread_limit = std::clamp<std::size_t>(threads, 1, kMostThreads);
+}
+
+ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 
 #ifdef CHRONORMAL_HAVE_TBB
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  tbb::parallel_for(std::size_t{0}, count, [&body](std::size_t i) { body(i); });
+  if (thread_limit == 1) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  } else if (thread_limit == 0) {
+    tbb::parallel_for(std::size_t{0}, count, [&body](std::size_t i) { body(i); });
+  } else {
+    // An arena beyond the number of cores gets its threads only where oneTBB may make that many; told once and for all,
+    // since a new permission for each call often comes too late for it.
+    static const tbb::global_control allowed(
+        tbb::global_control::max_allowed_parallelism,
+        std::max(kMostThreads, static_cast<std::size_t>(tbb::info::default_concurrency())));
+    tbb::task_arena arena(static_cast<int>(thread_limit));
+    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&body](std::size_t i) { body(i); }); });
+  }
 }
 
-std::size_t thread_count() noexcept { return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()); }
+std::size_t thread_count() noexcept {
+  if (thread_limit != 0) return thread_limit;
+  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+}
 
 #else
 

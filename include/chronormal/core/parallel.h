@@ -12,8 +12,25 @@ namespace chronormal {
 /// A result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// Whether a function runs on the thread that calls it, or on all cores where there is enough to do.
+enum class Threads { kOne, kAll };
+
 /// How many threads parallel_for may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
+
+/// While it lives, parallel_for on this thread uses this many threads, also more than there are cores (64 at
+/// most): for tests, benchmarks, and programs that want some cores for themselves. Limits may be nested; the innermost
+/// counts. A build without oneTBB has one thread whatever the limit.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(std::size_t threads);
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+  ~ThreadLimit();
+
+ private:
+  std::size_t before_;
+};
 
 }  // namespace chronormal
 

@@ -1,0 +1,47 @@
+#include "chronormal/core/memory.h"
+
+#include <cassert>
+#include <cstdlib>
+#include <new>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kCacheLine = 64;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+constexpr std::size_t kSmallestHuge = 2 * kHugePage;
+
+}  // namespace
+
+AlignedBytes::AlignedBytes(std::size_t size) : size_(size), capacity_(size) {
+  if (size == 0) return;
+  const std::size_t alignment = size >= kSmallestHuge ? kHugePage : kCacheLine;
+  if (size > std::size_t(-1) - alignment) throw std::bad_alloc();
+  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
+  data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, whole)));
+  if (data_ == nullptr) throw std::bad_alloc();
+#ifdef __linux__
+  if (alignment == kHugePage) (void)madvise(data_.get(), whole, MADV_HUGEPAGE);  // where it is refused: small pages
+#endif
+}
+
+void AlignedBytes::Free::operator()(std::byte* p) const noexcept { std::free(p); }
+
+void AlignedBytes::resize(std::size_t size) noexcept {
+  assert(size <= capacity_);
+  size_ = size;
+}
+
+void AlignedBytes::release_rest() noexcept {
+#ifdef __linux__
+  if (capacity_ < kSmallestHuge) return;
+  const std::size_t kept = (size_ + kHugePage - 1) / kHugePage * kHugePage;
+  if (kept < capacity_) (void)madvise(data_.get() + kept, capacity_ - kept, MADV_DONTNEED);
+#endif
+}
+
+}  // namespace chronormal

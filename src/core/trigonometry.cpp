@@ -1,0 +1,11 @@
+#include "chronormal/core/trigonometry.h"
+
+#include "core/trigonometry-inl.h"
+
+namespace chronormal {
+
+SinCos<float> sin_cos(float x) noexcept { return HWY_NAMESPACE::sin_cos<float>(x); }
+
+float upper_angle(float y, float x) noexcept { return HWY_NAMESPACE::upper_angle<float>(y, x); }
+
+}  // namespace chronormal

@@ -1,0 +1,102 @@
+#include "chronormal/core/memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kLargest = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kMebibyte = std::size_t{1} << 20;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kAddressSanitizer = true;  // which ends the program where too much is asked for
+#else
+constexpr bool kAddressSanitizer = false;
+#endif
+
+std::uintptr_t address(const void* p) { return reinterpret_cast<std::uintptr_t>(p); }
+
+TEST(AlignedBytes, are_aligned_to_cache_lines_and_from_4_MiB_on_to_huge_pages) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, 4 * kMebibyte - 1,
+                                 4 * kMebibyte, 4 * kMebibyte + 1, 9 * kMebibyte + 7}) {
+    AlignedBytes bytes(size);
+    ASSERT_NE(bytes.data(), nullptr);
+    EXPECT_EQ(bytes.size(), size);
+    EXPECT_EQ(bytes.capacity(), size);
+    const std::size_t alignment = size >= 4 * kMebibyte ? 2 * kMebibyte : 64;
+    EXPECT_EQ(address(bytes.data()) % alignment, 0u) << size;
+    std::memset(bytes.data(), 0x5A, size);  // all of it can be written
+    EXPECT_EQ(bytes.data()[size - 1], std::byte{0x5A});
+  }
+}
+
+TEST(AlignedBytes, none_are_no_trouble) {
+  const AlignedBytes none, zero(0);
+  EXPECT_EQ(none.data(), nullptr);
+  EXPECT_EQ(zero.data(), nullptr);
+  EXPECT_EQ(none.size() + zero.size() + none.capacity() + zero.capacity(), 0u);
+}
+
+TEST(AlignedBytes, a_new_size_moves_and_changes_nothing) {
+  for (const std::size_t size : {std::size_t{1000}, 9 * kMebibyte}) {
+    AlignedBytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i) bytes.data()[i] = static_cast<std::byte>(i * 7);
+    const std::byte* const before = bytes.data();
+    for (const std::size_t smaller : {size - 1, size / 2, std::size_t{1}, std::size_t{0}, size}) {
+      bytes.resize(smaller);
+      EXPECT_EQ(bytes.size(), smaller);
+      EXPECT_EQ(bytes.capacity(), size);
+      EXPECT_EQ(bytes.data(), before);
+    }
+    for (std::size_t i = 0; i < size; ++i) ASSERT_EQ(bytes.data()[i], static_cast<std::byte>(i * 7)) << i;
+  }
+}
+
+TEST(AlignedBytes, moved_from_are_none) {
+  AlignedBytes from(100);
+  const std::byte* const data = from.data();
+  AlignedBytes to(std::move(from));
+  EXPECT_EQ(to.data(), data);
+  EXPECT_EQ(to.size(), 100u);
+  EXPECT_EQ(from.data(), nullptr);  // NOLINT(bugprone-use-after-move): what this test is about
+  EXPECT_EQ(from.size() + from.capacity(), 0u);
+  to = AlignedBytes(7);
+  EXPECT_EQ(to.size(), 7u);
+  EXPECT_EQ(to.capacity(), 7u);
+}
+
+TEST(AlignedBytes, more_than_there_can_be_throws) {
+  if (kAddressSanitizer) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
+  for (const std::size_t size : {kLargest, kLargest - 1, kLargest - 62, kLargest - 63, kLargest - 64,
+                                 kLargest - 2 * kMebibyte, kLargest / 2, kLargest / 2 + 1})
+    EXPECT_THROW(AlignedBytes{size}, std::bad_alloc) << size;
+}
+
+TEST(AlignedArray, holds_count_values) {
+  AlignedArray<Vec3d> values(1001);
+  EXPECT_EQ(values.size(), 1001u);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = {1.0 * static_cast<double>(i), 2, 3};
+  const AlignedArray<Vec3d>& same = values;
+  EXPECT_EQ(same[1000].x, 1000);
+  EXPECT_EQ(same.data() + 1000, &same[1000]);
+  EXPECT_EQ(AlignedArray<float>().size(), 0u);
+}
+
+TEST(AlignedArray, more_than_there_can_be_throws) {
+  if (kAddressSanitizer) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
+  // 2^61 doubles are 2^64 bytes, which is 0; one more is 8.
+  for (const std::size_t count : {std::size_t{1} << 61, (std::size_t{1} << 61) + 1, kLargest, kLargest / 8})
+    EXPECT_THROW(AlignedArray<double>{count}, std::bad_alloc) << count;
+}
+
+}  // namespace
+}  // namespace chronormal
