@@ -17,15 +17,12 @@ int main() {
   }
 
   // Once per segment: three control normals per face, exact for every t between.
-  const Segment segment = motion.segment(0);
-  std::vector<ControlNormals> control_normals(motion.topology.face_count());
-  face_control_normals(segment, {0, motion.topology.face_count()}, control_normals);
-  const NormalCurves curves(control_normals);
+  const NormalCurves curves = NormalCurves::of_faces(motion.segment(0));
 
   // As often as you like: unit normals into your own memory, here packed as (faces, 3).
   std::vector<float> normals(3 * curves.size());
   for (const double t : {0.0, 0.5, 1.0}) {
-    (void)curves.unit_normals(t, VectorView<float>::packed(normals.data(), curves.size()));
+    curves.unit_normals(t, VectorView<float>::packed(normals.data(), curves.size()));
     std::printf("t = %.1f   normal = (%.3f, %.3f, %.3f)\n", t, normals[0], normals[1], normals[2]);
   }
 }

@@ -37,7 +37,7 @@ int main() {
     return 1;
   }
   // Once per segment: sums of the control normals of faces, exact for every t between.
-  const NormalCurves curves(all_group_control_normals(motion.segment(0), groups.value()));
+  const NormalCurves curves = NormalCurves::of_groups(motion.segment(0), groups.value());
 
   // As often as you like: the different normals as a stream, then a copy to every corner that shows them.
   const std::size_t corners = groups.value().element_of_output().size();
@@ -45,7 +45,7 @@ int main() {
   std::printf("%zu corners, %zu different normals\n", corners, curves.size());
   std::printf("   t      seam, left     seam, right     crease, left    crease, right\n");
   for (const double t : {0.0, 0.5, 1.0}) {
-    (void)curves.unit_normals(t, VectorView<float>::packed(different.data(), curves.size()));
+    curves.unit_normals(t, VectorView<float>::packed(different.data(), curves.size()));
     groups.value().copy_to_outputs(VectorView<const float>::packed(different.data(), curves.size()),
                                    VectorView<float>::packed(normals.data(), corners));
     std::printf("%.2f", t);

@@ -3,6 +3,7 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
+#include "chronormal/core/memory.h"        // arrays that are streamed: aligned, in huge pages
 #include "chronormal/core/parallel.h"      // one loop over all cores
 #include "chronormal/core/polynomial.h"    // small polynomials: Bernstein and power form, roots, restriction
 #include "chronormal/core/result.h"        // errors as values: code, place, message
@@ -15,11 +16,14 @@
 #include "chronormal/motion/validate.h"  // the check between data from outside and everything that computes
 
 #include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
-#include "chronormal/normals/evaluate.h"           // curves of normals: prepared once, evaluated at any t in float32
+#include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
+#include "chronormal/normals/evaluate.h"           // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/group_normals.h"      // normals of vertices and corners, as sums of those of faces
 #include "chronormal/normals/normal_groups.h"      // which corners share a normal: vertices, creases, split normals
 #include "chronormal/normals/playback.h"           // the same, played at equal steps
 #include "chronormal/normals/polynomial_motion.h"  // vertices on curves: normals of degree 4 and 6
+#include "chronormal/normals/recompute.h"          // the rival: the cross product anew at every t
+#include "chronormal/normals/segment_normals.h"    // the cheaper of the two, by a model of their costs
 #include "chronormal/normals/transform.h"          // rigid and affine motion: normals of meshes that move as a whole
 #include "chronormal/normals/weighting.h"          // area, angle, uniform ...: the weightings that tools use
 #include "chronormal/normals/weighting_fit.h"      // quadratics for those that are none, with a bound for each

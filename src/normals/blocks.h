@@ -18,6 +18,16 @@ void parallel_blocks(std::size_t count, std::size_t block, Body body) {
   });
 }
 
+/// The same on all cores, or body of the whole range on this one.
+template <class Body>
+void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
+  if (threads == Threads::kOne) {
+    body(IndexRange{0, count});
+  } else {
+    parallel_blocks(count, block, body);
+  }
+}
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_NORMALS_BLOCKS_H_

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "chronormal/core/polynomial.h"
+#include "normals/kernels/face_tiles.h"
+#include "normals/polygon_normals.h"
 
 namespace chronormal {
 namespace {
@@ -16,9 +18,6 @@ constexpr double kProductNoise = 4 * kEpsilon;
 
 // The error of eq. 5 in double: see "n(t) counts as zero" in the header.
 constexpr double kEvaluationNoise = 8 * kEpsilon;
-
-// Direction errors of 2^-28 stay far below those of float32 evaluation.
-constexpr double kDegreeTolerance = 0x1p-28;
 
 // A cross product, and per component the sum of the absolute products that it was made of.
 struct TrackedSum {
@@ -39,7 +38,9 @@ struct TrackedSum {
   }
 };
 
-ControlNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) {
+}  // namespace
+
+PolygonNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) noexcept {
   TrackedSum n0, m, n1;
   const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
   Vec3d e0 = to_double(segment.from[face[1]]) - a0, e1 = to_double(segment.to[face[1]]) - a1;
@@ -53,15 +54,20 @@ ControlNormals polygon_control_normals(const Segment& segment, std::span<const s
     e1 = f1;
   }
   const std::size_t triangles = face.size() - 2;
-  return {n0.without_noise(triangles), 0.5 * m.without_noise(2 * triangles), n1.without_noise(triangles)};
+  return {{n0.without_noise(triangles), 0.5 * m.without_noise(2 * triangles), n1.without_noise(triangles)},
+          std::fmax(max_abs(n0.magnitude), std::fmax(max_abs(m.magnitude), max_abs(n1.magnitude)))};
 }
-
-}  // namespace
 
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
+  // A kernel starts with a block of faces; for one alone it does not pay.
+  constexpr std::size_t kFewest = 4;
+  if (segment.topology->all_triangles() && faces.count >= kFewest) {
+    triangle_control_normals(segment, faces, result);
+    return;
+  }
   for (std::size_t i = 0; i < faces.count; ++i)
-    result[i] = polygon_control_normals(segment, segment.topology->face(faces.first + i));
+    result[i] = polygon_control_normals(segment, segment.topology->face(faces.first + i)).normals;
 }
 
 int degree(const ControlNormals& normals) noexcept {

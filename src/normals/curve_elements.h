@@ -1,13 +1,11 @@
-/// One element of a curve of normals, over any scalar: the code that the loops of evaluate.cpp run, and that a counting
-/// scalar counts.
+/// One element of a curve of normals, over any scalar: what the kernels do to sixteen at a time, spelt out for a scalar
+/// that counts.
 #ifndef CHRONORMAL_NORMALS_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVE_ELEMENTS_H_
 
 #include <cmath>
-#include <cstddef>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/core/views.h"
 
 namespace chronormal {
 
@@ -43,28 +41,6 @@ template <class S>
   using std::sqrt;
   const S scale = S(1) / sqrt(dot(v, v));
   return scale * v;
-}
-
-/// The vectors of three neighbouring planes, as control normals of a run are kept.
-template <class T>
-[[nodiscard]] VectorView<T> three_planes(T* first, std::size_t count) {
-  return VectorView<T>::planes(first, first + count, first + 2 * count, count);
-}
-
-/// Writes element(i) to every result[i]. Separate loops for the two layouts, so that the compiler can vectorise the one
-/// over planes.
-template <class Element>
-void fill(VectorView<float> result, Element element) {
-  if (result.stride == 1) {
-    for (std::size_t i = 0; i < result.count; ++i) {
-      const Vec3f v = element(i);
-      result.x[i] = v.x;
-      result.y[i] = v.y;
-      result.z[i] = v.z;
-    }
-  } else {
-    for (std::size_t i = 0; i < result.count; ++i) result.set(i, element(i));
-  }
 }
 
 }  // namespace chronormal

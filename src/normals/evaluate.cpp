@@ -1,64 +1,29 @@
 #include "chronormal/normals/evaluate.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "chronormal/core/polynomial.h"
-#include "normals/certificate.h"
-#include "normals/curve_elements.h"
+#include "normals/blocks.h"
+#include "normals/curve_builder.h"
+#include "normals/kernels/curve_blocks.h"
+#include "normals/kernels/exact_normals.h"
+#include "normals/outputs.h"
 
 namespace chronormal {
 namespace {
 
-// docs/theory.md, section 5: below this ratio of sum w_k |c_k| to |n(t)|, float32 is within 1e-6 rad.
-constexpr double kMaxCancellation = 3;
+// What one thread does at a time, and below which there is nothing to share out.
+constexpr std::size_t kPiece = 16384;
+// What stays in the first-level cache while many t are evaluated.
+constexpr std::size_t kManyTimes = 512;
+// Results above this many bytes go past the caches: measured, below it they would only be fetched again.
+constexpr std::size_t kStreamFrom = std::size_t{64} << 20;
 
-// Planes are scaled so that the largest component is near 2^50 and none that counts is below 2^-58: then |n(t)|^2 stays
-// between 2^-122 and 2^104.
-constexpr int kLargestExponent = 50;
-constexpr double kSmallestShare = 0x1p-108;
-// Below this, that scale itself would leave the range of double.
-constexpr double kSmallestMesh = 0x1p-900;
-
-constexpr std::size_t kShortestRun = 8;
-
-// Whether float32 can be trusted with this element at every t. `largest` is that of all elements.
-bool float_suffices(const ControlNormals& normals, double largest) {
-  const double smallest_end = std::min(max_abs(normals.n0), max_abs(normals.n1));
-  if (!(smallest_end >= kSmallestShare * largest) || !(largest >= kSmallestMesh)) return false;
-
-  const double scale = 1 / largest_component(normals);
-  const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
-  return stays_above(n, kMaxCancellation, {length(n[0]), length(n[1]), length(n[2])});
-}
-
-struct DegreeRun {
-  std::size_t count;
-  int degree;
-};
-
-// Joins runs of `degree` that are too short to pay into the neighbour of the next higher degree.
-std::vector<DegreeRun> raise_short_runs(const std::vector<DegreeRun>& runs, int degree) {
-  std::vector<DegreeRun> result;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    DegreeRun run = runs[i];
-    if (run.degree == degree && run.count < kShortestRun) {
-      int raised = 3;
-      if (i > 0 && runs[i - 1].degree > degree) raised = std::min(raised, runs[i - 1].degree);
-      if (i + 1 < runs.size() && runs[i + 1].degree > degree) raised = std::min(raised, runs[i + 1].degree);
-      if (raised < 3) run.degree = raised;
-    }
-    if (!result.empty() && result.back().degree == run.degree)
-      result.back().count += run.count;
-    else
-      result.push_back(run);
-  }
-  return result;
-}
-
-std::size_t planes_of(int degree) { return degree == 0 ? 4 : 3 * (static_cast<std::size_t>(degree) + 1); }
+bool is_aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % 64 == 0; }
 
 float clamped_to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -69,124 +34,207 @@ Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_
 
 }  // namespace
 
-NormalCurves::NormalCurves(std::span<const ControlNormals> normals) : size_(normals.size()) {
-  double largest = 0;
-  for (const ControlNormals& c : normals) largest = std::fmax(largest, largest_component(c));
-  exponent_ = largest >= kSmallestMesh ? std::ilogb(largest) - kLargestExponent : 0;
-
-  // Find the degree of every element, flag those that float32 cannot carry, and collect runs.
-  std::vector<DegreeRun> runs;
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    int element_degree = degree(normals[i]);
-    ++degree_counts_[static_cast<std::size_t>(element_degree)];
-    if (!float_suffices(normals[i], largest)) {
-      flagged_.push_back({i, normals[i]});
-      element_degree = runs.empty() ? 0 : runs.back().degree;  // its place in the planes is not read: join any run
-    }
-    if (!runs.empty() && runs.back().degree == element_degree)
-      ++runs.back().count;
-    else
-      runs.push_back({1, element_degree});
-  }
-  runs = raise_short_runs(raise_short_runs(runs, 0), 1);
-
-  std::size_t value_count = 0;
-  for (const DegreeRun& run : runs) value_count += run.count * planes_of(run.degree);
-  values_.assign(value_count, 1.0f);
-
-  std::size_t first = 0, offset = 0, next_flagged = 0;
-  for (const DegreeRun& run : runs) {
-    runs_.push_back({first, run.count, offset, run.degree});
-    for (std::size_t i = 0; i < run.count; ++i) {
-      if (next_flagged < flagged_.size() && flagged_[next_flagged].element == first + i) {
-        ++next_flagged;
-        continue;
-      }
-      float* value = values_.data() + offset + i;
-      const auto put = [&](const Vec3d& v) {
-        for (const double component : {v.x, v.y, v.z}) {
-          *value = static_cast<float>(component);
-          value += run.count;
-        }
-      };
-      const auto scaled = [this](const Vec3d& v) { return std::ldexp(1.0, -exponent_) * v; };
-      const ControlNormals& c = normals[first + i];
-      if (run.degree == 0) {
-        put(unit(c.n0));
-        *value = static_cast<float>(std::ldexp(length(c.n0), -exponent_));
-      } else {
-        put(scaled(c.n0));
-        if (run.degree == 2) put(scaled(c.m));
-        put(scaled(c.n1));
-      }
-    }
-    first += run.count;
-    offset += run.count * planes_of(run.degree);
-  }
+NormalCurves& NormalCurves::operator=(NormalCurves&& other) noexcept {
+  size_ = std::exchange(other.size_, 0);
+  keeps_lengths_ = std::exchange(other.keeps_lengths_, true);
+  degree_counts_ = std::exchange(other.degree_counts_, {});
+  blocks_ = std::move(other.blocks_);
+  runs_ = std::exchange(other.runs_, {});
+  exponents_ = std::exchange(other.exponents_, {});
+  flagged_ = std::exchange(other.flagged_, {});
+  exact_ = std::exchange(other.exact_, {});
+  return *this;
 }
 
-std::size_t NormalCurves::unit_normals(double t, VectorView<float> result) const noexcept {
-  assert(result.count == size_);
-  const auto weights = QuadraticWeights<float>::at(t);
-  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
+NormalCurves::NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options)
+    : NormalCurves(CurveBuilder::of_control_normals(normals, options)) {}
 
-  for (const Run& run : runs_) {
-    const VectorView<float> part = result.part({run.first, run.count});
-    const auto c0 = three_planes(values_.data() + run.offset, run.count);
-    if (run.degree == 0) {
-      fill(part, [c0](std::size_t i) { return c0[i]; });
-      continue;
-    }
-    const auto c1 = three_planes(c0.z + run.count, run.count);
-    if (run.degree == 1) {
-      fill(part, [=](std::size_t i) { return normalized(start_weight * c0[i] + end_weight * c1[i]); });
-      continue;
-    }
-    const auto c2 = three_planes(c1.z + run.count, run.count);
-    fill(part, [=](std::size_t i) { return normalized(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
-  }
-
-  return flagged_unit_normals(t, result);
+NormalCurves NormalCurves::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
+                                    NormalCurves* reuse) {
+  return CurveBuilder::of_faces(segment, options, threads, reuse);
 }
 
-std::size_t NormalCurves::flagged_unit_normals(double t, VectorView<float> result) const noexcept {
+NormalCurves NormalCurves::of_groups(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
+                                     Threads threads, NormalCurves* reuse) {
+  return CurveBuilder::of_groups(segment, groups, options, threads, reuse);
+}
+
+// One pass over the elements of a range, at one t. Returns how many have no direction.
+template <class Output>
+std::size_t NormalCurves::evaluate_range(IndexRange range, double t, const CurveWeights& weights,
+                                         const Output& output) const noexcept {
+  const std::size_t first_block = range.first / kTile;
+  auto run = std::upper_bound(runs_.begin(), runs_.end(), first_block,
+                              [](std::size_t block, const Run& r) { return block < r.first_block; });
+  std::size_t element = range.first;
+  for (--run; element < range.end(); ++run) {
+    const auto kind = static_cast<BlockKind>(run->kind);
+    const std::size_t end = std::min((run->first_block + run->block_count) * kTile, range.end());
+    const std::size_t skipped = element - run->first_block * kTile;
+    output.write({blocks_.data() + run->offset + skipped * bytes_of(kind), kind, end - element}, weights, element);
+    element = end;
+  }
+
+  return write_flagged(range, t, output);
+}
+
+template <class Output>
+std::size_t NormalCurves::write_flagged(IndexRange range, double t, const Output& output) const noexcept {
+  constexpr std::size_t kBatch = 64;
+  Vec3f batch[kBatch];
+  const auto index_of = [this](std::size_t element) {
+    return static_cast<std::size_t>(std::lower_bound(flagged_.begin(), flagged_.end(), element) - flagged_.begin());
+  };
+  const std::size_t end = index_of(range.end());
   std::size_t without_direction = 0;
-  for (const Flagged& flagged : flagged_) {
-    const UnitNormal u = unit_normal_at(flagged.exact, t);
-    result.set(flagged.element, to_float(u.vector));
-    if (u.direction == Direction::kNone) ++without_direction;
+  for (std::size_t i = index_of(range.first); i < end; i += kBatch) {
+    const std::size_t count = std::min(kBatch, end - i);
+    without_direction += exact_unit_normals(std::span(exact_).subspan(i, count), t, std::span(batch, count));
+    for (std::size_t k = 0; k < count; ++k) output.set(flagged_[i + k], batch[k]);
   }
   return without_direction;
 }
 
-void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
-  assert(result.count == size_);
-  const auto weights = QuadraticWeights<float>::at(t);
-  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
-  const double scale = std::ldexp(1.0, exponent_);
-  const auto unscaled = [scale](const Vec3f& v) { return clamped_to_float(scale * to_double(v)); };
+std::size_t NormalCurves::write_flagged(double t, VectorView<float> result) const noexcept {
+  return write_flagged({0, size_}, t, PlanesOutput{result});
+}
 
-  for (const Run& run : runs_) {
-    const VectorView<float> part = result.part({run.first, run.count});
-    const auto c0 = three_planes(values_.data() + run.offset, run.count);
-    if (run.degree == 0) {
-      const float* lengths = c0.z + run.count;
-      fill(part, [=](std::size_t i) { return unscaled(lengths[i] * c0[i]); });
-      continue;
+template <class Output>
+std::size_t NormalCurves::evaluate_all(double t, const Output& output, Threads threads) const {
+  if (size_ == 0) return 0;
+  const CurveWeights weights = CurveWeights::at(t, !keeps_lengths_);
+  return over_pieces(threads, kPiece, [&](IndexRange range) { return evaluate_range(range, t, weights, output); });
+}
+
+template <class Output>
+std::size_t NormalCurves::evaluate_many(std::span<const double> times, std::span<const Output> outputs,
+                                        Threads threads) const {
+  if (size_ == 0) return 0;
+  std::vector<CurveWeights> weights;
+  for (const double t : times) weights.push_back(CurveWeights::at(t, !keeps_lengths_));
+  return over_pieces(threads, kPiece, [&](IndexRange piece) {
+    std::size_t without_direction = 0;
+    for (std::size_t first = piece.first; first < piece.end(); first += kManyTimes) {
+      const IndexRange range{first, std::min(kManyTimes, piece.end() - first)};
+      for (std::size_t k = 0; k < times.size(); ++k)
+        without_direction += evaluate_range(range, times[k], weights[k], outputs[k]);
     }
-    const auto c1 = three_planes(c0.z + run.count, run.count);
-    if (run.degree == 1) {
-      fill(part, [=](std::size_t i) { return unscaled(start_weight * c0[i] + end_weight * c1[i]); });
-      continue;
-    }
-    const auto c2 = three_planes(c1.z + run.count, run.count);
-    fill(part, [=](std::size_t i) { return unscaled(quadratic_normal(c0[i], c1[i], c2[i], weights)); });
+    return without_direction;
+  });
+}
+
+// Calls body(range) over all elements, on one thread as a whole or on all in pieces; returns the sum of the results.
+template <class Body>
+std::size_t NormalCurves::over_pieces(Threads threads, std::size_t piece, Body body) const {
+  const auto flushed = [&](IndexRange range) {
+    const std::size_t result = body(range);
+    flush_stream();
+    return result;
+  };
+  if (threads == Threads::kOne || size_ < 2 * piece) return flushed(IndexRange{0, size_});
+  std::atomic<std::size_t> sum = 0;
+  parallel_blocks(size_, piece, [&](IndexRange range) { sum += flushed(range); });
+  return sum;
+}
+
+std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
+  assert(result.count == size_);
+  const bool stream = size_ * 3 * sizeof(float) > kStreamFrom && is_aligned(result.x);
+  return with_output(result, stream, [&](const auto& output) { return evaluate_all(t, output, threads); });
+}
+
+std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
+  assert(result.size() == size_);
+  const bool stream = size_ * sizeof(Octahedral) > kStreamFrom && is_aligned(result.data());
+  return evaluate_all(t, OctahedralOutput{result, stream}, threads);
+}
+
+std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Threads threads) const {
+  assert(result.size() == size_);
+  return evaluate_all(t, Rgb10A2Output{result}, threads);
+}
+
+std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
+                                       Threads threads) const {
+  assert(results.size() == times.size());
+  const bool large = times.size() * size_ * 3 * sizeof(float) > kStreamFrom;
+  if (std::all_of(results.begin(), results.end(), is_packed)) {
+    std::vector<PackedOutput> outputs;
+    for (const auto& result : results) outputs.push_back({result, large && is_aligned(result.x)});
+    return evaluate_many<PackedOutput>(times, outputs, threads);
   }
-  for (const Flagged& flagged : flagged_) result.set(flagged.element, clamped_to_float(normal_at(flagged.exact, t)));
+  if (std::all_of(results.begin(), results.end(), [](const auto& result) { return result.stride == 1; })) {
+    std::vector<PlanesOutput> outputs;
+    for (const auto& result : results) outputs.push_back({result});
+    return evaluate_many<PlanesOutput>(times, outputs, threads);
+  }
+  std::size_t without_direction = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) without_direction += unit_normals(times[k], results[k], threads);
+  return without_direction;
+}
+
+std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const std::span<Octahedral>> results,
+                                       Threads threads) const {
+  assert(results.size() == times.size());
+  std::vector<OctahedralOutput> outputs;
+  const bool large = times.size() * size_ * sizeof(Octahedral) > kStreamFrom;
+  for (const auto& result : results) {
+    assert(result.size() == size_);
+    outputs.push_back({result, large && is_aligned(result.data())});
+  }
+  return evaluate_many<OctahedralOutput>(times, outputs, threads);
+}
+
+void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
+  assert(result.count == size_ && keeps_lengths_);
+  const CurveWeights weights = CurveWeights::at(t, !keeps_lengths_);
+  for (const Run& run : runs_) {
+    const auto kind = static_cast<BlockKind>(run.kind);
+    const std::size_t first = run.first_block * kTile, end = std::min(first + run.block_count * kTile, size_);
+    for (std::size_t i = first; i < end; ++i) {
+      const float* const p =
+          reinterpret_cast<const float*>(blocks_.data() + run.offset + (i - first) / kTile * kTile * bytes_of(kind)) +
+          i % kTile;
+      const auto vector = [p](std::size_t k) {
+        const float* const x = p + 3 * k * kTile;
+        return Vec3f{x[0], x[kTile], x[2 * kTile]};
+      };
+      Vec3f n;
+      if (kind == BlockKind::kUnitLength) {
+        n = p[3 * kTile] * vector(0);
+      } else if (kind == BlockKind::kLinear32) {
+        n = weights.linear[0] * vector(0) + weights.linear[1] * vector(1);
+      } else {
+        n = weights.quadratic[0] * vector(0) + weights.quadratic[1] * vector(1) + weights.quadratic[2] * vector(2);
+      }
+      const int exponent = exponents_.empty() ? 0 : exponents_[i / kTile];
+      result.set(i, exponent == 0 ? n : clamped_to_float(std::ldexp(1.0, exponent) * to_double(n)));
+    }
+  }
+  for (std::size_t k = 0; k < flagged_.size(); ++k) result.set(flagged_[k], clamped_to_float(normal_at(exact_[k], t)));
 }
 
 std::size_t NormalCurves::bytes() const noexcept {
-  return values_.size() * sizeof(float) + runs_.size() * sizeof(Run) + flagged_.size() * sizeof(Flagged);
+  const std::size_t filling = runs_.empty() ? 0 : (kTile - size_ % kTile) % kTile;
+  const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(static_cast<BlockKind>(runs_.back().kind));
+  return blocks_.size() - unused + runs_.size() * sizeof(Run) + exponents_.size() * sizeof(std::int16_t) +
+         flagged_.size() * (sizeof(std::size_t) + sizeof(ControlNormals));
+}
+
+std::vector<NormalCurves::ByteCount> NormalCurves::byte_counts() const {
+  std::vector<ByteCount> counts;
+  for (const Run& run : runs_) {
+    const std::size_t first = run.first_block * kTile, end = std::min(first + run.block_count * kTile, size_);
+    const std::size_t bytes = bytes_of(static_cast<BlockKind>(run.kind));
+    const auto at = std::lower_bound(counts.begin(), counts.end(), bytes,
+                                     [](const ByteCount& count, std::size_t b) { return count.bytes < b; });
+    if (at != counts.end() && at->bytes == bytes) {
+      at->elements += end - first;
+    } else {
+      counts.insert(at, {bytes, end - first});
+    }
+  }
+  return counts;
 }
 
 }  // namespace chronormal

@@ -150,8 +150,8 @@ std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
 
 std::vector<float> NormalSampler::area_normals(const Segment& segment, double t) {
   if (curve_segment_ != segment.index) {
-    curves_ =
-        NormalCurves(are_faces() ? all_face_control_normals(segment) : all_group_control_normals(segment, groups_));
+    curves_ = are_faces() ? NormalCurves::of_faces(segment, {}, Threads::kAll, &curves_)
+                          : NormalCurves::of_groups(segment, groups_, {}, Threads::kAll, &curves_);
     curve_segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
@@ -159,7 +159,7 @@ std::vector<float> NormalSampler::area_normals(const Segment& segment, double t)
   if (options_.length == NormalLength::kArea)
     curves_.normals(t, result);
   else
-    (void)curves_.unit_normals(t, result);  // who writes them counts those without a direction
+    curves_.unit_normals(t, result, Threads::kAll);  // who writes them counts those without a direction
   return normals;
 }
 

@@ -6,7 +6,11 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
+
+#include "tests/support/fixtures.h"
+#include "tests/support/hard_normals.h"
 
 namespace chronormal {
 namespace {
@@ -96,7 +100,7 @@ TEST(NormalCurves, normals_have_twice_the_area_as_length) {
 TEST(NormalCurves, no_elements_are_no_trouble) {
   const NormalCurves curves{std::span<const ControlNormals>{}};
   EXPECT_EQ(curves.size(), 0u);
-  EXPECT_EQ(curves.unit_normals(0.5, {}), 0u);
+  EXPECT_EQ(curves.unit_normals(0.5, VectorView<float>{}), 0u);
 }
 
 TEST(NormalCurves, an_element_that_is_always_zero_gives_zero_and_is_counted) {
@@ -204,6 +208,57 @@ TEST(NormalCurves, elements_of_very_different_size_all_keep_their_direction) {
   }
   const auto u = unit_normals(NormalCurves(normals), 0.6);
   for (const Vec3f& v : u) expect_near(to_double(v), unit_normal_at(kQuadratic, 0.6).vector, 2e-7);
+}
+
+TEST(NormalCurves, lengths_are_right_at_every_size_and_among_neighbours_of_any) {
+  fixtures::Random random(61);
+  for (const int spread : {0, 20, 60, 120}) {
+    std::vector<ControlNormals> normals;
+    for (int i = 0; i < 1000; ++i) {
+      const double s = std::ldexp(1, static_cast<int>(random.below(static_cast<std::size_t>(spread) + 1)) - spread / 2);
+      normals.push_back(test::scaled_by(s, test::hard_element(random, false)));
+    }
+    const NormalCurves curves(normals);
+    std::vector<float> packed(3 * normals.size());
+    const auto view = VectorView<float>::packed(packed.data(), normals.size());
+    for (const double t : {0.0, 0.25, 0.6, 1.0}) {
+      curves.normals(t, view);
+      for (std::size_t i = 0; i < normals.size(); ++i)
+        expect_near(to_double(view[i]), normal_at(normals[i], t), 1e-6 * test::largest_of(normals[i]));
+    }
+  }
+}
+
+TEST(NormalCurves, flagged_elements_anywhere_leave_their_neighbours_alone) {
+  const ControlNormals flagged{{0, 0, 1}, {1e-7, 0, 0}, {0, 0, -1}};
+  for (const double tolerance : {1e-6, 1e-3, 5e-3}) {
+    for (std::size_t size = 1; size <= 50; size += 7) {
+      for (std::size_t at = 0; at < size; ++at) {
+        std::vector<ControlNormals> normals(size, kQuadratic);
+        const NormalCurves without(normals, {tolerance});
+        normals[at] = flagged;
+        const NormalCurves curves(normals, {tolerance});
+        ASSERT_EQ(curves.flagged_count(), 1u);
+        const auto expected = unit_normals(without, 0.5), u = unit_normals(curves, 0.5);
+        for (std::size_t i = 0; i < size; ++i) {
+          if (i == at) continue;
+          ASSERT_EQ(u[i], expected[i]) << i;
+        }
+        expect_near(to_double(u[at]), {1, 0, 0}, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(NormalCurves, moved_from_are_as_good_as_new) {
+  NormalCurves from(repeated({{kQuadratic, 40}, {ControlNormals{}, 2}}));
+  const auto before = unit_normals(from, 0.4);
+  NormalCurves to = std::move(from);
+  EXPECT_EQ(unit_normals(to, 0.4), before);
+  EXPECT_EQ(from.size(), 0u);  // NOLINT(bugprone-use-after-move): what this test is about
+  EXPECT_EQ(from.unit_normals(0.4, VectorView<float>{}), 0u);
+  from = NormalCurves(repeated({{kLinear, 3}}));
+  EXPECT_EQ(unit_normals(from, 0.4).size(), 3u);
 }
 
 }  // namespace

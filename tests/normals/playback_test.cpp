@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/schemes/scheme.h"
-#include "schemes/arc.h"
 #include "schemes/curve_scheme.h"
+#include "schemes/kernels/curve_kernels.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/hard_normals.h"
 
 namespace chronormal {
 namespace {
@@ -163,6 +166,77 @@ TEST(Playback, mixed_degrees_and_degenerate_elements_are_played_too) {
   }
 }
 
+// Every remainder of a block, every form, every tolerance: runs that are played, and runs that are not.
+TEST(Playback, of_any_size_form_and_tolerance_stays_within_its_bounds) {
+  fixtures::Random random(62);
+  std::vector<ControlNormals> elements;
+  while (elements.size() < 1000) {
+    const auto& family = test::hard_families()[random.below(test::hard_families().size())];
+    for (std::size_t run = 1 + random.below(120); run > 0; --run) elements.push_back(family.make(random));
+  }
+  constexpr double kDriftBound = 5e-5;  // radians, playback.h
+  constexpr int kSteps = 64;
+  for (const double tolerance : {1e-6, 1e-5, 1e-3, 5e-3}) {
+    for (std::size_t size = 1; size <= 1000; size += size < 70 ? 1 : 465) {
+      const auto some = std::span(elements).last(size);
+      const NormalCurves curves(some, {tolerance});
+      const double step = 1.0 / kSteps;
+      NormalPlayback one(curves, 0, step), two(curves, 0, step), three(curves, 0, step);
+      std::vector<float> memory(10 * size + 1);
+      float* const p = memory.data() + 1;
+      const auto packed = VectorView<float>::packed(p, size);
+      const auto planes = VectorView<float>::planes(p + 3 * size, p + 4 * size, p + 5 * size, size);
+      const VectorView<float> strided{p + 6 * size + 2, p + 6 * size + 1, p + 6 * size, size, 4};
+      for (int k = 0; k <= kSteps; ++k) {
+        const std::size_t zeros = one.next(packed);
+        ASSERT_EQ(two.next(planes), zeros);
+        ASSERT_EQ(three.next(strided), zeros);
+        for (std::size_t i = 0; i < size; ++i) {
+          ASSERT_EQ(packed[i], planes[i]) << i << " of " << size;
+          ASSERT_EQ(packed[i], strided[i]) << i << " of " << size;
+          const UnitNormal u = unit_normal_at(some[i], k * step);
+          if (u.direction != Direction::kRegular) continue;
+          ASSERT_LE(test::angle_to(packed[i], some[i], k * step), tolerance + kDriftBound)
+              << i << " of " << size << ", step " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(Playback, of_what_is_kept_in_few_bytes_is_random_access) {
+  fixtures::Random random(63);
+  std::vector<ControlNormals> normals;
+  for (int i = 0; i < 500; ++i)
+    normals.push_back(test::hard_families()[1].make(random));  // one direction, turned a little
+  for (const double tolerance : {1e-3, 5e-3}) {
+    const NormalCurves curves(normals, {tolerance});
+    NormalPlayback playback(curves, 0.25, 0.05);
+    EXPECT_EQ(playback.bytes(), 0u);
+    EXPECT_EQ(playback.unplayed_count(), 0u);
+    std::vector<float> played(1500), exact(1500);
+    for (int k = 0; k < 10; ++k) {
+      (void)playback.next(VectorView<float>::packed(played.data(), 500));
+      (void)curves.unit_normals(0.25 + k * 0.05, VectorView<float>::packed(exact.data(), 500));
+      EXPECT_EQ(played, exact);
+    }
+  }
+  // And units as well, whatever the tolerance.
+  const std::vector<ControlNormals> still(35, ControlNormals{{0, 3, 4}, {0, 3, 4}, {0, 3, 4}});
+  for (const double tolerance : {1e-6, 1e-3}) {
+    const NormalCurves curves(still, {tolerance});
+    NormalPlayback playback(curves, 0, 0.5);
+    EXPECT_EQ(playback.bytes(), 0u);
+    std::vector<float> x(35), y(35), z(35);
+    (void)playback.next(VectorView<float>::planes(x.data(), y.data(), z.data(), 35));
+    for (std::size_t i = 0; i < 35; ++i) {
+      EXPECT_EQ(x[i], 0);
+      EXPECT_FLOAT_EQ(y[i], 0.6F);
+      EXPECT_FLOAT_EQ(z[i], 0.8F);
+    }
+  }
+}
+
 TEST(Playback, schemes_without_an_incremental_form_say_so) {
   for (const char* name :
        {"recompute", "rational", "decasteljau:4", "circle:timed", "linear:scaled", "lagrange:4", "lagrange:12"}) {
@@ -181,35 +255,18 @@ TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
   EXPECT_EQ(make_scheme("slerp").value()->sequential_operations()->trigonometric, 0);
 }
 
-// Counting sees the code that runs: one multiplication more in a scheme is one more in the table.
-struct PlainArc : UniformArc {
-  void fit(ElementMotion& element, double* c) const {
-    put_arc(c, CircleFamily(element.start().vector, element.end().vector).great_arc());
-  }
-};
-
-struct ArcWithOneMore : PlainArc {
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
-    return PlainArc::evaluate(c, S(1) * t);
-  }
-  template <class S>
-  [[nodiscard]] Vec3<S> advance(Coefficients<S> c, State<S> state) const {
-    Vec3<S> u = PlainArc::advance(c, state);
-    u.x = u.x * S(1);
-    return u;
-  }
-};
-
-TEST(Operations, one_more_multiplication_changes_the_count) {
-  const CurveScheme<PlainArc> plain{PlainArc{}};
-  const CurveScheme<ArcWithOneMore> more{ArcWithOneMore{}};
-  OperationCounts expected = plain.operations();
-  ++expected.multiply;
-  EXPECT_EQ(more.operations(), expected);
-  expected = *plain.sequential_operations();
-  ++expected.multiply;
-  EXPECT_EQ(*more.sequential_operations(), expected);
+// Counting sees the code that runs: one vector more in a sum is three products and three sums more.
+TEST(Operations, one_vector_more_changes_the_count) {
+  const std::vector<float> coefficients(12, 0.5F), state(12, 0.25F);
+  SharedValues weights{};
+  weights.fill(0.5F);
+  OperationCounts expected = count_evaluation(Formula::kSumOf3, std::span(coefficients).first(9), weights);
+  expected.add += 3;
+  expected.multiply += 3;
+  EXPECT_EQ(count_evaluation(Formula::kSumOf4, coefficients, weights), expected);
+  expected = count_advance(Formula::kSumOf3, std::span(coefficients).first(9), std::span(state).first(9));
+  expected.add += 3;
+  EXPECT_EQ(count_advance(Formula::kSumOf4, coefficients, state), expected);
 }
 
 }  // namespace

@@ -4,12 +4,17 @@
 /// n(t) costs two additions per component, and no multiplication (Hast 2003, as cited by the paper). Every addition
 /// rounds, so the state drifts; every `anchor_interval` steps it is made anew from the curves.
 ///
+/// Use        to follow the paper. Since memory is what evaluation waits for, and the state is read and written, it is
+///            slower than random access (docs/benchmarks.md); to play many frames, evaluate blocks of them at once
+///            (NormalCurves::unit_normals with many t).
 /// Drift      The error of the state is absolute, so the direction suffers where |n(t)| is small against where it came
 ///            from. Elements for which it cannot be shown that the largest control normal stays below 4 |n(t)| are not
 ///            played but evaluated at random access. For the others, 64 steps are within 5e-5 rad by a bound on every
 ///            rounding; measured it is a tenth of that (docs/paper.md, section 3).
+/// Compact    what NormalCurves keeps in less than float32, or as a unit normal, is evaluated at random access.
 /// Memory     the state is read and written at every step: 36 bytes an element of degree 2, beside the curves.
 /// Ownership  the curves must outlive the playback. Results go to the caller's memory.
+/// Moves      what was moved from may only be destroyed or assigned to.
 /// Threads    one playback belongs to one thread at a time.
 #ifndef CHRONORMAL_NORMALS_PLAYBACK_H_
 #define CHRONORMAL_NORMALS_PLAYBACK_H_
@@ -17,6 +22,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "chronormal/core/memory.h"
 #include "chronormal/core/views.h"
 #include "chronormal/normals/evaluate.h"
 
@@ -37,7 +43,7 @@ class NormalPlayback {
   /// Returns the number of (0, 0, 0) written. result must have as many vectors as the curves have elements
   std::size_t next(VectorView<float> result) noexcept;
 
-  /// How many elements are not played but evaluated at random access, the flagged ones of the curves aside.
+  /// How many elements are not played but evaluated at random access, the flagged and compact ones of the curves aside.
   [[nodiscard]] std::size_t unplayed_count() const noexcept { return unplayed_.size(); }
   /// Memory of the state, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept { return state_.size() * sizeof(float); }
@@ -48,15 +54,13 @@ class NormalPlayback {
   const NormalCurves* curves_;
   double start_, step_;
   std::size_t anchor_interval_;
-  std::size_t index_ = 0;     // of the current step
-  std::vector<float> state_;  // per run, in its order: planes of n and its differences
+  std::size_t index_ = 0;      // of the current step
+  AlignedArray<float> state_;  // of the blocks that are played, in their order
 
-  // An element that is not played: where its control normals lie.
+  // An element that is not played.
   struct Unplayed {
     std::size_t element;
-    const float* values;
-    std::size_t stride;
-    int degree;
+    ControlNormals normals;
   };
   std::vector<Unplayed> unplayed_;
 };

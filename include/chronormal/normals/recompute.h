@@ -1,0 +1,76 @@
+/// Unit normals from positions, made anew at every t: eq. 1 and eq. 2 as they stand, as fast as we can write them.
+///
+/// The rival of NormalCurves, and what wins for one evaluation or two. Nothing is prepared but scratch memory;
+/// positions and topology are read at every call, must stay alive, and positions may change between calls.
+///
+/// Accuracy   within 1e-6 rad of exact arithmetic, as NormalCurves: edges in float32 and all that follows in double
+///            where a bound on the rounding shows that it suffices (edges are interpolated, not vertices, so the
+///            distance from the origin does not matter), double throughout elsewhere, the limit direction at a
+///            collapse.
+/// Groups     face normals are made a little ahead of the elements that add them up, in a window that stays in the
+///            cache; where the faces of neighbouring elements are far apart, in memory for all of them.
+/// Memory     scratch of 16 bytes for each face of the window, or for all; and where vertices lie in no order, or not
+///            as x y z, 32 bytes for each.
+/// Order      sums are added in the order of groups.faces(): shuffling the faces of the mesh gives the same bits.
+/// Threads    unit_normals() uses the scratch of the object: one call at a time. On one thread it does not allocate or
+///            throw. The same bits on every instruction
+///            set, compiler and number of threads.
+/// Speed      triangles whose positions are packed, and results aligned to 64 bytes, as planes or packed, are fastest;
+///            polygons go one by one.
+#ifndef CHRONORMAL_NORMALS_RECOMPUTE_H_
+#define CHRONORMAL_NORMALS_RECOMPUTE_H_
+
+#include <cstddef>
+
+#include "chronormal/core/memory.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+/// Writes the unit normals at t of a range of faces; see NormalRecompute, whose bits they have. Pure: no allocation, no
+/// throw, and no scratch, so that meshes in no order and positions that are not packed are slower.
+/// t in [0, 1]; result must have faces.count elements; faces must lie inside the topology
+std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept;
+
+class NormalRecompute {
+ public:
+  /// Of no elements.
+  NormalRecompute() = default;
+  /// Can be moved, not copied; what was moved from may only be destroyed or assigned to.
+  NormalRecompute(NormalRecompute&&) = default;
+  NormalRecompute& operator=(NormalRecompute&&) = default;
+  /// Of the faces of a segment. Throws std::bad_alloc only.
+  explicit NormalRecompute(const Segment& segment);
+  /// Of the elements of the groups, which must be of the topology of the segment and outlive the object.
+  NormalRecompute(const Segment& segment, const NormalGroups& groups);
+
+  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
+  /// where n is zero throughout. Returns the number of (0, 0, 0) written.
+  /// t in [0, 1]; result must have size() elements
+  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne);
+
+  /// How many elements there are.
+  [[nodiscard]] std::size_t size() const noexcept;
+  /// Scratch memory, in bytes.
+  [[nodiscard]] std::size_t bytes() const noexcept { return pairs_.size() * sizeof(float) + normals_.size(); }
+
+ private:
+  class Call;
+  friend std::size_t unit_normals_at(const Segment&, IndexRange, double, VectorView<float>) noexcept;
+
+  void choose_positions();
+
+  Segment segment_;
+  const NormalGroups* groups_ = nullptr;  // nothing: faces
+  bool vertices_are_near_ = true;         // those of neighbouring faces are neighbours in memory
+  AlignedArray<float> pairs_;             // x y z _ of both ends of each vertex, or nothing
+  std::size_t window_ = 0;                // normals of faces, a power of two; 0: all
+  AlignedBytes normals_;                  // of faces, for groups
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_RECOMPUTE_H_

@@ -1,0 +1,237 @@
+// Which way to normals is chosen, that it says so, and that both lead to the same normals.
+
+#include "chronormal/normals/segment_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/normals/weld.h"
+#include "tests/support/elements.h"
+#include "tests/support/exact_normal.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+using Normals = std::vector<Vec3f>;
+
+Normals evaluate(SegmentNormals& normals, double t, Threads threads = Threads::kOne) {
+  std::vector<float> packed(3 * normals.size(), 7.0f);
+  const auto view = VectorView<float>::packed(packed.data(), normals.size());
+  (void)normals.unit_normals(t, view, threads);
+  Normals result;
+  for (std::size_t i = 0; i < view.count; ++i) result.push_back(view[i]);
+  return result;
+}
+
+NormalGroups vertices_of(const Motion& motion) {
+  return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+}
+
+// Faces or vertices of a closed mesh in grid order, of degree 2.
+MeshShape shape(std::size_t faces, bool vertices, double lines = 0.25) {
+  MeshShape result;
+  result.faces = faces;
+  result.vertices = faces / 2;
+  result.elements = vertices ? result.vertices : faces;
+  result.faces_per_element = vertices ? 6 : 0;
+  result.lines_per_face = lines;
+  return result;
+}
+
+NormalStrategy chosen(const MeshShape& shape, double evaluations, double tolerance = kExactTolerance) {
+  return choose_strategy(shape, {.evaluations = evaluations, .tolerance = tolerance}).strategy;
+}
+
+exact::Vector exact_sum(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
+  exact::Vector sum;
+  for (const std::uint32_t f : faces) {
+    exact::Triangle triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f a = segment.from[segment.topology->face(f)[c]], b = segment.to[segment.topology->face(f)[c]];
+      triangle.from[c] = exact::vector(a.x, a.y, a.z);
+      triangle.to[c] = exact::vector(b.x, b.y, b.z);
+    }
+    const exact::Vector n = exact::normal_at(triangle, t);
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
+  }
+  return sum;
+}
+
+TEST(SegmentNormals, both_strategies_are_within_the_promise_of_exact_arithmetic) {
+  const Motion motion = fixtures::smooth_morph(8);
+  const Segment segment = motion.segment(0);
+  const NormalGroups groups = vertices_of(motion);
+  for (const NormalStrategy strategy : {NormalStrategy::kPolynomial, NormalStrategy::kRecompute}) {
+    SegmentNormals faces(segment, {.forced = strategy}), vertices(segment, groups, {.forced = strategy});
+    for (const double t : {0.0, 0.37, 1.0}) {
+      const Normals of_faces = evaluate(faces, t), of_vertices = evaluate(vertices, t);
+      ASSERT_EQ(of_faces.size(), 128u);
+      ASSERT_EQ(of_vertices.size(), 81u);
+      for (std::uint32_t f = 0; f < of_faces.size(); ++f) {
+        const Vec3f u = of_faces[f];
+        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact_sum(segment, {&f, 1}, t)), 1e-6) << name_of(strategy);
+      }
+      for (std::size_t v = 0; v < of_vertices.size(); ++v) {
+        const Vec3f u = of_vertices[v];
+        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact_sum(segment, groups.faces(v), t)), 1e-6) << name_of(strategy);
+      }
+    }
+  }
+}
+
+TEST(SegmentNormals, the_choice_is_what_runs) {
+  const Motion motion = fixtures::smooth_morph(8);
+  const Segment segment = motion.segment(0);
+  SegmentNormals once(segment), often(segment, {.evaluations = 1000});
+  EXPECT_EQ(once.choice().strategy, NormalStrategy::kRecompute);
+  EXPECT_EQ(often.choice().strategy, NormalStrategy::kPolynomial);
+  EXPECT_EQ(once.bytes(), 0u);
+  EXPECT_EQ(often.bytes(), NormalCurves::of_faces(segment).bytes());
+
+  NormalRecompute recompute(segment);
+  const NormalCurves curves = NormalCurves::of_faces(segment);
+  std::vector<float> packed(3 * 128);
+  const auto view = VectorView<float>::packed(packed.data(), 128);
+  const auto values = [&view] {
+    Normals result;
+    for (std::size_t i = 0; i < view.count; ++i) result.push_back(view[i]);
+    return result;
+  };
+  recompute.unit_normals(0.3, view);
+  EXPECT_EQ(evaluate(once, 0.3), values());
+  EXPECT_EQ(evaluate(once, 0.3, Threads::kAll), values());
+  (void)curves.unit_normals(0.3, view);
+  EXPECT_EQ(evaluate(often, 0.3), values());
+}
+
+TEST(SegmentNormals, a_looser_tolerance_keeps_fewer_bytes) {
+  const Motion motion = fixtures::smooth_morph(16);
+  const StrategyOptions exact{.evaluations = 100}, compact{.evaluations = 100, .tolerance = kCompactTolerance};
+  EXPECT_LT(SegmentNormals(motion.segment(0), compact).bytes(), SegmentNormals(motion.segment(0), exact).bytes());
+}
+
+TEST(SegmentNormals, nothing_is_no_trouble) {
+  const Motion empty = fixtures::make_motion(fixtures::make_triangles(0, {}), {}, {});
+  for (const double evaluations : {1.0, 1000.0}) {
+    SegmentNormals normals(empty.segment(0), {.evaluations = evaluations});
+    EXPECT_EQ(normals.size(), 0u);
+    EXPECT_EQ(normals.unit_normals(0.5, {}), 0u);
+    EXPECT_FALSE(normals.choice().reason.empty());
+  }
+}
+
+TEST(Strategy, one_evaluation_is_recomputed_and_many_are_not) {
+  for (const std::size_t faces :
+       {std::size_t{20}, std::size_t{15'000}, std::size_t{1'000'000}, std::size_t{10'000'000}}) {
+    for (const bool vertices : {false, true}) {
+      for (const double lines : {0.25, 3.0}) {
+        EXPECT_EQ(chosen(shape(faces, vertices, lines), 1), NormalStrategy::kRecompute) << faces;
+        EXPECT_EQ(chosen(shape(faces, vertices, lines), 30), NormalStrategy::kPolynomial) << faces;
+      }
+    }
+  }
+}
+
+TEST(Strategy, break_even_is_where_the_choice_changes) {
+  for (const bool vertices : {false, true}) {
+    const MeshShape mesh = shape(1'000'000, vertices);
+    const double even = model_costs(mesh, kExactTolerance).break_even();
+    EXPECT_GT(even, 1.5);
+    EXPECT_LT(even, 10);
+    EXPECT_EQ(chosen(mesh, 0.99 * even), NormalStrategy::kRecompute);
+    EXPECT_EQ(chosen(mesh, 1.01 * even), NormalStrategy::kPolynomial);
+    EXPECT_LT(model_costs(mesh, kCompactTolerance).break_even(), even);
+  }
+}
+
+TEST(Strategy, costs_grow_with_disorder_and_distance) {
+  const auto cost = [](std::size_t faces, bool vertices, double lines) {
+    return model_costs(shape(faces, vertices, lines), kExactTolerance);
+  };
+  for (const bool vertices : {false, true}) {
+    EXPECT_LT(cost(10'000'000, vertices, 0.25).recompute, cost(10'000'000, vertices, 3).recompute / 3);
+    EXPECT_LT(cost(1'000'000, vertices, 3).recompute, cost(10'000'000, vertices, 3).recompute);
+    EXPECT_LE(cost(15'000, vertices, 0.25).recompute, cost(1'000'000, vertices, 0.25).recompute);
+    // Curves do not mind the order of the mesh once they are prepared.
+    EXPECT_EQ(cost(10'000'000, vertices, 0.25).evaluate, cost(10'000'000, vertices, 3).evaluate);
+  }
+}
+
+TEST(Strategy, curves_of_low_degree_are_modelled_smaller_and_cheaper) {
+  MeshShape mesh = shape(1'000'000, false);
+  double bytes = 0, evaluate = 0;
+  for (const double degree : {0.0, 0.5, 1.0, 1.5, 2.0}) {
+    mesh.degree = degree;
+    const StrategyCosts costs = model_costs(mesh, kExactTolerance);
+    EXPECT_GT(costs.curve_bytes, bytes);
+    EXPECT_GT(costs.evaluate, evaluate);
+    bytes = costs.curve_bytes;
+    evaluate = costs.evaluate;
+  }
+  EXPECT_EQ(bytes, 36e6);
+}
+
+TEST(Strategy, what_is_forced_is_done_and_said) {
+  for (const NormalStrategy strategy : {NormalStrategy::kPolynomial, NormalStrategy::kRecompute}) {
+    const StrategyChoice choice = choose_strategy(shape(1000, false), {.evaluations = 5, .forced = strategy});
+    EXPECT_EQ(choice.strategy, strategy);
+    EXPECT_NE(choice.reason.find("asked for"), std::string::npos);
+  }
+}
+
+TEST(Strategy, the_reason_names_the_winner_and_both_costs) {
+  const StrategyChoice once = choose_strategy(shape(1'000'000, false), {});
+  EXPECT_EQ(once.reason.rfind("recompute: ", 0), 0u) << once.reason;
+  EXPECT_NE(once.reason.find("for 1 evaluation,"), std::string::npos) << once.reason;
+  EXPECT_NE(once.reason.find("by polynomial"), std::string::npos) << once.reason;
+  EXPECT_NE(once.reason.find("even at"), std::string::npos) << once.reason;
+  const StrategyChoice often = choose_strategy(shape(1'000'000, true), {.evaluations = 60});
+  EXPECT_EQ(often.reason.rfind("polynomial: ", 0), 0u) << often.reason;
+  EXPECT_NE(often.reason.find("60 evaluations"), std::string::npos) << often.reason;
+  EXPECT_LT(often.polynomial_cost, often.recompute_cost);
+}
+
+TEST(Strategy, any_number_of_evaluations_is_taken) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const MeshShape mesh = shape(1'000'000, false);
+  for (const double few : {-1.0, 0.0, 0.5, std::nan(""), -kInfinity}) {
+    EXPECT_EQ(chosen(mesh, few), NormalStrategy::kRecompute);
+    EXPECT_EQ(choose_strategy(mesh, {.evaluations = few}).recompute_cost, choose_strategy(mesh, {}).recompute_cost);
+  }
+  EXPECT_EQ(chosen(mesh, kInfinity), NormalStrategy::kPolynomial);
+}
+
+TEST(MeshShape, order_and_degree_are_seen) {
+  const Motion smooth = fixtures::smooth_morph(100);
+  const Segment segment = smooth.segment(0);
+  const MeshShape ordered = shape_of(segment);
+  EXPECT_EQ(ordered.elements, 20000u);
+  EXPECT_EQ(ordered.vertices, 10201u);
+  EXPECT_EQ(ordered.triangles_per_face, 1);
+  EXPECT_EQ(ordered.faces_per_element, 0);
+  EXPECT_LT(ordered.lines_per_face, 0.5);
+  EXPECT_EQ(ordered.degree, 2);
+
+  const Motion shuffled = test::with_faces_in_order(smooth, test::shuffled_order(20000, 1));
+  EXPECT_GT(shape_of(shuffled.segment(0)).lines_per_face, 1.5);
+  EXPECT_NEAR(shape_of(segment, vertices_of(smooth)).faces_per_element, 5.9, 0.05);
+
+  Motion still = smooth;
+  still.keyframes[1].positions = still.keyframes[0].positions;
+  EXPECT_EQ(shape_of(still.segment(0)).degree, 0);
+  const Motion quads = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
+                                             std::vector<fixtures::Point>(4), std::vector<fixtures::Point>(4));
+  EXPECT_EQ(shape_of(quads.segment(0)).triangles_per_face, 2);
+  EXPECT_EQ(shape_of(quads.segment(0)).degree, 0);
+}
+
+}  // namespace
+}  // namespace chronormal
