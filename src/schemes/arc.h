@@ -7,7 +7,8 @@
 #ifndef CHRONORMAL_SCHEMES_ARC_H_
 #define CHRONORMAL_SCHEMES_ARC_H_
 
-#include "chronormal/core/trigonometry.h"
+#include <cmath>
+
 #include "chronormal/core/vec3.h"
 #include "schemes/curve_scheme.h"
 
@@ -76,15 +77,7 @@ struct CircleFamily {
   [[nodiscard]] Arc great_arc() const { return arc(0); }
 };
 
-/// u(t) on an arc that is kept as coefficients, given the sine and cosine of the angle t A.
-template <class S>
-[[nodiscard]] Vec3<S> point_on_arc(const Vec3<S>& w, const Vec3<S>& p, const Vec3<S>& q, const SinCos<S>& angle) {
-  return w + angle.cos * p + angle.sin * q;
-}
-
-/// (cos, sin) of the angle on an arc that is played, and of the angle of one step: the state of four planes that arcs
-/// at uniform speed share. A rotation per step instead of the Chebyshev recurrence x' = 2 cos(step) x - x'', which
-/// needs no sine but loses digits a hundred times faster.
+/// (cos, sin) of the angle on an arc that is played, and of the angle of one step: the state of arcs at uniform speed.
 inline constexpr std::size_t kTurnPlanes = 4;
 
 inline void put_turn(double* state, double angle, double step_angle) {
@@ -92,15 +85,6 @@ inline void put_turn(double* state, double angle, double step_angle) {
   state[1] = std::sin(angle);
   state[2] = std::cos(step_angle);
   state[3] = std::sin(step_angle);
-}
-
-/// Returns (sine, cosine) of the state, which moves on by a step.
-template <class S>
-[[nodiscard]] SinCos<S> advance_turn(State<S> state) {
-  const S cosine = state[0], sine = state[1];
-  state[0] = cosine * state[2] - sine * state[3];
-  state[1] = sine * state[2] + cosine * state[3];
-  return {sine, cosine};
 }
 
 /// The planes of an arc: w, p, q, A.
@@ -117,25 +101,12 @@ inline void put_arc(double* c, const Arc& arc) {
 struct UniformArc {
   [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
 
-  template <class S>
-  [[nodiscard]] S at(double t) const {
-    return S(static_cast<float>(t));
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
-    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), sin_cos(t * c[9]));
-  }
+  [[nodiscard]] Formula formula() const { return Formula::kCircleArc; }
+  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
-
-  void anchor(Coefficients<float> c, double t, double step, double* state) const {
+  void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[9]), step * static_cast<double>(c[9]));
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> advance(Coefficients<S> c, State<S> state) const {
-    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), advance_turn(state));
   }
 };
 

@@ -54,19 +54,8 @@ struct TimedCircle {
     c[kArcPlanes] = circle.share;
   }
 
-  template <class S>
-  [[nodiscard]] S at(double t) const {
-    return S(static_cast<float>(t));
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
-    const S share = c[kArcPlanes];
-    const S numerator = share * t, rest = (S(1) - share) * (S(1) - t);
-    const S sum = numerator + rest;
-    const S warped = numerator / (sum > S(0) ? sum : S(1));
-    return point_on_arc(c.vector(0), c.vector(1), c.vector(2), sin_cos(warped * c[9]));
-  }
+  [[nodiscard]] Formula formula() const { return Formula::kTimedCircleArc; }
+  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 };
 
 }  // namespace

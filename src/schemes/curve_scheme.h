@@ -1,12 +1,12 @@
-/// The frame that most schemes share: coefficients are fitted per element in double, kept as float32 planes, and
-/// evaluated by one inlined formula.
+/// The frame that most schemes share: coefficients are fitted per element in double, kept as float32 in blocks, and
+/// evaluated by one of the formulas of kernels/formulas-inl.h.
 ///
 /// A scheme of this kind is a *policy*: a small class that says only what is its own,
 ///
 ///     std::size_t plane_count() const                    how many floats an element keeps
+///     Formula formula() const                            what is evaluated
 ///     void fit(ElementMotion& element, double* c) const  fills them; calls element.use_fallback() where undefined
-///     auto at<S>(double t) const                         what all elements share at t
-///     Vec3<S> evaluate<S>(Coefficients<S> c, shared)     the unit normal of one element
+///     void shared(double t, float* values) const         what all elements have in common at t, as the formula asks
 ///
 /// where it looks at the face itself,
 ///
@@ -14,12 +14,10 @@
 ///
 /// and, where the scheme can be played step by step,
 ///
-///     std::size_t state_planes() const                       how many floats the state of an element has
-///     void anchor(Coefficients<float> c, double t, double step, double* state)  the state at t
-///     Vec3<S> advance<S>(Coefficients<S> c, State<S> state)  the unit normal of the state, which moves on by a step
+///     std::size_t state_planes() const                   how many floats the state of an element has; 0: not played
+///     void anchor(ElementCoefficients c, double t, double step, double* state)  the state at t
 ///
-/// `evaluate` is a template on the scalar: float runs, Counting counts. An element that has no direction at all is not
-/// fitted: its coefficients are zero, and `evaluate` must turn them into (0, 0, 0).
+/// An element that has no direction at all is not fitted: its coefficients are zero, and it gets (0, 0, 0).
 #ifndef CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 #define CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 
@@ -28,9 +26,9 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/core/memory.h"
 #include "chronormal/schemes/scheme.h"
-#include "normals/curve_elements.h"
-#include "schemes/counting.h"
+#include "schemes/kernels/curve_kernels.h"
 
 namespace chronormal {
 
@@ -70,40 +68,13 @@ class ElementMotion {
   bool used_fallback_ = false;
 };
 
-/// The coefficients of one element, one per plane.
-template <class S>
-struct Coefficients {
-  const S* first;
-  std::size_t stride;  // from one plane to the next
+/// The coefficients of one element, which lies in a block.
+struct ElementCoefficients {
+  const float* first;
 
-  S operator[](std::size_t plane) const { return first[plane * stride]; }
+  float operator[](std::size_t plane) const { return first[plane * kBlock]; }
   /// The vector in the planes 3k, 3k + 1, 3k + 2.
-  [[nodiscard]] Vec3<S> vector(std::size_t k) const {
-    const S* p = first + 3 * k * stride;
-    return {p[0], p[stride], p[2 * stride]};
-  }
-};
-
-/// The state of one element that is being played, one value per plane.
-template <class S>
-struct State {
-  S* first;
-  std::size_t stride;
-
-  S& operator[](std::size_t plane) const { return first[plane * stride]; }
-  [[nodiscard]] Vec3<S> vector(std::size_t k) const { return Coefficients<S>{first, stride}.vector(k); }
-  void set_vector(std::size_t k, const Vec3<S>& v) const {
-    S* p = first + 3 * k * stride;
-    p[0] = v.x;
-    p[stride] = v.y;
-    p[2 * stride] = v.z;
-  }
-};
-
-/// Whether a policy can be played.
-template <class Policy>
-concept Playable = requires(const Policy& policy) {
-  policy.state_planes();
+  [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
 };
 
 /// Writes a vector into the planes 3k, 3k + 1, 3k + 2 of one element that is being fitted.
@@ -113,62 +84,91 @@ inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k + 2] = v.z;
 }
 
-/// v scaled to length 1, or `fallback` where v is as good as zero: opposite unit vectors can cancel.
-template <class S>
-[[nodiscard]] Vec3<S> normalized_or(const Vec3<S>& v, const Vec3<S>& fallback) {
-  using std::sqrt;
-  const S square = dot(v, v);
-  const bool vanished = !(square > S(1e-16f));
-  const S scale = S(1) / sqrt(vanished ? S(1) : square);
-  const Vec3<S> u = scale * v;
-  return {vanished ? fallback.x : u.x, vanished ? fallback.y : u.y, vanished ? fallback.z : u.z};
-}
+/// Values of elements in blocks (kernels/curve_kernels.h), while they are made.
+class BlockedValues {
+ public:
+  BlockedValues() = default;
+
+  /// All zero. Keeps its memory where it is large enough.
+  void assign(std::size_t plane_count, std::size_t element_count) {
+    plane_count_ = plane_count;
+    element_count_ = element_count;
+    if (size() > values_.size()) values_ = AlignedArray<float>(size());
+    std::fill_n(values_.data(), size(), 0.0f);
+  }
+
+  /// One value per plane of element i.
+  void put(std::size_t i, std::span<const double> values) noexcept {
+    assert(values.size() == plane_count_);
+    float* to = values_.data() + offset(i);
+    for (std::size_t k = 0; k < values.size(); ++k) to[k * kBlock] = static_cast<float>(values[k]);
+  }
+
+  [[nodiscard]] ElementCoefficients of(std::size_t i) const noexcept { return {values_.data() + offset(i)}; }
+
+  [[nodiscard]] CurveBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
+  [[nodiscard]] float* data() noexcept { return values_.data(); }
+  /// Without what fills up the last block.
+  [[nodiscard]] std::size_t bytes() const noexcept { return element_count_ * plane_count_ * sizeof(float); }
+
+ private:
+  [[nodiscard]] std::size_t offset(std::size_t i) const noexcept {
+    return i / kBlock * kBlock * plane_count_ + i % kBlock;
+  }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return (element_count_ + kBlock - 1) / kBlock * kBlock * plane_count_;
+  }
+
+  std::size_t plane_count_ = 0, element_count_ = 0;
+  AlignedArray<float> values_;
+};
+
+/// Whether a policy can be played.
+template <class Policy>
+concept Playable = requires(const Policy& policy) {
+  policy.state_planes();
+};
 
 /// Plays the coefficients of a CurveScheme.
 template <Playable Policy>
 class CurvePlayback final : public Playback {
  public:
-  CurvePlayback(const Policy& policy, const std::vector<float>& planes, std::size_t count,
-                std::size_t without_direction, double start, double step, std::size_t anchor_interval)
+  CurvePlayback(const Policy& policy, const BlockedValues& values, std::size_t count, std::size_t without_direction,
+                double start, double step, std::size_t anchor_interval)
       : policy_(policy),
-        planes_(planes),
+        values_(values),
         count_(count),
         without_direction_(without_direction),
         start_(start),
         step_(step),
         anchor_interval_(anchor_interval),
-        state_(policy.state_planes() * count),
-        exact_state_(policy.state_planes()) {}
+        exact_state_(policy.state_planes()) {
+    state_.assign(policy.state_planes(), count);
+  }
 
   std::size_t next(VectorView<float> result) noexcept override {
-    assert(result.count == count_);
     if (index_ == 0 || (anchor_interval_ != 0 && index_ % anchor_interval_ == 0))
       anchor(start_ + static_cast<double>(index_) * step_);
     ++index_;
-    const float* planes = planes_.data();
-    float* state = state_.data();
-    fill(result, [this, planes, state](std::size_t i) {
-      return policy_.template advance<float>(Coefficients<float>{planes + i, count_}, State<float>{state + i, count_});
-    });
+    advance_curves(policy_.formula(), values_.view(), state_.data(), result);
     return without_direction_;
   }
 
  private:
   void anchor(double t) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
-      policy_.anchor(Coefficients<float>{planes_.data() + i, count_}, t, step_, exact_state_.data());
-      for (std::size_t k = 0; k < exact_state_.size(); ++k)
-        state_[k * count_ + i] = static_cast<float>(exact_state_[k]);
+      policy_.anchor(values_.of(i), t, step_, exact_state_.data());
+      state_.put(i, exact_state_);
     }
   }
 
   const Policy& policy_;
-  const std::vector<float>& planes_;
+  const BlockedValues& values_;
   std::size_t count_, without_direction_;
   double start_, step_;
   std::size_t anchor_interval_;
   std::size_t index_ = 0;
-  std::vector<float> state_;
+  BlockedValues state_;
   std::vector<double> exact_state_;  // of one element
 };
 
@@ -182,7 +182,7 @@ class CurveScheme final : public Scheme {
     count_ = block.elements.count;
     fallbacks_ = 0;
     without_direction_ = 0;
-    planes_.assign(policy_.plane_count() * count_, 0.0f);
+    values_.assign(policy_.plane_count(), count_);
 
     std::vector<double> c(policy_.plane_count());
     for (std::size_t i = 0; i < count_; ++i) {
@@ -193,17 +193,12 @@ class CurveScheme final : public Scheme {
       }
       policy_.fit(element, c.data());
       if (element.used_fallback()) ++fallbacks_;
-      for (std::size_t k = 0; k < c.size(); ++k) planes_[k * count_ + i] = static_cast<float>(c[k]);
+      values_.put(i, c);
     }
   }
 
   std::size_t evaluate(double t, VectorView<float> result) const noexcept override {
-    assert(result.count == count_);
-    const auto shared = policy_.template at<float>(t);
-    const float* planes = planes_.data();
-    fill(result, [this, planes, &shared](std::size_t i) {
-      return policy_.template evaluate<float>(Coefficients<float>{planes + i, count_}, shared);
-    });
+    evaluate_curves(policy_.formula(), values_.view(), shared(t), result);
     return without_direction_;
   }
 
@@ -214,48 +209,44 @@ class CurveScheme final : public Scheme {
       return false;
   }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return fallbacks_; }
-  [[nodiscard]] std::size_t bytes() const noexcept override { return planes_.size() * sizeof(float); }
+  [[nodiscard]] std::size_t bytes() const noexcept override { return values_.bytes(); }
 
   [[nodiscard]] std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const override {
     if constexpr (Playable<Policy>) {
-      return std::make_unique<CurvePlayback<Policy>>(policy_, planes_, count_, without_direction_, start, step,
-                                                     anchor_interval);
-    } else {
-      return Scheme::play(start, step, anchor_interval);
+      if (policy_.state_planes() > 0) {
+        return std::make_unique<CurvePlayback<Policy>>(policy_, values_, count_, without_direction_, start, step,
+                                                       anchor_interval);
+      }
     }
+    return Scheme::play(start, step, anchor_interval);
   }
 
   [[nodiscard]] OperationCounts operations() const override {
-    const auto coefficients = counting(example_coefficients());
-    const auto shared = policy_.template at<Counting>(kExampleTime);
-    Counting::reset();
-    (void)policy_.template evaluate<Counting>(Coefficients<Counting>{coefficients.data(), 1}, shared);
-    return Counting::counts();
+    return count_evaluation(policy_.formula(), example_coefficients(), shared(kExampleTime));
   }
 
   [[nodiscard]] std::optional<OperationCounts> sequential_operations() const override {
     if constexpr (Playable<Policy>) {
-      const std::vector<float> values = example_coefficients();
-      std::vector<double> exact_state(policy_.state_planes());
-      policy_.anchor(Coefficients<float>{values.data(), 1}, kExampleTime, 0.125, exact_state.data());
-      const auto coefficients = counting(values);
-      auto state = counting({exact_state.begin(), exact_state.end()});
-      Counting::reset();
-      (void)policy_.template advance<Counting>(Coefficients<Counting>{coefficients.data(), 1},
-                                               State<Counting>{state.data(), 1});
-      return Counting::counts();
-    } else {
-      return std::nullopt;
+      if (policy_.state_planes() > 0) {
+        const std::vector<float> values = example_coefficients();
+        BlockedValues example;
+        example.assign(values.size(), 1);
+        example.put(0, std::vector<double>(values.begin(), values.end()));
+        std::vector<double> state(policy_.state_planes());
+        policy_.anchor(example.of(0), kExampleTime, 0.125, state.data());
+        return count_advance(policy_.formula(), values, std::vector<float>(state.begin(), state.end()));
+      }
     }
+    return std::nullopt;
   }
 
  private:
   static constexpr double kExampleTime = 0.375;
 
-  [[nodiscard]] static std::vector<Counting> counting(const std::vector<float>& values) {
-    std::vector<Counting> result(values.size());
-    std::transform(values.begin(), values.end(), result.begin(), [](float value) { return Counting(value); });
-    return result;
+  [[nodiscard]] SharedValues shared(double t) const noexcept {
+    SharedValues values{};
+    policy_.shared(t, values.data());
+    return values;
   }
 
   // Of a face that turns from +x to +y, so that no formula takes a short cut.
@@ -280,7 +271,7 @@ class CurveScheme final : public Scheme {
   std::size_t count_ = 0;
   std::size_t fallbacks_ = 0;
   std::size_t without_direction_ = 0;
-  std::vector<float> planes_;
+  BlockedValues values_;
 };
 
 }  // namespace chronormal

@@ -19,19 +19,10 @@ class ScaledLinear {
     put_vector(c, 1, best_scale(element, u0, u1) * u1);
   }
 
-  template <class S>
-  struct Weights {
-    S start, end;
-  };
-
-  template <class S>
-  [[nodiscard]] Weights<S> at(double t) const {
-    return {S(static_cast<float>(1 - t)), S(static_cast<float>(t))};
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const Weights<S>& weights) const {
-    return normalized_or(weights.start * c.vector(0) + weights.end * c.vector(1), c.vector(0));
+  [[nodiscard]] Formula formula() const { return Formula::kSumOf2; }
+  void shared(double t, float* values) const {
+    values[0] = static_cast<float>(1 - t);
+    values[1] = static_cast<float>(t);
   }
 
  private:

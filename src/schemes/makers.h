@@ -24,9 +24,6 @@ std::unique_ptr<Scheme> make_quaternion_optimal();  // quaternion_optimal.cpp
 std::unique_ptr<Scheme> make_circle();              // circle.cpp
 std::unique_ptr<Scheme> make_timed_circle();
 
-inline constexpr std::size_t kMaxLagrangeDegree = 64;      // the weights at equidistant nodes grow as 2^degree
-inline constexpr std::size_t kMaxDeCasteljauNormals = 32;  // K (K - 1) / 2 slerps an evaluation
-
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_SCHEMES_MAKERS_H_

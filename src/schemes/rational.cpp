@@ -34,33 +34,14 @@ class Rational {
     for (std::size_t k = 0; k < square.size(); ++k) c[9 + k] = square[k];
   }
 
-  template <class S>
-  struct Weights {
-    QuadraticWeights<S> quadratic;
-    S quartic[5];
-  };
+  [[nodiscard]] Formula formula() const { return Formula::kRational; }
 
-  template <class S>
-  [[nodiscard]] Weights<S> at(double t) const {
+  // The weights of the quadratic, and those of the quartic.
+  void shared(double t, float* values) const {
     const double s = 1 - t;
-    const double b[] = {s * s * s * s, 4 * s * s * s * t, 6 * s * s * t * t, 4 * s * t * t * t, t * t * t * t};
-    Weights<S> weights{QuadraticWeights<S>::at(t), {}};
-    for (int k = 0; k < 5; ++k) weights.quartic[k] = S(static_cast<float>(b[k]));
-    return weights;
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const Weights<S>& weights) const {
-    using std::sqrt;
-    const Vec3<S> n = quadratic_normal(c.vector(0), c.vector(1), c.vector(2), weights.quadratic);
-    S square = weights.quartic[0] * c[9];
-    for (std::size_t k = 1; k < 5; ++k) square = square + weights.quartic[k] * c[9 + k];
-    // Below this share of the largest coefficient the quartic has lost its digits: measure n instead.
-    if (!(square > S(0.1f))) {
-      const Vec3<S> start = normalized_or(c.vector(0), c.vector(0));
-      return normalized_or(n, start);
-    }
-    return (S(1) / sqrt(square)) * n;
+    const double weights[] = {
+        s * s, 2 * t * s, t * t, s * s * s * s, 4 * s * s * s * t, 6 * s * s * t * t, 4 * s * t * t * t, t * t * t * t};
+    for (const double weight : weights) *values++ = static_cast<float>(weight);
   }
 };
 

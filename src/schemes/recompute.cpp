@@ -1,10 +1,8 @@
-// The cross product, again at every t: eq. 1 on the vertices at t, then eq. 2.
-//
-// Interpolating the two edges instead of the three vertices gives the same normal, costs less, and keeps its digits
-// far from the origin. In float32 throughout: this is the honest rival of everything that is prepared.
+// The cross product, again at every t: eq. 1 on the vertices at t, then eq. 2. What runs is normals/recompute.h; what
+// is counted is its formula: interpolating the two edges instead of the three vertices gives the same normal, costs
+// less, and keeps its digits far from the origin.
 
-#include <cassert>
-
+#include "chronormal/normals/recompute.h"
 #include "normals/curve_elements.h"
 #include "schemes/counting.h"
 #include "schemes/makers.h"
@@ -19,11 +17,6 @@ struct Edge {
   [[nodiscard]] Vec3<S> at(const S& s, const S& t) const { return s * at_start + t * at_end; }
 };
 
-// From a corner of a face to another, at both ends of the segment.
-Edge<float> edge_of(const Segment& segment, std::uint32_t from, std::uint32_t to) {
-  return {segment.from[to] - segment.from[from], segment.to[to] - segment.to[from]};
-}
-
 class Recompute final : public Scheme {
  public:
   [[nodiscard]] bool needs_faces() const noexcept override { return true; }
@@ -37,31 +30,7 @@ class Recompute final : public Scheme {
   }
 
   std::size_t evaluate(double t, VectorView<float> result) const noexcept override {
-    assert(result.count == elements_.count);
-    const float end_weight = static_cast<float>(t), start_weight = static_cast<float>(1 - t);
-    std::size_t without_direction = 0;
-    for (std::size_t i = 0; i < elements_.count; ++i) {
-      const auto face = segment_.topology->face(elements_.first + i);
-      Vec3f n{};
-      Vec3f e = edge_of(segment_, face[0], face[1]).at(start_weight, end_weight);
-      for (std::size_t c = 2; c < face.size(); ++c) {
-        const Vec3f f = edge_of(segment_, face[0], face[c]).at(start_weight, end_weight);
-        n = n + cross(e, f);
-        e = f;
-      }
-      // Outside the range in which float can square a length, or at a collapse, double and the limits take over.
-      const float square = dot(n, n);
-      if (square > 1e-30f && square < 1e30f) {
-        result.set(i, normalized(n));
-      } else {
-        ControlNormals normals;
-        face_control_normals(segment_, {elements_.first + i, 1}, {&normals, 1});
-        const UnitNormal u = unit_normal_at(normals, t);
-        result.set(i, to_float(u.vector));
-        if (u.direction == Direction::kNone) ++without_direction;
-      }
-    }
-    return without_direction;
+    return unit_normals_at(segment_, elements_, t, result);
   }
 
   [[nodiscard]] bool uses_control_normals() const noexcept override { return false; }

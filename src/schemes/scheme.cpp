@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "schemes/kernels/curve_kernels.h"
 #include "schemes/makers.h"
 
 namespace chronormal {

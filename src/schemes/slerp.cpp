@@ -22,28 +22,13 @@ struct Slerp {
     c[6] = arc.angle;
   }
 
-  template <class S>
-  [[nodiscard]] S at(double t) const {
-    return S(static_cast<float>(t));
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> evaluate(Coefficients<S> c, const S& t) const {
-    const auto [sine, cosine] = sin_cos(t * c[6]);
-    return cosine * c.vector(0) + sine * c.vector(1);
-  }
+  [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
+  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 
   // Played by a rotation per step (Barrera 2004, as cited by the paper, in the form that drifts least).
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
-
-  void anchor(Coefficients<float> c, double t, double step, double* state) const {
+  void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[6]), step * static_cast<double>(c[6]));
-  }
-
-  template <class S>
-  [[nodiscard]] Vec3<S> advance(Coefficients<S> c, State<S> state) const {
-    const auto [sine, cosine] = advance_turn(state);
-    return cosine * c.vector(0) + sine * c.vector(1);
   }
 };
 

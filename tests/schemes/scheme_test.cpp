@@ -288,6 +288,8 @@ TEST(Schemes, operations_are_those_of_the_formulas) {
       {"slerp", {3, 7, 0, 0, 1}},
       {"circle", {6, 7, 0, 0, 1}},
       {"circle:timed", {9, 9, 1, 0, 1}},
+      {"rational", {10, 17, 1, 1, 0}},
+      {"decasteljau:4", {68, 126, 7, 7, 12}},
       {"quaternion:matrix", {6, 7, 0, 0, 1}},
       {"quaternion:optimal", {6, 7, 0, 0, 1}},
   };
@@ -297,6 +299,21 @@ TEST(Schemes, operations_are_those_of_the_formulas) {
                               << actual.sqrt << " " << actual.trigonometric;
   }
   EXPECT_EQ(make_scheme("decasteljau:4").value()->operations().trigonometric, 12);  // 6 slerps, 2 each
+}
+
+TEST(Schemes, operations_of_a_step_are_those_of_differences_and_rotations) {
+  // K additions of vectors and a normalisation; a rotation in the plane and a point on the arc.
+  const std::map<std::string, OperationCounts> expected = {
+      {"linear", {5, 6, 1, 1, 0}}, {"quadratic", {8, 6, 1, 1, 0}}, {"cubic", {11, 6, 1, 1, 0}},
+      {"slerp", {5, 10, 0, 0, 0}}, {"circle", {8, 10, 0, 0, 0}},
+  };
+  for (const auto& [name, counts] : expected) {
+    const auto actual = make_scheme(name).value()->sequential_operations();
+    ASSERT_TRUE(actual) << name;
+    EXPECT_EQ(*actual, counts) << name << ": " << actual->add << " " << actual->multiply;
+  }
+  for (const char* name : {"lagrange:4", "rational", "linear:scaled", "circle:timed", "decasteljau:4"})
+    EXPECT_FALSE(make_scheme(name).value()->sequential_operations()) << name;
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+/// The formulas of schemes over blocks of elements, on the widest instruction set that the machine has; the same bits
+/// on all of them. formulas-inl.h says what each computes, and from which planes.
+///
+/// An element is kept as one float per plane. Thirty-two elements make a block, and blocks lie one after the other:
+///
+///     plane 0 of elements 0 to 31, plane 1 of the same, ..., the last plane of the same, plane 0 of elements 32 to 63,
+///     ...
+///
+/// so that an evaluation is one pass over memory. The last block is filled up with zeros, which every formula takes.
+#ifndef CHRONORMAL_SCHEMES_KERNELS_CURVE_KERNELS_H_
+#define CHRONORMAL_SCHEMES_KERNELS_CURVE_KERNELS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/views.h"
+#include "chronormal/schemes/scheme.h"
+
+namespace chronormal {
+
+inline constexpr std::size_t kBlock = 32;
+
+inline constexpr std::size_t kMaxLagrangeDegree = 64;      // the weights at equidistant nodes grow as 2^degree
+inline constexpr std::size_t kMaxDeCasteljauNormals = 32;  // K (K - 1) / 2 slerps an evaluation
+
+/// What all elements have in common at one t: t itself, or weights; the formula says which, and how many of them count.
+using SharedValues = std::array<float, kMaxLagrangeDegree + 1>;
+
+enum class Formula {
+  kSumOf2,
+  kSumOf3,
+  kSumOf4,
+  kSum,
+  kRational,
+  kGreatArc,
+  kCircleArc,
+  kTimedCircleArc,
+  kDeCasteljau,
+};
+
+/// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
+struct CurveBlocks {
+  const float* values = nullptr;
+  std::size_t plane_count = 0;
+  std::size_t element_count = 0;
+};
+
+/// Results of more bytes than this go past the caches, where packed and aligned to 64 bytes: they would push out what
+/// is read next, and be gone themselves before anybody reads them.
+inline constexpr std::size_t kStreamFrom = std::size_t{64} << 20;
+
+/// Writes the unit normals of all elements at one t.
+/// result must have as many vectors as there are elements, and may have any layout
+void evaluate_curves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
+                     std::size_t stream_from = kStreamFrom) noexcept;
+
+/// Writes the unit normals of a state that is being played, and moves it on by a step. The state lies in blocks like
+/// the coefficients. The formula must be a sum of 2, 3 or 4, or an arc at uniform speed.
+void advance_curves(Formula formula, const CurveBlocks& curves, float* state, VectorView<float> result) noexcept;
+
+/// What either costs for one element of these coefficients: the same text, instantiated with a scalar that counts.
+[[nodiscard]] OperationCounts count_evaluation(Formula formula, std::span<const float> coefficients,
+                                               const SharedValues& shared);
+[[nodiscard]] OperationCounts count_advance(Formula formula, std::span<const float> coefficients,
+                                            std::span<const float> state);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_SCHEMES_KERNELS_CURVE_KERNELS_H_
