@@ -12,6 +12,7 @@ file(WRITE ${PROJECT_BINARY_DIR}/chronormalConfig.cmake
 if(${TBB_FOUND})  # whether the library was built over oneTBB
   find_dependency(TBB)
 endif()
+find_dependency(hwy)
 find_dependency(ZLIB)
 find_dependency(pugixml)
 find_dependency(meshoptimizer)

@@ -3,6 +3,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
 
+#include <memory>
 #include <stdexcept>
 
 #include "peers/peers.h"
@@ -13,8 +14,11 @@ namespace {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-std::vector<Vec3d> compute_vertex_normals(const TriangleMesh& from) {
+Mesh make_mesh(const TriangleMesh& from) {
   Mesh mesh;
+  const auto vertices = static_cast<Mesh::size_type>(from.vertex_count());
+  const auto faces = static_cast<Mesh::size_type>(from.face_count());
+  mesh.reserve(vertices, vertices + faces, faces);
   for (std::size_t v = 0; v < from.vertex_count(); ++v) {
     const auto p = from.positions.subspan(3 * v, 3);
     mesh.add_vertex({p[0], p[1], p[2]});
@@ -25,20 +29,70 @@ std::vector<Vec3d> compute_vertex_normals(const TriangleMesh& from) {
         Mesh::null_face())
       throw std::runtime_error("CGAL takes no such face");
   }
+  return mesh;
+}
+
+template <class Index>
+using Normals = Mesh::Property_map<Index, Kernel::Vector_3>;
+using VertexNormals = Normals<Mesh::Vertex_index>;
+using FaceNormals = Normals<Mesh::Face_index>;
+
+Vec3d unit_of(const Kernel::Vector_3& n) { return unit(Vec3d{n.x(), n.y(), n.z()}); }
+
+std::vector<Vec3d> compute_vertex_normals(const TriangleMesh& from) {
+  Mesh mesh = make_mesh(from);
   const auto normals = mesh.add_property_map<Mesh::Vertex_index, Kernel::Vector_3>("v:normal", CGAL::NULL_VECTOR).first;
   CGAL::Polygon_mesh_processing::compute_vertex_normals(mesh, normals);
   std::vector<Vec3d> result;
-  for (const Mesh::Vertex_index v : mesh.vertices())
-    result.push_back(unit(Vec3d{normals[v].x(), normals[v].y(), normals[v].z()}));
+  for (const Mesh::Vertex_index v : mesh.vertices()) result.push_back(unit_of(normals[v]));
   return result;
+}
+
+struct KeptMesh : LibraryMesh {
+  explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {}
+
+  Mesh mesh;
+  VertexNormals of_vertices;
+  FaceNormals of_faces;
+};
+
+std::string version() {
+  // The third number is that of a patch.
+  const std::string all = CGAL_VERSION_STR;
+  return all.substr(0, all.rfind('.'));
 }
 
 }  // namespace
 
-std::vector<Method> cgal_methods() {
-  // The third number is that of a patch.
-  const std::string version = CGAL_VERSION_STR;
-  return {{"CGAL " + version.substr(0, version.rfind('.')), "compute_vertex_normals", compute_vertex_normals}};
+std::vector<Method> cgal_methods() { return {{"CGAL " + version(), "compute_vertex_normals", compute_vertex_normals}}; }
+
+Library cgal_library() {
+  Library library{"CGAL", version(), {}, nullptr};
+  library.make_mesh = [](const TriangleMesh& from) -> std::unique_ptr<LibraryMesh> {
+    return std::make_unique<KeptMesh>(from);
+  };
+  Call faces{"compute_face_normals"};
+  faces.compute = [](LibraryMesh& kept) {
+    auto& [mesh, of_vertices, of_faces] = static_cast<KeptMesh&>(kept);
+    if (!of_faces) of_faces = mesh.add_property_map<Mesh::Face_index, Kernel::Vector_3>("f:normal").first;
+    CGAL::Polygon_mesh_processing::compute_face_normals(mesh, of_faces);
+  };
+  faces.normal = [](const LibraryMesh& kept, std::size_t f) {
+    return unit_of(static_cast<const KeptMesh&>(kept).of_faces[Mesh::Face_index(static_cast<Mesh::size_type>(f))]);
+  };
+  Call vertices{"compute_vertex_normals", true, Rule::kOther};
+  vertices.note = "another normal than a sum, see weightings.md";
+  vertices.slow_in_random_order = true;
+  vertices.compute = [](LibraryMesh& kept) {
+    auto& [mesh, of_vertices, of_faces] = static_cast<KeptMesh&>(kept);
+    if (!of_vertices) of_vertices = mesh.add_property_map<Mesh::Vertex_index, Kernel::Vector_3>("v:normal").first;
+    CGAL::Polygon_mesh_processing::compute_vertex_normals(mesh, of_vertices);
+  };
+  vertices.normal = [](const LibraryMesh& kept, std::size_t v) {
+    return unit_of(static_cast<const KeptMesh&>(kept).of_vertices[Mesh::Vertex_index(static_cast<Mesh::size_type>(v))]);
+  };
+  library.calls = {faces, vertices};
+  return library;
 }
 
 }  // namespace chronormal::peers

@@ -1,4 +1,5 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <memory>
 #include <stdexcept>
 
 #include "peers/peers.h"
@@ -6,12 +7,14 @@
 namespace chronormal::peers {
 namespace {
 
+// What is compared is in double, what is timed in the float of the library's own default.
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
+using FloatMesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
 
-Mesh make_mesh(const TriangleMesh& from) {
-  Mesh mesh;
-  mesh.request_face_normals();
-  std::vector<Mesh::VertexHandle> vertices;
+template <class M>
+void fill(M& mesh, const TriangleMesh& from) {
+  mesh.reserve(from.vertex_count(), from.vertex_count() + from.face_count(), from.face_count());
+  std::vector<typename M::VertexHandle> vertices;
   for (std::size_t v = 0; v < from.vertex_count(); ++v) {
     const auto p = from.positions.subspan(3 * v, 3);
     vertices.push_back(mesh.add_vertex({p[0], p[1], p[2]}));
@@ -21,13 +24,14 @@ Mesh make_mesh(const TriangleMesh& from) {
     if (!mesh.add_face(vertices[c[0]], vertices[c[1]], vertices[c[2]]).is_valid())
       throw std::runtime_error("OpenMesh takes no such face");
   }
+  mesh.request_face_normals();
   mesh.update_face_normals();
-  return mesh;
 }
 
 template <class Compute>
 std::vector<Vec3d> each_vertex(const TriangleMesh& from, Compute compute) {
-  const Mesh mesh = make_mesh(from);
+  Mesh mesh;
+  fill(mesh, from);
   std::vector<Vec3d> result;
   for (const auto vertex : mesh.vertices()) {
     Mesh::Normal n;
@@ -52,14 +56,60 @@ std::vector<Vec3d> loop(const TriangleMesh& from) {
       from, [](const Mesh& mesh, Mesh::VertexHandle v, Mesh::Normal& n) { mesh.calc_vertex_normal_loop(v, n); });
 }
 
+struct KeptMesh : LibraryMesh {
+  FloatMesh mesh;
+};
+
+FloatMesh& mesh_of(LibraryMesh& kept) { return static_cast<KeptMesh&>(kept).mesh; }
+
+template <class Handle>
+Vec3d kept_normal(const LibraryMesh& kept, std::size_t element) {
+  const FloatMesh::Normal n = static_cast<const KeptMesh&>(kept).mesh.normal(Handle(static_cast<int>(element)));
+  return unit(Vec3d{n[0], n[1], n[2]});
+}
+
+std::string version() { return std::to_string(OM_VERSION >> 16) + "." + std::to_string(OM_VERSION >> 8 & 255); }
+
 }  // namespace
 
 std::vector<Method> openmesh_methods() {
-  const std::string library =
-      "OpenMesh " + std::to_string(OM_VERSION >> 16) + "." + std::to_string(OM_VERSION >> 8 & 255);
+  const std::string library = "OpenMesh " + version();
   return {{library, "calc_vertex_normal_fast", fast},
           {library, "calc_vertex_normal_correct", correct},
           {library, "calc_vertex_normal_loop", loop}};
+}
+
+Library openmesh_library() {
+  Library library{"OpenMesh", version(), {}, nullptr};
+  library.make_mesh = [](const TriangleMesh& from) -> std::unique_ptr<LibraryMesh> {
+    auto kept = std::make_unique<KeptMesh>();
+    fill(kept->mesh, from);
+    kept->mesh.request_vertex_normals();
+    return kept;
+  };
+  Call faces{"update_face_normals"};
+  faces.compute = [](LibraryMesh& kept) { mesh_of(kept).update_face_normals(); };
+  faces.normal = kept_normal<FloatMesh::FaceHandle>;
+  Call of_given_faces{"update_vertex_normals", true, Rule::kUniform};
+  of_given_faces.note = "unit normals of faces are given";
+  of_given_faces.compute = [](LibraryMesh& kept) { mesh_of(kept).update_vertex_normals(); };
+  of_given_faces.normal = kept_normal<FloatMesh::VertexHandle>;
+  Call both{"update_normals", true, Rule::kUniform};
+  both.note = "of faces, then of vertices";
+  both.compute = [](LibraryMesh& kept) { mesh_of(kept).update_normals(); };
+  both.normal = kept_normal<FloatMesh::VertexHandle>;
+  Call by_area{"calc_vertex_normal_correct", true, Rule::kArea};
+  by_area.compute = [](LibraryMesh& kept) {
+    FloatMesh& mesh = mesh_of(kept);
+    for (const auto vertex : mesh.vertices()) {
+      FloatMesh::Normal n;
+      mesh.calc_vertex_normal_correct(vertex, n);
+      mesh.set_normal(vertex, n.normalize_cond());
+    }
+  };
+  by_area.normal = kept_normal<FloatMesh::VertexHandle>;
+  library.calls = {faces, of_given_faces, both, by_area};
+  return library;
 }
 
 }  // namespace chronormal::peers

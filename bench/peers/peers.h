@@ -1,12 +1,16 @@
-/// Vertex normals of triangle meshes by libraries that people use today: one file for each library, all behind one
-/// call.
+/// Normals of triangle meshes by libraries that people use today: one file for each library, all behind one call.
 ///
 /// Positions go in as the float32 that files hold. A library computes in its own way and precision; what comes out is
-/// one normal for each vertex, in the order of the vertices, scaled to length 1.
+/// one normal for each element, in the order of the elements, scaled to length 1.
+///
+/// A Method builds the mesh, computes once and forgets it: tools/weightings looks at what it says. A LibraryMesh is
+/// built once and computes again and again, in place: ./run bench looks at how long that takes.
 #ifndef PEERS_PEERS_H_
 #define PEERS_PEERS_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +37,39 @@ struct Method {
 [[nodiscard]] std::vector<Method> openmesh_methods();
 [[nodiscard]] std::vector<Method> vtk_methods();
 [[nodiscard]] std::vector<Method> cgal_methods();
+
+/// A mesh in the structure of a library, as its own users would build it, with normals that it keeps or returns.
+class LibraryMesh {
+ public:
+  LibraryMesh() = default;
+  LibraryMesh(const LibraryMesh&) = delete;
+  LibraryMesh& operator=(const LibraryMesh&) = delete;
+  virtual ~LibraryMesh() = default;
+};
+
+/// How a library adds faces up to a vertex.
+enum class Rule { kArea, kUniform, kOther };
+
+/// One of its functions. compute and normal take meshes of their own library only.
+struct Call {
+  std::string name;
+  bool of_vertices = false;  ///< else of faces
+  Rule rule = Rule::kArea;
+  std::string note = {};              ///< what it is given, where it is not positions alone
+  bool slow_in_random_order = false;  ///< minutes for 10 M elements
+  void (*compute)(LibraryMesh&) = nullptr;
+  Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;  ///< of the last compute(), length 1
+};
+
+struct Library {
+  std::string name, version;
+  std::vector<Call> calls;
+  std::unique_ptr<LibraryMesh> (*make_mesh)(const TriangleMesh&) = nullptr;
+};
+
+[[nodiscard]] Library openmesh_library();
+[[nodiscard]] Library vtk_library();
+[[nodiscard]] Library cgal_library();
 
 }  // namespace chronormal::peers
 

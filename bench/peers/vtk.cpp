@@ -1,4 +1,6 @@
+#include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -8,6 +10,7 @@
 #include <vtkTriangleMeshPointNormals.h>
 #include <vtkVersion.h>
 
+#include <memory>
 #include <stdexcept>
 
 #include "peers/peers.h"
@@ -58,13 +61,72 @@ std::vector<Vec3d> triangle_mesh_point_normals(const TriangleMesh& from) {
   return filtered(from, *filter);
 }
 
+struct KeptMesh : LibraryMesh {
+  explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {
+    // By vtkSMPTools::Initialize(), whose header is no C++20.
+    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(1);
+    for (vtkPolyDataNormals* const filter : {of_faces.Get(), of_vertices.Get()}) {
+      filter->SetInputData(mesh);
+      filter->SplittingOff();
+      filter->ConsistencyOff();
+    }
+    of_faces->ComputePointNormalsOff();
+    of_faces->ComputeCellNormalsOn();
+    by_area->SetInputData(mesh);
+  }
+
+  vtkNew<vtkPolyData> mesh;
+  vtkNew<vtkPolyDataNormals> of_faces, of_vertices;
+  vtkNew<vtkTriangleMeshPointNormals> by_area;
+};
+
+// As after every move of the points.
+template <class Filter>
+void run_again(LibraryMesh& kept, Filter& filter) {
+  static_cast<KeptMesh&>(kept).mesh->GetPoints()->Modified();
+  filter.Modified();
+  filter.Update();
+}
+
+Vec3d tuple(vtkDataArray* normals, std::size_t element) {
+  const double* const n = normals->GetTuple3(static_cast<vtkIdType>(element));
+  return unit(Vec3d{n[0], n[1], n[2]});
+}
+
+std::string version() {
+  return std::to_string(vtkVersion::GetVTKMajorVersion()) + "." + std::to_string(vtkVersion::GetVTKMinorVersion());
+}
+
 }  // namespace
 
 std::vector<Method> vtk_methods() {
-  const std::string library = "VTK " + std::to_string(vtkVersion::GetVTKMajorVersion()) + "." +
-                              std::to_string(vtkVersion::GetVTKMinorVersion());
+  const std::string library = "VTK " + version();
   return {{library, "vtkPolyDataNormals", poly_data_normals},
           {library, "vtkTriangleMeshPointNormals", triangle_mesh_point_normals}};
+}
+
+Library vtk_library() {
+  Library library{"VTK", version(), {}, nullptr};
+  library.make_mesh = [](const TriangleMesh& from) -> std::unique_ptr<LibraryMesh> {
+    return std::make_unique<KeptMesh>(from);
+  };
+  Call faces{"vtkPolyDataNormals"};
+  faces.compute = [](LibraryMesh& kept) { run_again(kept, *static_cast<KeptMesh&>(kept).of_faces); };
+  faces.normal = [](const LibraryMesh& kept, std::size_t f) {
+    return tuple(static_cast<const KeptMesh&>(kept).of_faces->GetOutput()->GetCellData()->GetNormals(), f);
+  };
+  Call vertices{"vtkPolyDataNormals", true, Rule::kUniform};
+  vertices.compute = [](LibraryMesh& kept) { run_again(kept, *static_cast<KeptMesh&>(kept).of_vertices); };
+  vertices.normal = [](const LibraryMesh& kept, std::size_t v) {
+    return tuple(static_cast<const KeptMesh&>(kept).of_vertices->GetOutput()->GetPointData()->GetNormals(), v);
+  };
+  Call by_area{"vtkTriangleMeshPointNormals", true, Rule::kArea};
+  by_area.compute = [](LibraryMesh& kept) { run_again(kept, *static_cast<KeptMesh&>(kept).by_area); };
+  by_area.normal = [](const LibraryMesh& kept, std::size_t v) {
+    return tuple(static_cast<const KeptMesh&>(kept).by_area->GetOutput()->GetPointData()->GetNormals(), v);
+  };
+  library.calls = {faces, vertices, by_area};
+  return library;
 }
 
 }  // namespace chronormal::peers

@@ -1,0 +1,116 @@
+// docs/benchmarks.md is what its generator makes of bench/results/*.json, byte for byte; and it makes nothing of
+// results that lack a rival.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const fs::path kDocs = fs::path(CHRONORMAL_SOURCE_DIR) / "docs";
+const fs::path kResults = fs::path(CHRONORMAL_SOURCE_DIR) / "bench" / "results";
+
+ProcessResult generate(const std::string& results, const std::string& folder) {
+  std::string command = CHRONORMAL_BUILD_DIR;
+  command += "/tools/benchmarks/chronormal_benchmarks '" + results + "' .";
+  return run_shell(command, folder);
+}
+
+// Any of the results, to plant faults in.
+Json some_results() {
+  for (const auto& entry : fs::directory_iterator(kResults)) {
+    if (entry.path().extension() == ".json") return Json::parse(test::read_whole(entry.path().string()));
+  }
+  return {};
+}
+
+// What the generator says of results with a fault; "" where it takes them.
+std::string refusal(const Json& results) {
+  const test::TemporaryFolder from, to;
+  from.write("planted.json", results.dump());
+  const ProcessResult result = generate(from.path(), to.path());
+  return result.exit_code == 0 ? "" : result.err;
+}
+
+void erase_rows(Json& results, const std::string& list, const auto& is_wanted) {
+  Json kept = Json::array();
+  for (const Json& row : results[list]) {
+    if (!is_wanted(row)) kept.push_back(row);
+  }
+  ASSERT_LT(kept.size(), results[list].size());
+  results[list] = kept;
+}
+
+TEST(Benchmarks, page_and_pictures_are_what_the_generator_makes_of_the_results) {
+  const test::TemporaryFolder folder;
+  const ProcessResult result = generate(kResults.string(), folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string committed = test::read_whole((kDocs / "benchmarks.md").string());
+  EXPECT_TRUE(committed == test::read_whole(folder / "benchmarks.md")) << "tools/make_benchmarks writes it anew";
+  std::size_t pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path() + "/pictures")) {
+    const std::string name = entry.path().filename().string();
+    ASSERT_TRUE(fs::exists(kDocs / "pictures" / name)) << name;
+    EXPECT_TRUE(test::read_whole((kDocs / "pictures" / name).string()) == test::read_whole(entry.path().string()))
+        << name;
+    EXPECT_NE(committed.find("(pictures/" + name + ")"), std::string::npos) << name;
+    ++pictures;
+  }
+  EXPECT_GE(pictures, 2u);
+}
+
+TEST(Benchmarks, results_without_a_rival_make_no_page) {
+  const Json whole = some_results();
+  ASSERT_FALSE(whole.is_null());
+  ASSERT_EQ(refusal(whole), "");
+  for (const std::string rival :
+       {"plain C++ loop", "Eigen loop", "CGAL compute_vertex_normals", "OpenMesh calc_vertex_normal_correct",
+        "VTK vtkPolyDataNormals", "VTK vtkTriangleMeshPointNormals", "recompute"}) {
+    Json planted = whole;
+    erase_rows(planted, "rows", [&](const Json& row) {
+      return row["name"] == rival && row["group"] == "vertices" && row["size"] == "1M" && row["order"] == "grid";
+    });
+    EXPECT_NE(refusal(planted).find("missing: vertices, 1M, grid: " + rival), std::string::npos) << rival;
+  }
+}
+
+TEST(Benchmarks, results_without_a_size_a_scheme_or_an_accuracy_make_no_page) {
+  const Json whole = some_results();
+  ASSERT_FALSE(whole.is_null());
+  Json planted = whole;
+  erase_rows(planted, "rows", [](const Json& row) { return row["order"] == "shuffled" && row["group"] == "faces"; });
+  EXPECT_NE(refusal(planted).find("missing: faces, 10M, shuffled: exact to float3"), std::string::npos);
+  planted = whole;
+  erase_rows(planted, "rows", [](const Json& row) { return row["group"] == "schemes" && row["name"] == "slerp"; });
+  EXPECT_NE(refusal(planted).find("missing: schemes, 15k, grid: slerp"), std::string::npos);
+  planted = whole;
+  erase_rows(planted, "qualities", [](const Json& row) { return row["scheme"] == "circle"; });
+  EXPECT_NE(refusal(planted).find("missing: quality of circle"), std::string::npos);
+  planted = whole;
+  erase_rows(planted, "accuracies", [](const Json& row) { return row["path"] == "recompute"; });
+  EXPECT_NE(refusal(planted).find("missing: accuracy, grid, faces: recompute"), std::string::npos);
+}
+
+TEST(Benchmarks, results_that_were_wrong_or_cannot_be_read_make_no_page) {
+  Json planted = some_results();
+  ASSERT_FALSE(planted.is_null());
+  planted["rows"][0]["verified_error_rad"] = 1.0;
+  planted["rows"][0]["limit_rad"] = 0.5;
+  EXPECT_NE(refusal(planted).find("was wrong"), std::string::npos);
+  EXPECT_NE(refusal(Json::array()), "");
+  const test::TemporaryFolder empty;
+  EXPECT_EQ(generate(empty.path(), empty.path()).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,132 @@
+// What was aimed at, beside what is: ratios of rows of one run.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "benchmarks/sections.h"
+
+namespace chronormal::benchmarks {
+namespace {
+
+// Aims by column: 15k, 45k, 1M, 10M, 10M shuffled; 0: none.
+struct Aim {
+  std::string group, what;
+  std::vector<std::string> against;  // the fastest of them counts
+  std::array<double, 5> at;
+  enum class Kind { kTimesFaster, kShare, kThreads, kTimesRecompute } kind = Kind::kTimesFaster;
+};
+
+using Kind = Aim::Kind;
+
+const std::vector<Aim>& aims() {
+  static const std::vector<std::string> libraries = {"OpenMesh update_vertex_normals", "OpenMesh update_normals",
+                                                     "OpenMesh calc_vertex_normal_correct", "VTK vtkPolyDataNormals",
+                                                     "VTK vtkTriangleMeshPointNormals"};
+  static const std::vector<Aim> all = {
+      {"faces", "compact to float3", {"recompute"}, {4, 0, 1.9, 1.8, 15}},
+      {"faces", "compact to float3", {"CGAL compute_face_normals"}, {24, 0, 12, 12, 0}},
+      {"faces", "compact to float3", {"OpenMesh update_face_normals"}, {24, 0, 12, 12, 0}},
+      {"vertices", "compact to float3", {"recompute"}, {15, 0, 6, 8, 30}},
+      {"vertices", "exact to float3", {"recompute"}, {14, 0, 4, 5, 0}},
+      {"vertices", "compact to float3", {"VTK vtkTriangleMeshPointNormals"}, {60, 0, 25, 20, 0}},
+      {"vertices", "exact to float3", {"VTK vtkTriangleMeshPointNormals"}, {55, 0, 17, 13, 0}},
+      {"vertices", "compact to float3", libraries, {0, 0, 0, 0, 100}},
+      {"faces", "exact to float3", {}, {0, 0, 0.95, 0.88, 0}, Kind::kShare},
+      {"faces", "compact to float3", {}, {0, 0, 0.95, 0.88, 0}, Kind::kShare},
+      {"vertices", "exact to float3", {}, {0, 0, 0.95, 0.88, 0}, Kind::kShare},
+      {"vertices", "compact to float3", {}, {0, 0, 0.95, 0.88, 0}, Kind::kShare},
+      {"faces", "exact to float3", {}, {0, 1.8, 1.8, 1.8, 0}, Kind::kThreads},
+      {"faces", "compact to float3", {}, {0, 1.8, 1.8, 1.8, 0}, Kind::kThreads},
+      {"vertices", "recompute", {}, {0, 1.8, 1.8, 1.8, 0}, Kind::kThreads},
+      {"vertices", "prepare compact", {}, {0, 1.8, 1.8, 1.8, 0}, Kind::kThreads},
+      {"faces", "exact to float3, 64 t", {"exact to float3"}, {0, 0, 2, 0, 0}},
+      {"faces", "compact to float3, 64 t", {"compact to float3"}, {0, 0, 2, 0, 0}},
+      {"faces", "exact to float3, 8 t", {"exact to float3"}, {0, 0, 2, 2, 0}},
+      {"faces", "prepare exact", {"recompute"}, {2.5, 2.5, 2.5, 2.5, 2.5}, Kind::kTimesRecompute},
+      {"faces", "prepare compact", {"recompute"}, {2.5, 2.5, 2.5, 2.5, 2.5}, Kind::kTimesRecompute},
+      {"vertices", "prepare exact", {"recompute"}, {3, 3, 3, 3, 3}, Kind::kTimesRecompute},
+      {"vertices", "prepare compact", {"recompute"}, {3, 3, 3, 3, 3}, Kind::kTimesRecompute},
+  };
+  return all;
+}
+
+double fastest(const Results& results, const Aim& aim, const Column& column) {
+  double ns = 0;
+  for (const std::string& name : aim.against) {
+    const Row* const row = results.find(aim.group, column.size, column.order, name);
+    if (row != nullptr) ns = ns == 0 ? row->ns : std::min(ns, row->ns);
+  }
+  return ns;
+}
+
+std::optional<double> measured(const Results& results, const Aim& aim, const Column& column) {
+  const Row* const row = results.find(aim.group, column.size, column.order, aim.what);
+  if (row == nullptr) return std::nullopt;
+  if (aim.kind == Kind::kShare) return row->share > 0 ? std::optional(row->share) : std::nullopt;
+  if (aim.kind == Kind::kThreads) {
+    const Row* const many = results.find(aim.group, column.size, column.order, aim.what, true);
+    return many == nullptr ? std::nullopt : std::optional(row->ns / many->ns);
+  }
+  const double other = fastest(results, aim, column);
+  if (other == 0) return std::nullopt;
+  return aim.kind == Kind::kTimesRecompute ? row->ns / other : other / row->ns;
+}
+
+std::string number(const Aim& aim, double value) {
+  if (aim.kind == Kind::kShare) return fmt::format("{:.0f} %", 100 * value);
+  return value < 10 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string sentence(const Aim& aim) {
+  switch (aim.kind) {
+    case Kind::kShare:
+      return fmt::format("{}, {}: share of memory", aim.group, aim.what);
+    case Kind::kThreads:
+      return fmt::format("{}, {}: many threads are times one", aim.group, aim.what);
+    case Kind::kTimesRecompute:
+      return fmt::format("{}, {}: takes times recompute (at most)", aim.group, aim.what);
+    case Kind::kTimesFaster:
+      break;
+  }
+  return fmt::format("{}, {}: times {}", aim.group, aim.what,
+                     aim.against.size() > 1 ? "the fastest library" : aim.against.front());
+}
+
+}  // namespace
+
+void write_aims(Page& page, const Results& results) {
+  page.subheading("Aims");
+  page.text(
+      "Ratios within this run, beside what was aimed at before there was a line of code: measured / aim, in bold where "
+      "it is reached.");
+  std::vector<std::string> header = {"what"};
+  for (const Column& column : columns()) header.push_back(column.title);
+  std::vector<std::vector<std::string>> rows;
+  std::size_t reached = 0, all = 0;
+  for (const Aim& aim : aims()) {
+    std::vector<std::string> cells = {sentence(aim)};
+    for (std::size_t c = 0; c < columns().size(); ++c) {
+      const std::optional<double> value = measured(results, aim, columns()[c]);
+      if (!value) {
+        cells.push_back("");
+      } else if (aim.at[c] == 0) {
+        cells.push_back(number(aim, *value));
+      } else {
+        const bool good = aim.kind == Kind::kTimesRecompute ? *value <= aim.at[c] : *value >= aim.at[c];
+        const char* const bold = good ? "**" : "";
+        cells.push_back(fmt::format("{}{} / {}{}", bold, number(aim, *value), number(aim, aim.at[c]), bold));
+        reached += good ? 1 : 0;
+        ++all;
+      }
+    }
+    rows.push_back(std::move(cells));
+  }
+  page.table(header, rows);
+  page.text(fmt::format("{} of {} are reached.", reached, all));
+}
+
+}  // namespace chronormal::benchmarks

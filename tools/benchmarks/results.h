@@ -1,0 +1,72 @@
+/// What ./run bench wrote on one machine: bench/results/NAME.json.
+#ifndef BENCHMARKS_RESULTS_H_
+#define BENCHMARKS_RESULTS_H_
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace chronormal::benchmarks {
+
+struct Row {
+  std::string group, size, order, name, library, note;
+  double elements = 0, ns = 0, spread = 0, share = 0;  // ns: median; share: of what the memory allows, 0: not known
+  int threads = 1, evaluations = 1;
+};
+
+struct Bandwidth {
+  double bytes = 0, read = 0, stream = 0, copy = 0;  // GB/s
+};
+
+struct SchemeQuality {
+  std::string scheme, mesh;
+  double mean_degrees = 0, max_degrees = 0, bytes = 0;
+};
+
+struct Accuracy {
+  std::string path, mesh, of;
+  double bound = 0, mean = 0, share_9999 = 0, max = 0, bytes = 0;  // radians
+};
+
+struct Results {
+  std::string name;  ///< of the file
+  bool quick = false;
+  std::vector<std::pair<std::string, std::string>> machine, rivals;
+  std::vector<Bandwidth> bandwidths;
+  std::vector<Row> rows;
+  std::vector<SchemeQuality> qualities;
+  std::vector<Accuracy> accuracies;
+
+  /// The row of a path or a rival; nullptr where there is none. On many threads: of the same path, however many.
+  [[nodiscard]] const Row* find(const std::string& group, const std::string& size, const std::string& order,
+                                const std::string& path, bool many_threads = false) const;
+  [[nodiscard]] const std::string& machine_value(const std::string& key) const;
+};
+
+/// A column of the tables: a size and an order.
+struct Column {
+  std::string size, order, title;
+};
+[[nodiscard]] const std::vector<Column>& columns();
+inline const std::string kGrid = "grid", kShuffled = "shuffled";
+
+/// Throws std::runtime_error, with the path, where the file is no such result.
+[[nodiscard]] Results read_results(const std::filesystem::path& path);
+
+/// What the page needs and the results lack, a line each: every rival, path, scheme and size.
+[[nodiscard]] std::vector<std::string> missing_rows(const Results& results);
+
+/// The rows of the tables, in their order.
+[[nodiscard]] const std::vector<std::string>& rivals_of(const std::string& group);
+[[nodiscard]] const std::vector<std::string>& ours();
+[[nodiscard]] const std::vector<std::string>& threaded();  ///< those of ours that also run on many threads
+[[nodiscard]] const std::vector<std::string>& schemes();
+[[nodiscard]] const std::vector<std::string>& accuracy_paths();
+[[nodiscard]] const std::vector<std::string>& accuracy_meshes();
+/// Rows that are not measured at that size, and need not be there.
+[[nodiscard]] bool may_be_missing(const std::string& group, const Column& column, const std::string& name);
+
+}  // namespace chronormal::benchmarks
+
+#endif  // BENCHMARKS_RESULTS_H_
