@@ -96,6 +96,7 @@ std::vector<NeedRun> runs_of(std::span<const Need> needs) {
     }
   };
   for (const Need& need : needs) append(runs, {1, need});
+  if (runs.size() == 1) return runs;
 
   for (bool joined = true; joined;) {
     joined = false;
@@ -253,9 +254,13 @@ class CurveBuilder::PartBuilder {
       std::uint32_t counted = all;
       if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], tiles[k], needs[k]);
       const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
-      part_.degree_counts[0] += static_cast<std::size_t>(std::popcount(all & ~moving));
-      part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
-      part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
+      if (bending == all) {
+        part_.degree_counts[2] += range.count;
+      } else {
+        part_.degree_counts[0] += static_cast<std::size_t>(std::popcount(all & ~moving));
+        part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
+        part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
+      }
       needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : 0;
     }
 

@@ -18,8 +18,8 @@ namespace {
 
 // What one thread does at a time, and below which there is nothing to share out.
 constexpr std::size_t kPiece = 16384;
-// What stays in the first-level cache while many t are evaluated.
-constexpr std::size_t kManyTimes = 512;
+// What stays in the cache of a core while many t are evaluated; few enough streams of results, each long enough.
+constexpr std::size_t kManyTimes = 8192;
 // Results above this many bytes go past the caches: measured, below it they would only be fetched again.
 constexpr std::size_t kStreamFrom = std::size_t{64} << 20;
 

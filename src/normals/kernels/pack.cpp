@@ -29,9 +29,13 @@ struct LaneTests {
 
 template <class Mask>
 HWY_INLINE std::uint32_t BitsOf(Mask mask) {
+#if HWY_TARGET == HWY_AVX3
+  return mask.raw;
+#else
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(kFloats, mask, bits);
   return (static_cast<std::uint32_t>(bits[1]) << 8 | bits[0]) & ((1u << kLanes) - 1);
+#endif
 }
 
 // Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1, n(t).a >= min c(k).a for all t.
