@@ -23,10 +23,11 @@ struct Shared {
   const NormalGroups* groups = nullptr;
   std::size_t count = 0;
 
-  [[nodiscard]] NormalCurves prepared(double tolerance, Threads threads = Threads::kOne) const {
+  [[nodiscard]] NormalCurves prepared(double tolerance, Threads threads = Threads::kOne,
+                                      NormalCurves* reuse = nullptr) const {
     const CurveOptions options{tolerance};
-    return groups == nullptr ? NormalCurves::of_faces(segment, options, threads)
-                             : NormalCurves::of_groups(segment, *groups, options, threads);
+    return groups == nullptr ? NormalCurves::of_faces(segment, options, threads, reuse)
+                             : NormalCurves::of_groups(segment, *groups, options, threads, reuse);
   }
   [[nodiscard]] const NormalCurves& curves(double tolerance) {
     std::optional<NormalCurves>& kept = tolerance == kExactTolerance ? exact_ : compact_;
@@ -72,8 +73,7 @@ Case prepare_case(const SharedPointer& shared, double tolerance, Threads threads
   auto made = std::make_shared<NormalCurves>();
   Case one;
   one.run = [shared, made, tolerance, threads] {
-    *made = {};
-    *made = shared->prepared(tolerance, threads);
+    *made = shared->prepared(tolerance, threads, made.get());  // as a program does that goes through many segments
   };
   auto evaluated = std::make_shared<std::vector<float>>();
   const auto normal_of = [shared, made, evaluated](std::size_t element) {

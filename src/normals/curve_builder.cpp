@@ -1,6 +1,7 @@
 #include "normals/curve_builder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -384,18 +385,24 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
     curves.blocks_ = {};
     curves.blocks_ = AlignedBytes(whole * kWorst);
   }
-  const auto make = [&](std::size_t p, std::byte* begin) {
+  const auto make = [&](std::size_t p, std::byte* begin, auto& source) {
     parts[p].elements = {p * kPart, std::min(kPart, size - p * kPart)};
     parts[p].begin = begin;
-    auto source = make_source();
     PartBuilder(parts[p], limits, curves.keeps_lengths_).run(source);
   };
   if (threads == Threads::kAll && parts.size() > 1) {
-    parallel_for(parts.size(), [&](std::size_t p) { make(p, curves.blocks_.data() + p * kPart * kWorst); });
+    // A source for each thread, which takes the next part until there is none.
+    std::atomic<std::size_t> next = 0;
+    parallel_for(std::min(thread_count(), parts.size()), [&](std::size_t) {
+      auto source = make_source();
+      for (std::size_t p = next++; p < parts.size(); p = next++)
+        make(p, curves.blocks_.data() + p * kPart * kWorst, source);
+    });
   } else {
+    auto source = make_source();
     std::byte* begin = curves.blocks_.data();
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      make(p, begin);
+      make(p, begin, source);
       begin += parts[p].bytes;
     }
   }

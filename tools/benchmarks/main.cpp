@@ -57,12 +57,16 @@ void write_head(Page& page) {
   page.bullet(
       "The plain loop and the one with Eigen interpolate the positions and compute normals. Libraries find the "
       "positions of that t in their own structure, and only their computation is timed; what *interpolate positions* "
-      "takes would come on top.");
+      "takes would come on top. What of them is made of headers (all but VTK, which is Debian's build) is compiled "
+      "like "
+      "the rest of the program, with -O3 for every x86-64; our kernels choose their instructions at run time.");
   page.bullet(
       "`exact` are float32 curves (tolerance 1e-6 rad), `compact` those of tolerance 1e-3 rad (a twentieth of a "
       "degree). "
       "`float3` is an array (n, 3), `planes` three arrays, `octahedral` and `rgb10a2` are four bytes. `recompute` is "
-      "the best that we can do without preparing anything, to the same 1e-6 rad.");
+      "the best that we can do without preparing anything, to the same 1e-6 rad. `prepare` uses the memory of the "
+      "preparation before, as a "
+      "program does that goes through many segments.");
   page.bullet(
       "*Share of memory* is the time that the memory needs for it at least over the shortest time that was measured: "
       "the "

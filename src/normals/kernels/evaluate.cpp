@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::HWY_NAMESPACE {
 
-// Measured: free in cache, 1.15 to 1.7 times faster in memory.
-constexpr std::size_t kPrefetchDistance = 2048;
+// Measured: free in cache; against 2 KiB, 1.3 times faster where the shared cache is read, and no slower in memory.
+constexpr std::size_t kPrefetchDistance = 8192;
 constexpr std::size_t kCacheLine = 64;
 
 // A kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at `lane`. They

@@ -18,7 +18,7 @@ namespace chronormal {
 /// beginning of two cache lines.
 struct FaceWindow {
   static constexpr std::size_t kRow = 16;
-  static constexpr std::size_t kSmallest = 1024, kLargest = 16384;  // faces; powers of two
+  static constexpr std::size_t kSmallest = 1024, kLargest = 32768;  // faces; powers of two
 
   double* rows = nullptr;            ///< of kLargest faces, or of all
   std::size_t capacity = kSmallest;  ///< face f is in row f % capacity
