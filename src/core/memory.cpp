@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kCacheLine = 64;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
-constexpr std::size_t kSmallestHuge = 2 * kHugePage;
+constexpr std::size_t kSmallestHuge = 4 * kHugePage;
 
 }  // namespace
 

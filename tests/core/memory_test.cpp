@@ -26,13 +26,13 @@ constexpr bool kAddressSanitizer = false;
 std::uintptr_t address(const void* p) { return reinterpret_cast<std::uintptr_t>(p); }
 
 TEST(AlignedBytes, are_aligned_to_cache_lines_and_from_4_MiB_on_to_huge_pages) {
-  for (const std::size_t size : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, 4 * kMebibyte - 1,
-                                 4 * kMebibyte, 4 * kMebibyte + 1, 9 * kMebibyte + 7}) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, 8 * kMebibyte - 1,
+                                 8 * kMebibyte, 8 * kMebibyte + 1, 9 * kMebibyte + 7}) {
     AlignedBytes bytes(size);
     ASSERT_NE(bytes.data(), nullptr);
     EXPECT_EQ(bytes.size(), size);
     EXPECT_EQ(bytes.capacity(), size);
-    const std::size_t alignment = size >= 4 * kMebibyte ? 2 * kMebibyte : 64;
+    const std::size_t alignment = size >= 8 * kMebibyte ? 2 * kMebibyte : 64;
     EXPECT_EQ(address(bytes.data()) % alignment, 0u) << size;
     std::memset(bytes.data(), 0x5A, size);  // all of it can be written
     EXPECT_EQ(bytes.data()[size - 1], std::byte{0x5A});

@@ -9,7 +9,7 @@
 
 namespace chronormal {
 
-/// Bytes aligned to 64, not initialised; from 4 MiB on aligned to 2 MiB and, on Linux, marked for huge pages, which
+/// Bytes aligned to 64, not initialised; from 8 MiB on aligned to 2 MiB and, on Linux, marked for huge pages, which
 /// spares most misses of the address translation. Pages that are never written cost no memory.
 class AlignedBytes {
  public:

@@ -236,12 +236,12 @@ HWY_INLINE bool MoveWindow(const FaceSource& source, FaceList list, FaceWindow& 
   window.strange = reach.hits > 0 ? 0 : window.strange + list.count;
   std::size_t fill_end = reach.near_end;
   if (reach.early > 0 && kCostOfOne * window.early >= reach.far_end - window.end) {
-    while (window.capacity < 2 * (reach.far_end - window.end)) GrowWindow(window);
+    while (window.capacity < std::min(2 * (reach.far_end - window.end), window.largest)) GrowWindow(window);
     fill_end = reach.far_end;
     window.early = 0;
   }
   if (kCostOfOne * window.late >= window.capacity) {
-    if (window.capacity < FaceWindow::kLargest) GrowWindow(window);
+    if (window.capacity < window.largest) GrowWindow(window);
     window.late = 0;
   }
   if (fill_end > window.end) {
@@ -430,7 +430,10 @@ AllFaceRows::AllFaceRows(const Segment& segment, Threads threads) {
 GroupTiles::GroupTiles(const Segment& segment, const NormalGroups& groups, const AllFaceRows* all_rows)
     : segment_(segment), groups_(&groups) {
   if (all_rows == nullptr) {
-    rows_ = AlignedArray<double>(FaceWindow::kLargest * FaceWindow::kRow);
+    // No more than there are faces: a small mesh should not have to ask the system for pages.
+    const std::size_t all = std::bit_ceil(segment.topology->face_count());
+    window_.largest = std::clamp(all, FaceWindow::kSmallest, FaceWindow::kLargest);
+    rows_ = AlignedArray<double>(window_.largest * FaceWindow::kRow);
     window_.rows = rows_.data();
   } else {
     window_.rows = all_rows->data();

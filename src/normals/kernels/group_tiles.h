@@ -20,8 +20,9 @@ struct FaceWindow {
   static constexpr std::size_t kRow = 16;
   static constexpr std::size_t kSmallest = 1024, kLargest = 32768;  // faces; powers of two
 
-  double* rows = nullptr;            ///< of kLargest faces, or of all
+  double* rows = nullptr;            ///< of `largest` faces, or of all
   std::size_t capacity = kSmallest;  ///< face f is in row f % capacity
+  std::size_t largest = kLargest;    ///< what capacity may grow to
   std::size_t begin = 0, end = 0;    ///< multiples of 16
   std::size_t late = 0, early = 0;   ///< faces that were missed, before `begin` and after `end`
   std::size_t strange = 0;           ///< corners since an element last used the window
