@@ -13,11 +13,11 @@
 #include "normals/blocks.h"
 #include "normals/certificate.h"
 #include "normals/coherence.h"
+#include "normals/group_sum.h"
 #include "normals/kernels/curve_blocks.h"
 #include "normals/kernels/face_tiles.h"
 #include "normals/kernels/group_tiles.h"
 #include "normals/kernels/pack.h"
-#include "normals/noise.h"
 
 namespace chronormal {
 namespace {
@@ -164,17 +164,7 @@ class GroupNormals {
       : segment_(segment), groups_(groups), tiles_(segment, groups, rows) {}
 
   void write(IndexRange elements, std::span<ControlTile> tiles) { tiles_.write(elements, tiles); }
-  [[nodiscard]] ControlNormals exact(std::size_t i) const {
-    VectorSum n0, m, n1;
-    for (const std::uint32_t f : groups_.faces(i)) {
-      ControlNormals face;
-      face_control_normals(segment_, {f, 1}, {&face, 1});
-      n0.add(face.n0);
-      m.add(face.m);
-      n1.add(face.n1);
-    }
-    return {n0.without_noise(), m.without_noise(), n1.without_noise()};
-  }
+  [[nodiscard]] ControlNormals exact(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
 
  private:
   const Segment& segment_;

@@ -16,8 +16,8 @@
 #include "normals/blocks.h"
 #include "normals/coherence.h"
 #include "normals/curve_elements.h"
+#include "normals/group_sum.h"
 #include "normals/kernels/recompute.h"
-#include "normals/noise.h"
 
 namespace chronormal {
 namespace {
@@ -140,15 +140,7 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) 
 }
 
 UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element, double t) {
-  VectorSum n0, m, n1;
-  for (const std::uint32_t f : groups.faces(element)) {
-    ControlNormals control;
-    face_control_normals(segment, {f, 1}, {&control, 1});
-    n0.add(control.n0);
-    m.add(control.m);
-    n1.add(control.n1);
-  }
-  return unit_normal_at({n0.without_noise(), m.without_noise(), n1.without_noise()}, t);
+  return unit_normal_at(control_normals_of_group(segment, groups, element), t);
 }
 
 // The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
