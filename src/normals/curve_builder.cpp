@@ -24,7 +24,14 @@ namespace {
 
 constexpr std::size_t kChunkTiles = 32;
 constexpr std::size_t kChunk = kChunkTiles * kTile;
-constexpr std::size_t kPart = 128 * kChunk;
+
+// Elements that a thread makes at a time: enough that windows of faces and moves at the end cost little, and several
+// for each thread. Of the size alone, and so the same for any number of threads.
+std::size_t part_size(std::size_t size) {
+  constexpr std::size_t kParts = 16;
+  const std::size_t chunks = (size / kParts + kChunk - 1) / kChunk;
+  return std::clamp<std::size_t>(chunks, 16, 128) * kChunk;
+}
 
 constexpr std::size_t kShortestRun = 4;  // blocks
 
@@ -183,7 +190,7 @@ class EndsSideBySide {
  public:
   EndsSideBySide(const Segment& segment, Threads threads) : ends_(kRow * segment.from.count), segment_(segment) {
     const std::size_t count = segment.from.count;
-    blocks_on(threads, count, kPart, [&](IndexRange vertices) {
+    blocks_on(threads, count, part_size(count), [&](IndexRange vertices) {
       for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
         const Vec3f from = segment.from[v], to = segment.to[v];
         const float row[kRow] = {from.x, from.y, from.z, 0, to.x, to.y, to.z, 0};
@@ -369,14 +376,15 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
 
   // Room for the worst; what is not written costs nothing.
   constexpr std::size_t kWorst = bytes_of(BlockKind::kQuadratic32);
-  std::vector<Part> parts((size + kPart - 1) / kPart);
+  const std::size_t part = part_size(size);
+  std::vector<Part> parts((size + part - 1) / part);
   const std::size_t whole = (size + kTile - 1) / kTile * kTile;
   if (curves.blocks_.capacity() < whole * kWorst) {
     curves.blocks_ = {};
     curves.blocks_ = AlignedBytes(whole * kWorst);
   }
   const auto make = [&](std::size_t p, std::byte* begin, auto& source) {
-    parts[p].elements = {p * kPart, std::min(kPart, size - p * kPart)};
+    parts[p].elements = {p * part, std::min(part, size - p * part)};
     parts[p].begin = begin;
     PartBuilder(parts[p], limits, curves.keeps_lengths_).run(source);
   };
@@ -386,7 +394,7 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
     parallel_for(std::min(thread_count(), parts.size()), [&](std::size_t) {
       auto source = make_source();
       for (std::size_t p = next++; p < parts.size(); p = next++)
-        make(p, curves.blocks_.data() + p * kPart * kWorst, source);
+        make(p, curves.blocks_.data() + p * part * kWorst, source);
     });
   } else {
     auto source = make_source();
@@ -399,23 +407,23 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
 
   // Move the parts together, and put what they found one after the other.
   std::size_t bytes = 0;
-  for (const Part& part : parts) {
-    std::memmove(curves.blocks_.data() + bytes, part.begin, part.bytes);
-    for (const NormalCurves::Run& run : part.runs) {
+  for (const Part& made : parts) {
+    std::memmove(curves.blocks_.data() + bytes, made.begin, made.bytes);
+    for (const NormalCurves::Run& run : made.runs) {
       if (!curves.runs_.empty() && curves.runs_.back().kind == run.kind) {
         curves.runs_.back().block_count += run.block_count;
       } else {
         curves.runs_.push_back({run.first_block, run.block_count, bytes + run.offset, run.kind});
       }
     }
-    bytes += part.bytes;
-    curves.flagged_.insert(curves.flagged_.end(), part.flagged.begin(), part.flagged.end());
-    curves.exact_.insert(curves.exact_.end(), part.exact.begin(), part.exact.end());
-    for (std::size_t d = 0; d < 3; ++d) curves.degree_counts_[d] += part.degree_counts[d];
-    if (!part.exponents.empty() && curves.keeps_lengths_) {
+    bytes += made.bytes;
+    curves.flagged_.insert(curves.flagged_.end(), made.flagged.begin(), made.flagged.end());
+    curves.exact_.insert(curves.exact_.end(), made.exact.begin(), made.exact.end());
+    for (std::size_t d = 0; d < 3; ++d) curves.degree_counts_[d] += made.degree_counts[d];
+    if (!made.exponents.empty() && curves.keeps_lengths_) {
       curves.exponents_.resize(whole / kTile);
-      std::copy(part.exponents.begin(), part.exponents.end(),
-                curves.exponents_.begin() + static_cast<std::ptrdiff_t>(part.elements.first / kTile));
+      std::copy(made.exponents.begin(), made.exponents.end(),
+                curves.exponents_.begin() + static_cast<std::ptrdiff_t>(made.elements.first / kTile));
     }
   }
   curves.blocks_.resize(bytes);

@@ -11,6 +11,8 @@
 
 #include "chronormal/normals/evaluate.h"
 #include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/playback.h"
+#include "chronormal/normals/recompute.h"
 #include "normals/kernels/targets.h"
 #include "tests/support/integer_mesh.h"
 
@@ -40,7 +42,7 @@ class Hash {
 };
 
 struct Results {
-  std::vector<float> xyz;
+  std::vector<float> xyz, three;
   std::vector<Octahedral> octahedral;
   std::vector<Rgb10A2> rgb;
 };
@@ -67,16 +69,39 @@ void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
   for (const Octahedral v : results.octahedral) hash.add(v.bits);
   hash.add(curves.unit_normals(0.8125, results.rgb, Threads::kAll));
   for (const Rgb10A2 v : results.rgb) hash.add(v.bits);
-  if (!curves.keeps_lengths()) return;
-  curves.normals(0.34375, packed);
-  for (const float v : results.xyz) hash.add(v);
+  if (curves.keeps_lengths()) {
+    curves.normals(0.34375, packed);
+    for (const float v : results.xyz) hash.add(v);
+  }
+  // Three times at once, and three steps of a playback that is not anchored in between.
+  results.three.resize(9 * n);
+  const double times[] = {0.125, 0.5, 0.9375};
+  VectorView<float> three[3];
+  for (std::size_t k = 0; k < 3; ++k) three[k] = VectorView<float>::packed(results.three.data() + 3 * n * k, n);
+  hash.add(curves.unit_normals(times, three, Threads::kAll));
+  for (const float v : results.three) hash.add(v);
+  NormalPlayback playback(curves, 0.25, 0.0625, 0);
+  hash.add(playback.unplayed_count());
+  for (int step = 0; step < 3; ++step) {
+    hash.add(playback.next(packed));
+    for (const float v : results.xyz) hash.add(v);
+  }
+}
+
+void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
+  results.xyz.resize(3 * recompute.size());
+  const auto packed = VectorView<float>::packed(results.xyz.data(), recompute.size());
+  for (const double t : {0.0, 0.34375, 1.0}) {
+    hash.add(recompute.unit_normals(t, packed, Threads::kAll));
+    for (const float v : results.xyz) hash.add(v);
+  }
 }
 
 // Changes with any bit of any result, and with which format a block gets: to be replaced where that is meant.
-constexpr std::uint64_t kGolden = 0xD49C614D2AEB15FD;
+constexpr std::uint64_t kGolden = 0x1AA48C1D0E854970;
 
 TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {
-  // 67,712 faces are two parts when they are prepared, and 34,225 vertices three pieces when they are evaluated.
+  // 67,712 faces are nine parts when they are prepared, and 34,225 vertices three pieces when they are evaluated.
   const Motion motion = test::integer_grid(184);
   const Segment segment = motion.segment(0);
   const NormalGroups groups =
@@ -102,6 +127,8 @@ TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_com
         add_curves(hash, NormalCurves::of_faces(segment, options, Threads::kAll), results);
         add_curves(hash, NormalCurves::of_groups(segment, groups, options, Threads::kAll), results);
       }
+      add_recompute(hash, NormalRecompute(segment), results);
+      add_recompute(hash, NormalRecompute(segment, groups), results);
       EXPECT_EQ(hash.value(), kGolden) << std::hex << "0x" << hash.value() << std::dec << " on " << target_name(target)
                                        << " with " << threads << " threads";
     }

@@ -38,9 +38,60 @@ HWY_INLINE std::uint32_t BitsOf(Mask mask) {
 #endif
 }
 
+// Three control normals of a piece of each curve, and their lengths.
+struct Piece {
+  Lanes3 n0, m, n1;
+  Floats l0, lm, l1;
+};
+
+// What the quartics of a piece show: where it stays long enough for float32, and a bound of |n(t)|^2 from below there.
+struct PieceTest {
+  hn::Mask<FloatTag> certain;
+  Floats shortest_square;
+};
+
+// Halves that are looked at where a whole shows nothing.
+inline constexpr int kPieceDepth = 2;
+
+HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }
+HWY_INLINE Lanes3 Middle(const Lanes3& a, const Lanes3& b) { return Scale(hn::Set(kFloats, 0.5f), a + b); }
+
+// Eq. 11, for whole pieces first and then for halves, until every lane is known or has `enough`, the square that is
+// wanted. What comes of a lane does not depend on the others.
+template <int kDepth>
+HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floats enough) {
+  // A safe part of the ratio 3 to which float32 is exact enough; docs/theory.md, section 13.
+  const Floats sum_ratio_square = hn::Set(kFloats, 8.7f), third = hn::Set(kFloats, 1.0f / 3);
+  const auto in_middle = [&](Floats ends, Floats middle)
+                             HWY_ATTR { return hn::Mul(third, hn::Add(ends, hn::Add(middle, middle))); };
+  const Floats square[5] = {Dot(p.n0, p.n0), Dot(p.n0, p.m), in_middle(Dot(p.n0, p.n1), Dot(p.m, p.m)), Dot(p.m, p.n1),
+                            Dot(p.n1, p.n1)};
+  const Floats limit[5] = {hn::Mul(p.l0, p.l0), hn::Mul(p.l0, p.lm),
+                           in_middle(hn::Mul(p.l0, p.l1), hn::Mul(p.lm, p.lm)), hn::Mul(p.lm, p.l1),
+                           hn::Mul(p.l1, p.l1)};
+  PieceTest whole{hn::Ge(hn::Mul(sum_ratio_square, square[0]), limit[0]), square[0]};
+  for (std::size_t k = 1; k < 5; ++k) {
+    whole.certain = hn::And(whole.certain, hn::Ge(hn::Mul(sum_ratio_square, square[k]), limit[k]));
+    whole.shortest_square = hn::Min(whole.shortest_square, square[k]);
+  }
+  if constexpr (kDepth == 0) {
+    return whole;
+  } else {
+    const auto done = hn::And(whole.certain, hn::Ge(whole.shortest_square, enough));
+    const auto open = hn::AndNot(done, needed);
+    if (hn::AllFalse(kFloats, open)) return whole;
+    const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
+    const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
+    const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
+    const PieceTest after = TestPiece<kDepth - 1>({c, b, p.n1, lc, lb, p.l1}, open, enough);
+    return {hn::Or(whole.certain, hn::And(before.certain, after.certain)),
+            hn::IfThenElse(done, whole.shortest_square, hn::Min(before.shortest_square, after.shortest_square))};
+  }
+}
+
 // Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1, n(t).a >= min c(k).a for all t.
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16) {
-  // A safe part of the ratio 3 to which float32 is exact enough; docs/theory.md, section 13.
+  // As in TestPiece.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
   // Of `magnitude`, which is not less than the largest component: noise is below 2^-50 of it, so that it turns n(t) by
   // less than 2^-24, and no control normal is below 2^-26 of the largest.
@@ -58,26 +109,47 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   m = Scale(scale, m);
   n1 = Scale(scale, n1);
   const Floats size = hn::Mul(scale, largest), magnitude = hn::Mul(scale, hn::Load(kFloats, tile.magnitude + lane));
+  const Floats size_square = hn::Mul(size, size), noise = hn::Mul(noise_square, hn::Mul(magnitude, magnitude));
 
   const Lanes3 axis = (n0 + n1) + (m + m);
   const Floats axis_square = Dot(axis, axis);
-  const auto within_cone = [&](const Lanes3& c, Floats along) HWY_ATTR {
-    return hn::And(hn::Gt(along, hn::Zero(kFloats)),
-                   hn::Ge(hn::Mul(sum_ratio_square, hn::Mul(along, along)), hn::Mul(Dot(c, c), axis_square)));
-  };
   const Floats along0 = Dot(n0, axis), along_m = Dot(m, axis), along1 = Dot(n1, axis);
+  const Floats square0 = Dot(n0, n0), square_m = Dot(m, m), square1 = Dot(n1, n1);
+  const auto within_cone = [&](Floats c_square, Floats along) HWY_ATTR {
+    return hn::And(hn::Gt(along, hn::Zero(kFloats)),
+                   hn::Ge(hn::Mul(sum_ratio_square, hn::Mul(along, along)), hn::Mul(c_square, axis_square)));
+  };
   const Floats shortest = hn::Min(hn::Min(along0, along_m), along1);
   const Floats shortest_square = hn::Mul(shortest, shortest);
-  const Floats size_square = hn::Mul(hn::Mul(size, size), axis_square);
+  const auto at_least = [&](Floats factor, Floats square) HWY_ATTR {  // of |n(t)|^2
+    return hn::Ge(hn::Mul(factor, shortest_square), hn::Mul(square, axis_square));
+  };
+  const Floats one = hn::Set(kFloats, 1.0f);
+  auto certain =
+      hn::And(hn::And(within_cone(square0, along0), within_cone(square_m, along_m)), within_cone(square1, along1));
+  certain = hn::And(hn::And(certain, in_range), at_least(one, noise));
+  auto fits11 = at_least(square11, size_square), fits16 = at_least(square16, size_square);
 
+  const auto unknown = hn::AndNot(certain, in_range);
+  if (!hn::AllFalse(kFloats, unknown)) {
+    // Eleven bits are hardly ever enough for such elements, unless few are asked for.
+    const Floats fewest = hn::Set(kFloats, 3.0f);
+    const auto try11 = hn::Ge(square11, fewest), try16 = hn::Gt(square16, hn::Zero(kFloats));
+    const Floats wanted = hn::IfThenElse(try11, square11, square16);
+    const Floats enough = hn::IfThenElseZero(try16, hn::Div(size_square, wanted));
+    const PieceTest test =
+        TestPiece<kPieceDepth>({n0, m, n1, hn::Sqrt(square0), hn::Sqrt(square_m), hn::Sqrt(square1)}, unknown, enough);
+    const auto proven = hn::And(hn::And(unknown, test.certain), hn::Ge(test.shortest_square, noise));
+    const auto fits = [&](Floats square) HWY_ATTR {
+      return hn::And(proven, hn::Ge(hn::Mul(square, test.shortest_square), size_square));
+    };
+    fits11 = hn::Or(hn::And(certain, fits11), hn::And(fits(square11), try11));
+    fits16 = hn::Or(hn::And(certain, fits16), fits(square16));
+    certain = hn::Or(certain, proven);
+  }
   const Floats degree = hn::ConvertTo(kFloats, hn::Load(kInts, tile.degree + lane));
-  auto certain = hn::And(hn::And(within_cone(n0, along0), within_cone(m, along_m)), within_cone(n1, along1));
-  certain = hn::And(certain, in_range);
-  certain = hn::And(
-      certain, hn::Ge(shortest_square, hn::Mul(hn::Mul(noise_square, hn::Mul(magnitude, magnitude)), axis_square)));
-  return {BitsOf(certain), BitsOf(hn::Ge(hn::Mul(square11, shortest_square), size_square)),
-          BitsOf(hn::Ge(hn::Mul(square16, shortest_square), size_square)), BitsOf(hn::Gt(degree, hn::Zero(kFloats))),
-          BitsOf(hn::Gt(degree, hn::Set(kFloats, 1.0f)))};
+  return {BitsOf(certain), BitsOf(fits11), BitsOf(fits16), BitsOf(hn::Gt(degree, hn::Zero(kFloats))),
+          BitsOf(hn::Gt(degree, one))};
 }
 
 void SummarizeTiles(const ControlTile* tiles, std::size_t count, const PrecisionLimits& limits,
