@@ -17,21 +17,23 @@ std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF
 // is taken.
 template <std::size_t kCount>
 std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount>& weights) {
-  constexpr int kTrials = 64;
+  constexpr int kTrials = 16, kStep = 256;
   const double largest_scale =
       std::min(kLargestWeight / *std::max_element(weights.begin(), weights.end()), kLargestSum);
   std::array<std::int32_t, kCount> best{};
-  double smallest_error = 2;
+  double smallest_error = 2, its_scale = 1;  // the error in units of 1 / scale
   for (int trial = 0; trial < kTrials && smallest_error > 0; ++trial) {
-    const double scale = largest_scale - trial * 64;
+    const double scale = largest_scale - trial * kStep;
     std::array<std::int32_t, kCount> rounded;
     double error = 0;
     for (std::size_t k = 0; k < kCount; ++k) {
-      rounded[k] = static_cast<std::int32_t>(std::floor(weights[k] * scale + 0.5));
-      error += std::fabs(rounded[k] / scale - weights[k]);
+      const double exact = weights[k] * scale;
+      rounded[k] = static_cast<std::int32_t>(exact + 0.5);
+      error += std::fabs(rounded[k] - exact);
     }
-    if (error < smallest_error) {
+    if (error * its_scale < smallest_error * scale) {
       smallest_error = error;
+      its_scale = scale;
       best = rounded;
     }
   }

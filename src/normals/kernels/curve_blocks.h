@@ -74,7 +74,7 @@ struct CurveWeights {
   std::int32_t middle16 = 0;    ///< of m, in the same units
   std::int32_t middle_low = 0;  ///< a 32nd of it
 
-  /// The integers take half a microsecond to choose; without `compact` they are left 0.
+  /// The integers take a tenth of a microsecond to choose; without `compact` they are left 0.
   [[nodiscard]] static CurveWeights at(double t, bool compact) noexcept;
 };
 

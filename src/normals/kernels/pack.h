@@ -32,9 +32,9 @@ struct TileSummary {
   Precision precision = Precision::k11;  ///< that suffices for all others
 };
 
-/// Finds the elements of which some operations in float32 show that they stay long enough: all three control normals lie
-/// within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters; well above the
-/// noise of their products and within the range of float32.
+/// Finds the elements of which some operations in float32 show that they stay long enough: all three control normals
+/// lie within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters; well above
+/// the noise of their products and within the range of float32.
 void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& limits,
                      std::span<TileSummary> summaries) noexcept;
 
