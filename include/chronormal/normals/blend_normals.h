@@ -1,0 +1,139 @@
+/// Exact unit normals of blend shapes at any weights.
+///
+/// Engines add one normal delta per target, but the normal is a quadratic form in the weights (blend_terms.h): each
+/// target has a linear and a square term, and two targets that move the same face have one together. BlendNormals keeps
+/// these terms, sparse, and adds up those of the active targets; an element that none of them touches keeps its base
+/// normal.
+///
+///     BlendNormals normals = BlendNormals::of_groups(set, groups);
+///     const BlendEvaluation done = normals.unit_normals(weights, VectorView<float>::packed(xyz, normals.size()));
+///     // done.path says how, done.touched_elements how much of the mesh it took
+///
+/// Paths      Where many targets overlap, making normals anew from blended positions is cheaper: of the touched part,
+/// or
+///            of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure function of
+///            the set, the weights and the options. Its constants were measured on one core of the machine of
+///            docs/benchmarks.md.
+/// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
+///            fit are not kept, the largest first, and their elements are made from blended positions.
+/// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path. Terms are
+///            kept in float32 with a bound each; an element whose n(w) is small against the sum of its terms is made in
+///            double from blended positions. Where even double does not promise 1e-6 rad it is counted as uncertain.
+/// Degenerate n(w) below its own rounding error, and an element without faces, gives (0, 0, 0), which is counted.
+///            Weights that are not finite, or so large that n(w) is not, give (0, 0, 0), at least where they act.
+/// Ownership  the set and the groups are moved in, and are kept. What was moved from may only be destroyed or assigned.
+/// Threads    unit_normals() uses scratch of the object: one call at a time. The same bits on any number of threads.
+#ifndef CHRONORMAL_NORMALS_BLEND_NORMALS_H_
+#define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/blend_set.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+enum class BlendPath {
+  kTerms,    ///< the terms of the active targets, for the elements that these touch
+  kTouched,  ///< blended positions, and the faces around these elements
+  kWhole,    ///< blended positions, and all faces
+};
+
+/// "terms", "touched" or "whole".
+[[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
+
+struct BlendNormalsOptions {
+  /// Of BlendCost::bytes. What is kept beside the terms, least_bytes, is kept in any case.
+  std::size_t max_bytes = std::numeric_limits<std::size_t>::max();
+  /// Takes this path whatever it costs.
+  std::optional<BlendPath> forced = {};
+};
+
+/// What the normals of a set take, from counts alone. Bytes are beyond those of the set and the groups.
+struct BlendCost {
+  std::size_t target_elements = 0;    ///< that targets touch, added up over targets
+  std::size_t overlapping_pairs = 0;  ///< of targets that move a face in common
+  std::size_t pair_elements = 0;      ///< of these faces, added up over pairs
+  std::size_t stored_targets = 0;     ///< whose terms fit into max_bytes: small ones first
+  std::size_t stored_pairs = 0;       ///< of stored targets, likewise
+  std::size_t least_bytes = 0;        ///< kept without any term: base normals, lists, scratch
+  std::size_t bytes = 0;              ///< kept with the stored terms, at most
+  std::size_t peak_bytes = 0;         ///< while they are made, at most
+
+  friend bool operator==(const BlendCost&, const BlendCost&) = default;
+};
+
+/// Pure; lists the faces of each target and nothing else. set must be valid, groups those of its topology.
+[[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
+[[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
+                                           const BlendNormalsOptions& options = {});
+
+/// How the normals at some weights are made, and why.
+struct BlendChoice {
+  BlendPath path = BlendPath::kTerms;
+  std::size_t active_targets = 0;     ///< of weight other than 0
+  std::size_t touched_elements = 0;   ///< with a face that an active target moves
+  std::size_t unstored_elements = 0;  ///< of these, with a term that is not kept: made from positions on any path
+  double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< what the model expects each path to cost, in nanoseconds
+};
+
+struct BlendEvaluation : BlendChoice {
+  std::size_t recomputed_elements = 0;  ///< made from blended positions
+  std::size_t zeros = 0;                ///< (0, 0, 0) written, untouched elements included
+  std::size_t uncertain_elements = 0;   ///< so near a collapse that 1e-6 rad is not promised
+};
+
+class BlendNormals {
+ public:
+  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/blend_set.h), the groups of its
+  /// topology. Throws std::bad_alloc only.
+  [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
+  [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
+                                              const BlendNormalsOptions& options = {});
+  BlendNormals(BlendNormals&&) noexcept;
+  BlendNormals& operator=(BlendNormals&&) noexcept;
+  ~BlendNormals();
+
+  /// Writes n(w) / |n(w)| of every element. On one thread it does not allocate or throw.
+  /// weights must have one for each target, result size() elements
+  BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
+                               Threads threads = Threads::kOne);
+  /// The same of many weight vectors, an animation: weights is (n, targets), results[k] is for row k. On all threads
+  /// they are divided among them, with scratch for each.
+  std::vector<BlendEvaluation> unit_normals(std::span<const double> weights, std::span<const VectorView<float>> results,
+                                            Threads threads = Threads::kOne);
+  /// Which path these weights take.
+  [[nodiscard]] BlendChoice choose(std::span<const double> weights) const;
+
+  /// Appends a target; makes its terms and those of pairs with it, as far as max_bytes goes, and none anew. Errors:
+  /// those of validate(), with nothing changed.
+  Status add_target(BlendTarget target);
+  /// Removes target k; those behind it move up. Terms that had not fitted are not made up for. k must exist
+  void remove_target(std::size_t k);
+
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] const BlendSet& set() const noexcept;
+  /// Of all targets that there are now.
+  [[nodiscard]] const BlendCost& cost() const noexcept;
+  /// Memory that is kept, in bytes: at most cost().bytes.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Parts;
+  explicit BlendNormals(std::unique_ptr<Parts> parts) noexcept;
+
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_BLEND_NORMALS_H_

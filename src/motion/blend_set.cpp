@@ -1,0 +1,93 @@
+#include "chronormal/motion/blend_set.h"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace chronormal {
+namespace {
+
+bool all_finite(std::span<const float> values) {
+  for (const float value : values)
+    if (!std::isfinite(value)) return false;
+  return true;
+}
+
+}  // namespace
+
+BlendTarget BlendTarget::from_dense(std::span<const float> deltas, std::string name) {
+  BlendTarget target;
+  target.name = std::move(name);
+  for (std::size_t v = 0; 3 * v < deltas.size(); ++v) {
+    const auto delta = deltas.subspan(3 * v, 3);
+    if (delta[0] == 0 && delta[1] == 0 && delta[2] == 0) continue;
+    target.vertices.push_back(static_cast<std::uint32_t>(v));
+    target.deltas.insert(target.deltas.end(), delta.begin(), delta.end());
+  }
+  return target;
+}
+
+Result<BlendSet> blend_set_of(const Motion& star) {
+  BlendSet set;
+  set.topology = star.topology;
+  set.base = star.keyframes.front().positions;
+  for (std::size_t k = 0; k < star.segments.size(); ++k) {
+    const Motion::SegmentKeys& segment = star.segments[k];
+    const auto place = [k] { return std::string("target ").append(std::to_string(k)); };
+    if (segment.from != 0)
+      return Error{ErrorCode::kUsage, place(),
+                   std::string("it begins at keyframe ").append(std::to_string(segment.from)) + " and not at the base"};
+    const Motion::Keyframe& end = star.keyframes[segment.to];
+    std::vector<float> deltas(end.positions);
+    for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] -= set.base[i];
+    if (!all_finite(deltas)) return invalid_input(place(), "a delta is beyond the range of float32");
+    set.targets.push_back(BlendTarget::from_dense(deltas, end.name));
+  }
+  return set;
+}
+
+Status validate(const BlendTarget& target, const Topology& topology, std::size_t k) {
+  const auto place = [k](std::size_t n) { return "target " + std::to_string(k) + ", entry " + std::to_string(n); };
+  if (target.deltas.size() != 3 * target.vertices.size())
+    return invalid_input("target " + std::to_string(k), "there are " + std::to_string(target.deltas.size()) +
+                                                            " components of deltas for " +
+                                                            std::to_string(target.vertices.size()) + " vertices");
+  for (std::size_t n = 0; n < target.vertices.size(); ++n) {
+    if (target.vertices[n] >= topology.vertex_count())
+      return invalid_input(place(n), "there is no vertex " + std::to_string(target.vertices[n]) + "; the mesh has " +
+                                         std::to_string(topology.vertex_count()));
+    if (n > 0 && target.vertices[n] <= target.vertices[n - 1])
+      return invalid_input(place(n), "the vertices must ascend");
+    if (!all_finite(std::span(target.deltas).subspan(3 * n, 3)))
+      return invalid_input(place(n), "the delta is not finite");
+  }
+  return Success{};
+}
+
+Status validate(const BlendSet& set) {
+  if (set.base.size() != 3 * set.topology.vertex_count())
+    return invalid_input("base", "there are " + std::to_string(set.base.size()) + " components of positions for " +
+                                     std::to_string(set.topology.vertex_count()) + " vertices");
+  for (std::size_t v = 0; v < set.topology.vertex_count(); ++v) {
+    if (!all_finite(std::span(set.base).subspan(3 * v, 3)))
+      return invalid_input("base, vertex " + std::to_string(v), "the position is not finite");
+  }
+  for (std::size_t k = 0; k < set.targets.size(); ++k)
+    if (Status status = validate(set.targets[k], set.topology, k); !status) return status;
+  return Success{};
+}
+
+void blend_positions(const BlendSet& set, std::span<const double> weights, std::span<double> result) noexcept {
+  assert(weights.size() == set.targets.size() && result.size() == set.base.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<double>(set.base[i]);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0) continue;
+    const BlendTarget& target = set.targets[k];
+    for (std::size_t n = 0; n < target.vertices.size(); ++n) {
+      for (std::size_t c = 0; c < 3; ++c)
+        result[3 * std::size_t{target.vertices[n]} + c] += weights[k] * static_cast<double>(target.deltas[3 * n + c]);
+    }
+  }
+}
+
+}  // namespace chronormal
