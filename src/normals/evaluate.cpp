@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kPiece = 16384;
 // What stays in the cache of a core while many t are evaluated; few enough streams of results, each long enough.
 constexpr std::size_t kManyTimes = 8192;
-// Results above this many bytes go past the caches: measured, below it they would only be fetched again.
-constexpr std::size_t kStreamFrom = std::size_t{64} << 20;
 
 bool is_aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % 64 == 0; }
 
@@ -139,13 +137,13 @@ std::size_t NormalCurves::over_pieces(Threads threads, std::size_t piece, Body b
 
 std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
   assert(result.count == size_);
-  const bool stream = size_ * 3 * sizeof(float) > kStreamFrom && is_aligned(result.x);
+  const bool stream = blocks_.size() + size_ * 3 * sizeof(float) > kStreamFrom && is_aligned(result.x);
   return with_output(result, stream, [&](const auto& output) { return evaluate_all(t, output, threads); });
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
   assert(result.size() == size_);
-  const bool stream = size_ * sizeof(Octahedral) > kStreamFrom && is_aligned(result.data());
+  const bool stream = blocks_.size() + size_ * sizeof(Octahedral) > kStreamFrom && is_aligned(result.data());
   return evaluate_all(t, OctahedralOutput{result, stream}, threads);
 }
 
@@ -157,7 +155,7 @@ std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Thre
 std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                                        Threads threads) const {
   assert(results.size() == times.size());
-  const bool large = times.size() * size_ * 3 * sizeof(float) > kStreamFrom;
+  const bool large = blocks_.size() + times.size() * size_ * 3 * sizeof(float) > kStreamFrom;
   if (std::all_of(results.begin(), results.end(), is_packed)) {
     std::vector<PackedOutput> outputs;
     for (const auto& result : results) outputs.push_back({result, large && is_aligned(result.x)});
@@ -177,7 +175,7 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
                                        Threads threads) const {
   assert(results.size() == times.size());
   std::vector<OctahedralOutput> outputs;
-  const bool large = times.size() * size_ * sizeof(Octahedral) > kStreamFrom;
+  const bool large = blocks_.size() + times.size() * size_ * sizeof(Octahedral) > kStreamFrom;
   for (const auto& result : results) {
     assert(result.size() == size_);
     outputs.push_back({result, large && is_aligned(result.data())});

@@ -30,7 +30,6 @@ constexpr std::size_t kLargestWindow = std::size_t{1} << 14;  // 256 KiB
 constexpr std::size_t kWindowSamples = 64;
 constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
 constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kStreamedBytes = std::size_t{64} << 20;
 
 // Positions that fit here may be read in any order.
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
@@ -193,7 +192,7 @@ class NormalRecompute::Call {
       : segment_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
     by_kernel_ = topology.all_triangles() && is_packed(segment.from) && is_packed(segment.to);
-    stream_ = result.count * 3 * sizeof(float) > kStreamedBytes;
+    stream_ = (2 * segment.from.count + result.count) * 3 * sizeof(float) > kStreamFrom;
     triangles_.corners = topology.corners().data();
     triangles_.face_count = topology.face_count();
     triangles_.vertex_count = topology.vertex_count();

@@ -124,13 +124,13 @@ auto Visit(Formula formula, Visitor visit) {
 // Calls write(first block, number of blocks, where) until all elements have their normals. A layout that vectors cannot
 // be stored in, and a last block that is not full, go through a buffer.
 template <class Write>
-void WriteBlocks(VectorView<float> result, std::size_t stream_from, Write write) {
+void WriteBlocks(const CurveBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;
   std::size_t done = 0;  // blocks
   const bool packed = result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2;
   if (packed || result.stride == 1) {
     done = result.count / kBlock;
-    const bool stream = packed && result.count * 3 * sizeof(float) > stream_from &&
+    const bool stream = packed && result.count * (curves.plane_count + 3) * sizeof(float) > stream_from &&
                         reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0;
     const Layout layout = !packed ? Layout::kPlanes : stream ? Layout::kPackedPastCaches : Layout::kPacked;
     write(0, done, BlockResult{result.x, result.y, result.z, layout});
@@ -149,14 +149,14 @@ void WriteBlocks(VectorView<float> result, std::size_t stream_from, Write write)
 void EvaluateCurves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
                     std::size_t stream_from) {
   const auto evaluate = Visit(formula, [](auto f) { return &EvaluateBlocks<decltype(f)>; });
-  WriteBlocks(result, stream_from, [&](std::size_t first, std::size_t count, const BlockResult& to) {
+  WriteBlocks(curves, result, stream_from, [&](std::size_t first, std::size_t count, const BlockResult& to) {
     evaluate(curves, first, count, shared, to);
   });
 }
 
 void AdvanceCurves(Formula formula, const CurveBlocks& curves, float* state, VectorView<float> result) {
   const auto advance = VisitPlayable(formula, [](auto f) { return &AdvanceBlocks<decltype(f)>; });
-  WriteBlocks(result, kStreamFrom, [&](std::size_t first, std::size_t count, const BlockResult& to) {
+  WriteBlocks(curves, result, kStreamFrom, [&](std::size_t first, std::size_t count, const BlockResult& to) {
     advance(curves, first, count, state, to);
   });
 }

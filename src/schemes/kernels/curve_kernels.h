@@ -46,12 +46,8 @@ struct CurveBlocks {
   std::size_t element_count = 0;
 };
 
-/// Results of more bytes than this go past the caches, where packed and aligned to 64 bytes: they would push out what
-/// is read next, and be gone themselves before anybody reads them.
-inline constexpr std::size_t kStreamFrom = std::size_t{64} << 20;
-
 /// Writes the unit normals of all elements at one t.
-/// result must have as many vectors as there are elements, and may have any layout
+/// stream_from: see core/memory.h. result must have as many vectors as there are elements, and may have any layout
 void evaluate_curves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
                      std::size_t stream_from = kStreamFrom) noexcept;
 
