@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -88,6 +89,23 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
+// Writes one piece after the other, little ones together. False, with errno, on failure.
+bool write_all(int descriptor, std::span<const std::string_view> pieces) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  std::string block;
+  for (const std::string_view piece : pieces) {
+    if (block.size() + piece.size() > kBlock) {
+      if (!write_all(descriptor, block)) return false;
+      block.clear();
+    }
+    if (piece.size() < kBlock)
+      block += piece;
+    else if (!write_all(descriptor, piece))
+      return false;
+  }
+  return write_all(descriptor, block);
+}
+
 // The descriptor for which a path stands that names a stream of this process.
 std::optional<int> stream_descriptor(std::string_view path) {
   if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
@@ -147,8 +165,8 @@ Error exists_already(const std::string& path) {
 }
 
 // Writes target by way of a temporary sibling. old is what target is now, or null where it does not exist.
-Status replace_file(const std::string& path, const std::string& target, std::string_view bytes, const struct stat* old,
-                    bool force) {
+Status replace_file(const std::string& path, const std::string& target, std::span<const std::string_view> pieces,
+                    const struct stat* old, bool force) {
   std::string temporary;
   // Until it has the permissions of the file that it replaces, nobody else may read it.
   Descriptor file(open_temporary(target, old != nullptr ? 0600 : 0666, temporary));
@@ -158,7 +176,7 @@ Status replace_file(const std::string& path, const std::string& target, std::str
     return error;
   }
   const auto prepare = [&] {
-    if (!write_all(file.number(), bytes)) return false;
+    if (!write_all(file.number(), pieces)) return false;
     if (old != nullptr) {
       if (::fchown(file.number(), old->st_uid, old->st_gid) != 0) errno = 0;  // only the owner or root may
       if (::fchmod(file.number(), old->st_mode & 07777) != 0) return false;
@@ -231,11 +249,21 @@ Status check_output(const std::string& path, bool force) {
   return Success{};
 }
 
+bool is_stream(const std::string& path) {
+  if (stream_descriptor(path)) return true;
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
 Status write_output(const std::string& path, std::string_view bytes, bool force) {
+  return write_output(path, std::span(&bytes, 1), force);
+}
+
+Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force) {
   if (const std::optional<int> stream = stream_descriptor(path)) {
     // What was printed before comes first.
     (void)std::fflush(*stream == STDERR_FILENO ? stderr : stdout);
-    if (!write_all(*stream, bytes)) return failure(path == "-" ? "<stdout>" : path, errno);
+    if (!write_all(*stream, pieces)) return failure(path == "-" ? "<stdout>" : path, errno);
     return Success{};
   }
   if (Status status = check_output(path, force); !status) return status;
@@ -245,10 +273,10 @@ Status write_output(const std::string& path, std::string_view bytes, bool force)
   if (!exists && errno != ENOENT) return failure(path, errno);
   if (exists && !S_ISREG(old.st_mode)) {
     Descriptor device(open_descriptor(path, O_WRONLY));
-    if (!device.is_open() || !write_all(device.number(), bytes) || !device.close()) return failure(path, errno);
+    if (!device.is_open() || !write_all(device.number(), pieces) || !device.close()) return failure(path, errno);
     return Success{};
   }
-  return replace_file(path, follow_links(path), bytes, exists ? &old : nullptr, force);
+  return replace_file(path, follow_links(path), pieces, exists ? &old : nullptr, force);
 }
 
 }  // namespace chronormal

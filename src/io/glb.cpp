@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "io/binary.h"
 
@@ -40,13 +41,59 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
     if (type == kJson) {
       chunks.json = bytes.substr(begin, size);
       chunks.json_offset = begin;
+      chunks.rest = bytes.substr(begin + size);
     } else if (type == kBin) {
       if (chunk != 1) return error(at + 4, "the BIN chunk must be the second");
       chunks.bin = bytes.substr(begin, size);
+      chunks.rest = bytes.substr(begin + size);
     }
     at = begin + size;
   }
   return chunks;
+}
+
+Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
+                              const std::optional<std::vector<std::string_view>>& bin, std::string_view rest,
+                              const std::string& name) {
+  const auto size_of = [](std::span<const std::string_view> pieces) {
+    std::uint64_t size = 0;
+    for (const std::string_view piece : pieces) size += piece.size();
+    return size;
+  };
+  const auto padding_of = [](std::uint64_t size) { return (4 - size % 4) % 4; };
+  const std::uint64_t json_size = size_of(json), bin_size = bin ? size_of(*bin) : 0;
+  const std::uint64_t json_padding = padding_of(json_size), bin_padding = padding_of(bin_size);
+  const std::uint64_t total = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
+                              (bin ? kChunkHeaderSize + bin_size + bin_padding : 0) + rest.size();
+  if (total > ~std::uint32_t{0})
+    return invalid_input(name, "the GLB file would have " + std::to_string(total) +
+                                   " bytes, but its header can not say more than 4294967295; a .gltf file can");
+
+  GlbPieces result;
+  const auto add_frame = [&](std::string bytes) {
+    result.pieces.push_back(result.frame.emplace_back(std::move(bytes)));
+  };
+  const auto add_word = [](std::string& bytes, std::uint64_t word) {
+    binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
+  };
+  std::string head = "glTF";
+  add_word(head, 2);
+  add_word(head, total);
+  add_word(head, json_size + json_padding);
+  add_word(head, kJson);
+  add_frame(std::move(head));
+  result.pieces.insert(result.pieces.end(), json.begin(), json.end());
+  add_frame(std::string(json_padding, ' '));
+  if (bin) {
+    std::string bin_head;
+    add_word(bin_head, bin_size + bin_padding);
+    add_word(bin_head, kBin);
+    add_frame(std::move(bin_head));
+    result.pieces.insert(result.pieces.end(), bin->begin(), bin->end());
+    add_frame(std::string(bin_padding, '\0'));
+  }
+  result.pieces.push_back(rest);
+  return result;
 }
 
 }  // namespace chronormal

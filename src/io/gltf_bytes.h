@@ -43,6 +43,10 @@ class Bytes {
   /// The model must outlive this, and so must the BIN chunk.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
+  /// The bytes of a buffer, at least as many as it declares.
+  /// Errors: there are none, or too few; the file can not be read.
+  [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
+
   /// The bytes of a view, decompressed where they are compressed.
   [[nodiscard]] Result<View> view(std::size_t index);
 
@@ -58,8 +62,9 @@ class Bytes {
   /// The place of an accessor: "NAME, /accessors/3".
   [[nodiscard]] std::string accessor_place(std::size_t index) const;
 
+  [[nodiscard]] const Origin& origin() const noexcept { return origin_; }
+
  private:
-  [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
   [[nodiscard]] Status open_buffer_of(const Accessor& accessor);
   [[nodiscard]] Result<std::string> decompress(std::size_t view_index, const Compression& compression);
   /// Replaces elements of the accessor: put(element, bytes of its value).

@@ -8,25 +8,11 @@
 #include "chronormal/io/file.h"
 #include "io/glb.h"
 #include "io/gltf_bytes.h"
+#include "io/gltf_document_state.h"
 #include "io/gltf_draco.h"
 #include "io/gltf_model.h"
 
 namespace chronormal {
-
-struct GltfDocument::State {
-  State(std::optional<FileBytes> opened, gltf::Model parsed, gltf::Origin asset, std::size_t most)
-      : file(std::move(opened)),
-        model(std::move(parsed)),
-        name(asset.name),
-        bytes(model, std::move(asset)),
-        most_bytes(most) {}
-
-  std::optional<FileBytes> file;  // where the document opened it
-  gltf::Model model;
-  std::string name;
-  gltf::Bytes bytes;
-  std::size_t most_bytes;
-};
 
 namespace {
 
@@ -101,7 +87,7 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
 Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   gltf::Origin origin{name, folder, std::nullopt, options.allow_external};
-  GlbChunks chunks{bytes, 0, std::nullopt};
+  GlbChunks chunks{bytes, 0, std::nullopt, {}};
   if (is_glb(bytes)) {
     Result<GlbChunks> found = read_glb(bytes, name);
     if (!found) return found.error();
@@ -110,8 +96,7 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   origin.bin = chunks.bin;
   Result<gltf::Model> model = gltf::parse_model(chunks.json, name, chunks.json_offset, bytes.size());
   if (!model) return model.error();
-  return GltfDocument(
-      std::make_unique<State>(std::nullopt, std::move(model).value(), std::move(origin), options.most_bytes));
+  return GltfDocument(std::make_unique<State>(chunks, std::move(model).value(), std::move(origin), options.most_bytes));
 }
 
 Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const {

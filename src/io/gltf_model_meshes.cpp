@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/binary.h"
+#include "io/gltf_bake_mark.h"
 #include "io/gltf_model_parser.h"
 
 namespace chronormal::gltf {
@@ -45,6 +46,7 @@ void Parser::parse_mesh(const JsonView& item) {
   } catch (const nlohmann::json::exception&) {
     mesh.target_names.clear();
   }
+  read_bake_mark(*document_, item.pointer(), complaint_.place(""), mesh);
   model_.meshes.push_back(std::move(mesh));
   model_.sources.push_back(std::move(sources));
 }

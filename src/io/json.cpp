@@ -1,6 +1,11 @@
 #include "io/json.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <system_error>
 
 #include "io/binary.h"
 
@@ -9,39 +14,105 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-// The byte at which text is nested deeper than allowed; npos if it is not. Brackets inside strings do not count.
-std::size_t find_too_deep(std::string_view text) {
-  std::size_t depth = 0;
-  bool inside_string = false;
+// Whether text is a number as JSON writes it.
+bool is_number(std::string_view text) {
+  const auto skip_digits = [&] {
+    const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
+    text.remove_prefix(count);
+    return count;
+  };
+  if (text.starts_with('-')) text.remove_prefix(1);
+  const bool begins_with_zero = text.starts_with('0');
+  const std::size_t digits = skip_digits();
+  if (digits == 0 || (begins_with_zero && digits > 1)) return false;
+  if (text.starts_with('.')) {
+    text.remove_prefix(1);
+    if (skip_digits() == 0) return false;
+  }
+  if (text.starts_with('e') || text.starts_with('E')) {
+    text.remove_prefix(1);
+    if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
+    if (skip_digits() == 0) return false;
+  }
+  return text.empty();
+}
+
+// Whether a number is beyond double. What is too small is not: it is 0.
+bool overflows(std::string_view number) {
+  constexpr std::size_t kMostDigits = 308;  // those of the largest double are one more
+  const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
+  if (exponent_at == number.size() && number.size() <= kMostDigits) return false;
+  double value = 0;
+  const auto [stop, code] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (code == std::errc()) return std::isinf(value);
+  if (code != std::errc::result_out_of_range) return false;
+  // Too large or too small, by far: what counts is where the first digit that is not 0 stands.
+  const std::string_view mantissa = number.substr(0, exponent_at);
+  const auto first = static_cast<std::ptrdiff_t>(mantissa.find_first_of("123456789"));
+  const auto point = static_cast<std::ptrdiff_t>(std::min(mantissa.find('.'), mantissa.size()));
+  std::string_view digits = number.substr(std::min(exponent_at + 1, number.size()));
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  std::int64_t exponent = 0;
+  if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
+    return digits.front() != '-';
+  return exponent + (point - first) > 0;
+}
+
+// What a walk over text finds before anything is built from it.
+struct Scan {
+  std::size_t too_deep = std::string_view::npos;  // the byte at which it is nested deeper than allowed
+  struct Number {
+    std::size_t begin, end;
+    std::size_t nulls;  // how many null come before it
+  };
+  std::vector<Number> too_large;  // numbers beyond double
+};
+
+Scan scan_json(std::string_view text) {
+  Scan result;
+  std::size_t depth = 0, nulls = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (inside_string) {
-      if (c == '\\')
-        ++i;
-      else if (c == '"')
-        inside_string = false;
-    } else if (c == '"') {
-      inside_string = true;
+    if (c == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) {
+        if (text[i] == '\\') ++i;
+      }
     } else if (c == '[' || c == '{') {
-      if (++depth > kDeepestJson) return i;
+      if (++depth > kDeepestJson) {
+        result.too_deep = i;
+        return result;
+      }
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
+    } else if (c == 'n') {
+      ++nulls;
+    } else if (c == '-' || (c >= '0' && c <= '9')) {
+      const std::size_t end = std::min(text.find_first_not_of("0123456789+-.eE", i), text.size());
+      const std::string_view number = text.substr(i, end - i);
+      if (overflows(number) && is_number(number)) result.too_large.push_back({i, end, nulls++});
+      i = end - 1;
     }
   }
-  return std::string_view::npos;
+  return result;
 }
 
 // Builds the tree as the parser walks the text, without the items that are taken. (The library's own parser with a
 // callback walks over all siblings at the end of every object.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit TreeBuilder(const JsonItems& items) : items_(items) {}
+  // infinities: the numbers beyond double, which stand as null in the text, by how many null come before them.
+  TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
+      : items_(items), infinities_(infinities) {}
 
   [[nodiscard]] nlohmann::json take_root() { return std::move(root_); }
   [[nodiscard]] std::size_t error_at() const noexcept { return error_at_; }
   [[nodiscard]] const std::string& error_message() const noexcept { return error_message_; }
 
-  bool null() override { return add(nullptr); }
+  bool null() override {
+    if (next_infinity_ == infinities_.size() || null_count_++ != infinities_[next_infinity_].nulls) return add(nullptr);
+    ++next_infinity_;
+    return add(std::numeric_limits<double>::infinity());
+  }
   bool boolean(bool value) override { return add(value); }
   bool number_integer(number_integer_t value) override { return add(value); }
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
@@ -72,9 +143,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::string_view message = exception.what();
     if (const std::size_t colon = message.rfind(": "); colon != std::string_view::npos)
       message.remove_prefix(colon + 2);
-    error_message_ = dynamic_cast<const nlohmann::json::out_of_range*>(&exception) != nullptr
-                         ? "the number is too large"
-                         : std::string("this is no JSON: ").append(message);
+    error_message_ = std::string("this is no JSON: ").append(message);
     return false;
   }
 
@@ -104,6 +173,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
   const JsonItems& items_;
+  const std::vector<Scan::Number>& infinities_;
+  std::size_t null_count_ = 0, next_infinity_ = 0;
   nlohmann::json root_;
   std::vector<nlohmann::json*> stack_;  // the arrays and objects that are open; their places do not move meanwhile
   nlohmann::json* member_ = nullptr;    // of the innermost object
@@ -125,10 +196,25 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
     text.remove_prefix(kByteOrderMark.size());
     offset += kByteOrderMark.size();
   }
-  if (const std::size_t at = find_too_deep(text); at != std::string_view::npos)
-    return invalid_input(binary::place(name, offset + at),
+  if (text.starts_with(kByteOrderMark))  // which the library would skip too
+    return invalid_input(binary::place(name, offset), "this is no JSON: a second byte order mark");
+  const Scan scan = scan_json(text);
+  if (scan.too_deep != std::string_view::npos)
+    return invalid_input(binary::place(name, offset + scan.too_deep),
                          "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels");
-  TreeBuilder builder(items);
+  // The library refuses numbers beyond double wherever they stand. The shortest is 1e309: longer than null.
+  std::string replaced;
+  if (!scan.too_large.empty()) {
+    replaced = text;
+    for (const Scan::Number& number : scan.too_large) {
+      constexpr std::string_view kNull = "null";
+      std::fill(replaced.begin() + static_cast<std::ptrdiff_t>(number.begin),
+                replaced.begin() + static_cast<std::ptrdiff_t>(number.end), ' ');
+      replaced.replace(number.begin, kNull.size(), kNull);
+    }
+    text = replaced;
+  }
+  TreeBuilder builder(items, scan.too_large);
   if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return builder.take_root();
   return invalid_input(binary::place(name, offset + builder.error_at()), builder.error_message());
 }
@@ -199,6 +285,10 @@ std::optional<std::size_t> JsonView::as_count(std::size_t most) const {
     result = value_->get<std::size_t>();
   } else if (value_->is_number_float()) {
     const double number = value_->get<double>();
+    if (std::isinf(number)) {
+      complain("the number is too large");
+      return std::nullopt;
+    }
     if (!(number >= 0 && number <= kLargestExact && number == std::floor(number))) {
       complain("this must be a whole number, not " + value_->dump());
       return std::nullopt;
@@ -276,7 +366,11 @@ std::string JsonView::required_text(const char* key) const {
 }
 
 double JsonView::as_number() const {
-  if (value_->is_number()) return value_->get<double>();
+  if (value_->is_number()) {
+    const double number = value_->get<double>();
+    if (std::isinf(number)) complain("the number is too large");
+    return number;
+  }
   complain("this must be a number, not " + article(*value_));
   return 0;
 }

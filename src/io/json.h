@@ -30,9 +30,10 @@ struct JsonItems {
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
 };
 
-/// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`.
-/// Errors: kInvalidInput with the place "NAME, byte N": no JSON, numbers beyond double, or nested deeper than
-/// kDeepestJson (found before anything is built).
+/// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers beyond
+/// double become infinity, about which a JsonView complains when it is asked for them.
+/// Errors: kInvalidInput with the place "NAME, byte N": no JSON, or nested deeper than kDeepestJson (found before
+/// anything is built).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name, std::size_t offset,
                                                 const JsonItems& items);
 

@@ -9,8 +9,10 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "tests/support/temporary_folder.h"
 
@@ -111,6 +113,29 @@ TEST(WriteOutput, new_file_has_the_permissions_of_the_umask) {
   EXPECT_EQ(read_whole(folder / "a"), "bytes");
   EXPECT_EQ(permissions_of(folder / "a"), 0640U);
   EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(WriteOutput, pieces_of_any_size_become_one_file) {
+  const TemporaryFolder folder;
+  const std::string large = many_bytes(), block(std::size_t{1} << 16, 'b'), almost(block.size() - 1, 'a');
+  const std::vector<std::string_view> pieces = {"",     "a", large, "b",    "c", "",   block,
+                                                almost, "d", "e",   almost, "",  block};
+  std::string whole;
+  for (const std::string_view piece : pieces) whole += piece;
+  EXPECT_TRUE(write_output(folder / "a", pieces, false).ok());
+  EXPECT_TRUE(read_whole(folder / "a") == whole);
+  EXPECT_TRUE(write_output(folder / "none", std::vector<std::string_view>(), false).ok());
+  EXPECT_EQ(std::filesystem::file_size(folder / "none"), 0U);
+}
+
+TEST(WriteOutput, stream_is_what_is_no_file_to_replace) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  for (const std::string& path : {std::string("-"), std::string("/dev/stdout"), std::string("/dev/fd/7"),
+                                  std::string("/dev/null"), folder / "pipe"})
+    EXPECT_TRUE(is_stream(path)) << path;
+  for (const std::string& path : {folder.write("a", ""), folder / "none", folder.path(), std::string()})
+    EXPECT_FALSE(is_stream(path)) << path;
 }
 
 TEST(WriteOutput, existing_file_is_kept_without_force_and_replaced_with_it) {

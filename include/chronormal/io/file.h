@@ -5,6 +5,7 @@
 #define CHRONORMAL_IO_FILE_H_
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -43,6 +44,9 @@ class FileBytes {
 /// computation, and before the first of many files.
 [[nodiscard]] Status check_output(const std::string& path, bool force);
 
+/// Whether write_output() would write to a pipe, a device or a stream of this process, rather than make a file.
+[[nodiscard]] bool is_stream(const std::string& path);
+
 /// Writes a whole file; "-" is the standard output.
 ///
 /// The bytes go to a temporary file in the same folder, which is flushed to disk (fsync) and then renamed: a reader
@@ -53,6 +57,8 @@ class FileBytes {
 /// Errors: kFailed with the path as the place: an existing file without force (the message says: --force), a folder,
 /// and whatever the system refuses (no space left on device).
 [[nodiscard]] Status write_output(const std::string& path, std::string_view bytes, bool force);
+/// The same of a file in pieces, which come one after the other: what lies elsewhere already needs no copy.
+[[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
 }  // namespace chronormal
 

@@ -48,12 +48,34 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
+/// A target that a bake added: it moves no vertex, and its weight is the product of two others.
+struct GltfExtraTarget {
+  /// As a factor: 1 minus the sum of all weights of targets that are no extra ones, the weight of the base as a
+  /// keyframe.
+  static constexpr std::size_t kBase = static_cast<std::size_t>(-1);
+
+  std::size_t target = 0;    ///< index among the targets of the mesh
+  std::size_t i = 0, j = 0;  ///< its weight is w_i w_j: indices of targets that are no extra ones, or kBase
+
+  friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
+};
+
+/// What a bake leaves in extras.chronormal of a mesh, for instance
+///     {"version": 1, "encode": "exact", "sequence": false, "extras": [{"target": 2, "factors": [0, "base"]}]}
+struct GltfBakeMark {
+  std::string encode;                   ///< "exact" or "endpoint"
+  bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
+  std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
+};
+
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
   std::size_t target_count = 0;           ///< the same in all primitives
   std::vector<std::string> target_names;  ///< extras.targetNames, where it has target_count names; else empty
   std::vector<double> weights;            ///< the default ones; target_count of them, 0 where the file has none
+  std::optional<GltfBakeMark> mark;       ///< where a bake left one that can be understood
+  std::optional<Error> mark_fault;        ///< why there is a mark that cannot: for those who have to understand it
 };
 
 struct GltfNode {
@@ -150,6 +172,7 @@ class GltfDocument {
   [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;
 
  private:
+  friend class GltfEdit;
   struct State;
   explicit GltfDocument(std::unique_ptr<State> state) noexcept;
 
