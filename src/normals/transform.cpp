@@ -82,4 +82,17 @@ std::size_t transform_unit_normals(const NormalMatrix& matrix, VectorView<const 
   return zeros;
 }
 
+Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept {
+  const Vec3d sine = cross(from, to);
+  const double cosine = dot(from, to);
+  const Vec3d axis = unit(sine);
+  // Opposite up to rounding: any axis across will do.
+  constexpr double kOpposite = 1e-12;
+  if (cosine < 0 && max_abs(sine) < kOpposite) {
+    const Vec3d across = any_perpendicular(from);
+    return (2 * dot(across, v)) * across - v;
+  }
+  return cosine * v + cross(sine, v) + ((1 - cosine) * dot(axis, v)) * axis;
+}
+
 }  // namespace chronormal

@@ -71,6 +71,11 @@ struct NormalMatrix {
 std::size_t transform_unit_normals(const NormalMatrix& matrix, VectorView<const float> normals,
                                    VectorView<float> result) noexcept;
 
+/// Turns v by the smallest rotation that takes the unit vector `from` to the unit vector `to`; where these are opposite
+/// there are many, and one half turn is chosen. What keeps a normal by hand apart from the geometry's, as the mesh
+/// moves.
+[[nodiscard]] Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept;
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_NORMALS_TRANSFORM_H_

@@ -1,0 +1,248 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/motion_files.h"
+#include "chronormal/io/motion_readers.h"
+#include "chronormal/io/obj.h"
+#include "chronormal/io/readers.h"
+#include "chronormal/io/sequence.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/sample.h"
+#include "cli/audit_report.h"
+#include "cli/command.h"
+#include "cli/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr int kExitBeyond = 4;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string rule;  // empty: what is usual for the input
+  std::string weighting = "area";
+  std::optional<std::size_t> samples;
+  std::optional<double> tolerance;
+  bool no_weld = false;
+  bool json = false;
+};
+
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+}
+
+// Whether the input is one glTF file, by its name or else by its content.
+bool is_gltf(const std::string& path, std::string_view bytes) {
+  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
+  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
+}
+
+bool is_one_file(const InputOptions& input) {
+  if (input.files.size() != 1 || !input.base.empty()) return false;
+  std::error_code code;
+  return input.files[0] == "-" || is_gltf_file(input.files[0]) ||
+         std::filesystem::is_regular_file(input.files[0], code);
+}
+
+// A word as a shell reads it back.
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:@%+=";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return printable(quoted + "'");
+}
+
+std::string words_of(const InputOptions& input) {
+  std::string words;
+  constexpr std::size_t kMost = 4;
+  for (std::size_t i = 0; i < input.files.size(); ++i) {
+    if (i == kMost) return words + " ...";
+    words += (i > 0 ? " " : "") + shell_word(input.files[i]);
+  }
+  for (const std::string& sample : input.samples) words += "--sample " + sample;
+  return words;
+}
+
+Result<Audited> audit_gltf(std::unique_ptr<FileBytes> file, const InputOptions& input, const AuditOptions& options) {
+  const std::string& path = input.files[0];
+  std::optional<std::string> folder;
+  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
+  Result<GltfDocument> document = GltfDocument::read(file->bytes(), path == "-" ? "<stdin>" : short_name(path), folder,
+                                                     {.allow_external = input.allow_external});
+  if (!document) return document.error();
+  Result<Audit> found = audit(document.value(), options);
+  if (!found) return found.error();
+  Audited result;
+  result.name = path == "-" ? "<stdin>" : path;
+  result.audit = std::move(found).value();
+  result.file = std::move(file);
+  result.document = std::move(document).value();
+  return result;
+}
+
+// The OBJ files whose normals belong to the motion: one for each keyframe, or the mesh of a cache or of targets.
+Result<std::vector<std::string>> files_with_normals(const InputOptions& input) {
+  const auto is_obj = [](const std::string& file) {
+    const MeshReader* reader = file == "-" ? nullptr : find_mesh_reader(file);
+    return reader != nullptr && reader->name == "obj";
+  };
+  std::vector<std::string> files;
+  if (!input.base.empty()) {
+    if (is_obj(input.base)) files.push_back(input.base);
+    return files;
+  }
+  if (input.files.empty() || (input.files.size() == 1 && find_motion_reader(input.files[0]) != nullptr)) return files;
+  const auto is_cache = [](const std::string& file) {
+    const std::string path = file.substr(0, file.rfind('#'));
+    return find_cache_reader(path) != nullptr || path.ends_with(".xml") || path.ends_with(".XML");
+  };
+  if (input.files.size() == 2 && is_cache(input.files[0]) != is_cache(input.files[1])) {
+    const std::string& mesh = input.files[is_cache(input.files[0]) ? 1 : 0];
+    if (is_obj(mesh)) files.push_back(mesh);
+    return files;
+  }
+  Result<std::vector<std::string>> frames = find_frames(input.files);
+  if (!frames) return frames;
+  for (const std::string& frame : frames.value())
+    if (!is_obj(frame)) return files;
+  return frames;
+}
+
+// Normals of all keyframes where every file has some, else of keyframe 0 where that has.
+Result<SequenceNormals> read_normals(const InputOptions& input, const Topology& topology) {
+  const Result<std::vector<std::string>> files = files_with_normals(input);
+  if (!files) return files.error();
+  SequenceNormals normals;
+  for (const std::string& path : files.value()) {
+    const Result<FileBytes> file = FileBytes::open(path);
+    if (!file) return file.error();
+    Result<ObjShading> shading = read_obj_shading(file.value().bytes(), short_name(path));
+    if (!shading) return shading.error();
+    if (shading.value().topology != topology)
+      return invalid_input(path, "the faces are not those of the motion: the file has changed meanwhile");
+    if (shading.value().normal_of_corner.empty()) {
+      normals.of_keyframes.resize(std::min<std::size_t>(1, normals.of_keyframes.size()));
+      break;
+    }
+    normals.of_keyframes.push_back(std::move(shading.value().normal_of_corner));
+  }
+  return normals;
+}
+
+Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
+  if (is_one_file(options.input)) {
+    const std::string& path = options.input.files[0];
+    Result<FileBytes> opened = FileBytes::open(path);
+    if (!opened) return opened.error();
+    auto file = std::make_unique<FileBytes>(std::move(opened).value());
+    if (is_gltf(path, file->bytes())) return audit_gltf(std::move(file), options.input, how);
+    if (!options.input.animation.empty())
+      return misuse("--animation", "it chooses among those of a glTF file: name one");
+  }
+  const Result<NamedMotion> input = read_input(options.input, progress);
+  if (!input) return input.error();
+  const Motion& motion = input.value().motion;
+  const Result<SequenceNormals> normals = read_normals(options.input, motion.topology);
+  if (!normals) return normals.error();
+  const bool is_targets = !options.input.base.empty() || (motion.segments.size() > 1 && is_blend_shapes(motion));
+  Result<Audit> found = audit(motion, normals.value(), is_targets, how);
+  if (!found) return found.error();
+  Audited result;
+  result.name = input.value().name;
+  result.audit = std::move(found).value();
+  return result;
+}
+
+Result<AuditOptions> understand(const Options& options, Progress& progress) {
+  AuditOptions how;
+  if (!options.rule.empty()) {
+    const Result<AuditRule> rule = make_audit_rule(options.rule);
+    if (!rule) return misuse("--rule", rule.error().message);
+    how.rule = rule.value();
+  }
+  const Result<Weighting> weighting = make_weighting(options.weighting);
+  if (!weighting) return misuse("--weighting", weighting.error().message);
+  how.weighting = weighting.value();
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
+  if (options.samples && *options.samples < 2) return misuse("--samples", "there must be 2 or more: both ends");
+  if (options.input.world)
+    return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
+  if (const Status status = check_input(options.input); !status) return status.error();
+  how.samples = options.samples;
+  how.animation = options.input.animation;
+  how.weld = !options.no_weld;
+  how.progress = progress.callback("auditing");
+  return how;
+}
+
+int run(const Options& options) {
+  const auto fail = [](const Error& error) { return report("audit", error); };
+  Progress progress(options.common.quiet);
+  const Result<AuditOptions> how = understand(options, progress);
+  if (!how) return fail(how.error());
+  if (const Status output = check_output(options.common.output, options.common.force); !output)
+    return fail(output.error());
+  Result<Audited> audited = audit_input(options, how.value(), progress);
+  progress.clear();
+  if (!audited) return fail(audited.error());
+  audited.value().tolerance = options.tolerance;
+  if (options.input.base.empty()) audited.value().bake = words_of(options.input);
+  const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
+  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+    return fail(written.error());
+  if (audited.value().passed()) return kExitDone;
+  fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
+             audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));
+  return kExitBeyond;
+}
+
+}  // namespace
+
+void add_audit_command(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand("audit", "How wrong are the normals that a file makes hosts show");
+  command->group("Commands");
+  auto options = std::make_shared<Options>();
+  options->input.add_to(*command);
+  command
+      ->add_option("--rule", options->rule,
+                   "what a host makes of stored normals between keyframes: gltf (default for\n"
+                   "glTF), lerp, nlerp (default for the rest), slerp, step, flat")
+      ->type_name("NAME");
+  command
+      ->add_option("--weighting", options->weighting,
+                   "of the right normals: area (default), angle, uniform, area-angle, max")
+      ->type_name("NAME");
+  command
+      ->add_option("--samples", options->samples,
+                   "per segment, ends included (default 21; 5 in animations of more than\n"
+                   "32 key intervals)")
+      ->type_name("N");
+  command->add_option("--tolerance", options->tolerance, "exit with 4 if the worst error is beyond this")
+      ->type_name("DEG");
+  command->add_flag("--no-weld", options->no_weld, "sequences: vertices at one point in all keyframes stay apart");
+  command->add_flag("--json", options->json, "one JSON object");
+  options->common.add_to(*command, false);
+  command->footer(
+      "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
+      "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
+      "\nExamples:\n"
+      "  chronormal audit face.glb\n"
+      "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
+      "  chronormal audit walk/ --rule slerp --json\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace chronormal::cli

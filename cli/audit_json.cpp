@@ -1,0 +1,122 @@
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/audit_report.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kKinds[] = {"missing_normals", "wrong_at_keys",  "wrong_between", "wrong_together",
+                                  "stale_tangents",  "flat_primitive", "skin",          "baked",
+                                  "baked_keyframes"};
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json place_json(const AuditPlace& place, const char* moment) {
+  Json json;
+  if (place.mesh) json = {{"mesh", *place.mesh}, {"primitive", or_null(place.primitive)}};
+  json["vertex"] = place.vertex;
+  if (moment != nullptr) {
+    json["segment"] = place.segment;
+    json[moment] = place.at;
+  }
+  return json;
+}
+
+const char* moment_of(const AuditSubject& subject) {
+  return subject.kind == AuditSubject::Kind::kTarget && subject.mesh ? "weight" : "time";
+}
+
+void add_error(const MotionError& error, Json& json) {
+  json["worst_degrees"] = error.worst;
+  json["mean_degrees"] = error.mean();
+  json["rms_degrees"] = error.rms();
+  json["judged"] = error.judged;
+  json["no_normal"] = error.no_normal;
+  json["no_shown"] = error.no_shown;
+}
+
+Json histogram_json(const MotionError& error) {
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < kAuditBins; ++bin)
+    bins.push_back({{"from_degrees", bin == 0 ? 0 : kAuditBinEdges[bin - 1]},
+                    {"to_degrees", bin == kAuditBinEdges.size() ? 180 : kAuditBinEdges[bin]},
+                    {"pairs", error.histogram[bin]}});
+  return bins;
+}
+
+Json subject_json(const AuditSubject& subject) {
+  constexpr const char* kSubjects[] = {"target", "track", "sequence"};
+  Json json = {{"kind", kSubjects[static_cast<std::size_t>(subject.kind)]},
+               {"name", subject.name},
+               {"mesh", or_null(subject.mesh)},
+               {"target", or_null(subject.target)},
+               {"animation", or_null(subject.animation)},
+               {"node", or_null(subject.node)},
+               {"segments", subject.segments},
+               {"samples", subject.samples},
+               {"vertices", subject.vertices}};
+  add_error(subject.error, json);
+  json["worst_at_keys_degrees"] = subject.at_keys.worst;
+  json["worst_at"] = subject.error.worst > 0 ? place_json(subject.error.worst_at, moment_of(subject)) : Json();
+  json["histogram"] = histogram_json(subject.error);
+  return json;
+}
+
+Json offset_json(const AuthoredOffset& offset) {
+  return {{"mesh", or_null(offset.mesh)},
+          {"vertices", offset.vertices},
+          {"worst_degrees", offset.worst},
+          {"mean_degrees", offset.mean()},
+          {"worst_at", offset.worst > 0 ? place_json(offset.worst_at, nullptr) : Json()},
+          {"closest_weighting", weighting_name(offset.closest)},
+          {"closest_mean_degrees", offset.closest_mean},
+          {"closest_worst_degrees", offset.closest_worst}};
+}
+
+Json finding_json(const AuditFinding& finding) {
+  const bool is_weight = finding.mesh && finding.target;
+  return {{"kind", kKinds[static_cast<std::size_t>(finding.kind)]},
+          {"fault", finding.is_fault()},
+          {"mesh", or_null(finding.mesh)},
+          {"target", or_null(finding.target)},
+          {"animation", or_null(finding.animation)},
+          {"node", or_null(finding.node)},
+          {"count", finding.count},
+          {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
+          {"worst_at", finding.worst_at ? place_json(*finding.worst_at, is_weight ? "weight" : "time") : Json()}};
+}
+
+}  // namespace
+
+std::string audit_json(const Audited& input) {
+  const Audit& audit = input.audit;
+  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "audit"}, {"schema", 1}};
+  json["input"] = {{"name", input.name}};
+  json["rule"] = audit_rule_name(audit.rule);
+  json["weighting"] = weighting_name(audit.weighting);
+  json["stored_normals"] = audit.stored;
+  json["tolerance_degrees"] = or_null(input.tolerance);
+  json["passed"] = input.tolerance ? Json(input.passed()) : Json();
+  add_error(audit.error, json);
+  json["worst_subject"] = or_null(audit.worst);
+  json["worst_at"] = audit.worst ? place_json(audit.error.worst_at, moment_of(audit.subjects[*audit.worst])) : Json();
+  json["histogram"] = histogram_json(audit.error);
+  json["still"] = audit.still;
+  json["subjects"] = Json::array();
+  for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
+  json["authored_offsets"] = Json::array();
+  for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
+  json["findings"] = Json::array();
+  for (const AuditFinding& finding : audit.findings) json["findings"].push_back(finding_json(finding));
+  // File names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace chronormal::cli

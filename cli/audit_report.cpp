@@ -1,0 +1,263 @@
+#include "cli/audit_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/inspect_trouble.h"
+#include "cli/table.h"
+#include "cli/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Align = Table::Align;
+using Kind = AuditFinding::Kind;
+
+constexpr std::size_t kMostRows = 16, kLongestName = 32, kLongestBar = 40;
+constexpr double kSeen = 0.005;  // degrees: what two decimals show
+
+std::string degrees(double value) { return fmt::format("{:.2f}", value); }
+
+std::string named(std::string what, const std::string& name) {
+  return name.empty() ? what : what.append(" (").append(printable(name, kLongestName)).append(")");
+}
+
+std::string vertex_words(const Audited& input, const AuditPlace& place) {
+  if (!place.mesh || !input.document) return fmt::format("vertex {}", place.vertex);
+  return fmt::format("vertex {} of {}, primitive {}", place.vertex, mesh_label(*input.document, *place.mesh),
+                     place.primitive.value_or(0));
+}
+
+std::string node_words(const Audited& input, std::size_t node) {
+  return named(fmt::format("node {}", node), input.document->nodes()[node].name);
+}
+
+std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target) {
+  std::string name;
+  if (mesh && input.document) {
+    const std::vector<std::string>& names = input.document->meshes()[*mesh].target_names;
+    if (!names.empty()) name = names[target];
+  } else {
+    for (const AuditSubject& subject : input.audit.subjects)
+      if (subject.target == target) name = subject.name;
+  }
+  return named(fmt::format("target {}", target), name);
+}
+
+std::string animation_words(const Audited& input, std::size_t animation) {
+  return named(fmt::format("animation {}", animation), input.document->animations()[animation].name);
+}
+
+std::string subject_words(const Audited& input, const AuditSubject& subject) {
+  if (subject.kind == AuditSubject::Kind::kSequence) return "sequence";
+  if (subject.kind == AuditSubject::Kind::kTrack)
+    return animation_words(input, *subject.animation) + ", " + node_words(input, *subject.node);
+  const std::string target = target_words(input, subject.mesh, *subject.target);
+  return subject.mesh ? target + " of " + mesh_label(*input.document, *subject.mesh) : target;
+}
+
+std::string moment_words(const AuditSubject& subject, double at) {
+  return subject.kind == AuditSubject::Kind::kTarget && subject.mesh ? fmt::format("weight {:.4g}", at)
+                                                                     : fmt::format("{:.6g} s", at);
+}
+
+std::string pairs(std::size_t count) { return counted(count, "pair", "pairs"); }
+
+std::string headline(const Audited& input) {
+  const Audit& audit = input.audit;
+  std::string text = printable(input.name) + ": ";
+  if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
+  text += fmt::format("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
+                      degrees(audit.error.rms()));
+  if (input.tolerance) text += fmt::format(", {} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  text += '\n';
+  if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
+  const char* source =
+      audit.stored ? "the stored normals" : "normals that a player computes at keyframes, where none are stored";
+  if (audit.rule == AuditRule::kFlat) source = "the faces";
+  text += fmt::format("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
+                      pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
+  if (audit.still > 0)
+    text += fmt::format("  {} nothing that could be judged\n",
+                        counted(audit.still, "target or track moves", "targets or tracks move"));
+  if (audit.error.no_normal > 0)
+    text += fmt::format("  {} not judged: the normal all but vanishes there\n", pairs(audit.error.no_normal));
+  if (audit.error.no_shown > 0)
+    text += fmt::format("  {} not judged: the stored normals add up to zero\n", pairs(audit.error.no_shown));
+  return text;
+}
+
+std::string subject_table(const Audited& input) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  std::vector<std::size_t> order(subjects.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() > kMostRows) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return subjects[a].error.worst > subjects[b].error.worst; });
+    order.resize(kMostRows);
+    std::sort(order.begin(), order.end());
+  }
+  Table table;
+  table.add_column("motion", "", Align::kLeft);
+  table.add_column("worst", "degrees", Align::kRight);
+  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("rms", "degrees", Align::kRight);
+  table.add_column("at keys", "degrees", Align::kRight);
+  table.add_column("worst at", "vertex", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  table.add_column("vertices", "that move", Align::kRight);
+  table.add_column("samples", "", Align::kRight);
+  for (const std::size_t s : order) {
+    const AuditSubject& subject = subjects[s];
+    const bool some = subject.error.worst > 0;
+    table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),
+                   degrees(subject.error.rms()), degrees(subject.at_keys.worst),
+                   some ? fmt::format("{}", subject.error.worst_at.vertex) : "-",
+                   some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
+                   subject.segments > 1 ? fmt::format("{} x {}", grouped(subject.segments), subject.samples)
+                                        : fmt::format("{}", subject.samples)});
+  }
+  std::string text = table.text();
+  if (subjects.size() > kMostRows)
+    text += fmt::format("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostRows));
+  return text;
+}
+
+std::string bin_words(std::size_t bin) {
+  if (bin == 0) return fmt::format("below {:g}", kAuditBinEdges.front());
+  if (bin == kAuditBinEdges.size()) return fmt::format("{:g} and more", kAuditBinEdges.back());
+  return fmt::format("{:g} to {:g}", kAuditBinEdges[bin - 1], kAuditBinEdges[bin]);
+}
+
+std::string histogram(const MotionError& error) {
+  Table table;
+  table.add_column("error", "degrees", Align::kRight);
+  table.add_column("pairs", "", Align::kRight);
+  table.add_column("share", "%", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  const std::size_t most = *std::max_element(error.histogram.begin(), error.histogram.end());
+  for (std::size_t bin = 0; bin < kAuditBins; ++bin) {
+    const double count = static_cast<double>(error.histogram[bin]);
+    const auto bar = most > 0 ? static_cast<std::size_t>(kLongestBar * count / static_cast<double>(most) + 0.5) : 0;
+    const double share = error.judged > 0 ? 100 * count / static_cast<double>(error.judged) : 0;
+    table.add_row({bin_words(bin), grouped(error.histogram[bin]), fmt::format("{:.1f}", share),
+                   std::string(error.histogram[bin] > 0 ? std::max<std::size_t>(bar, 1) : 0, '#')});
+  }
+  return table.text();
+}
+
+std::string offset_lines(const Audited& input) {
+  std::string text;
+  std::size_t rows = 0, more = 0;
+  for (const AuthoredOffset& offset : input.audit.offsets) {
+    if (offset.vertices == 0) continue;
+    if (rows++ >= kMostRows) {
+      ++more;
+      continue;
+    }
+    text += fmt::format("  {}: mean {}, worst {} degrees from {}-weighted normals",
+                        offset.mesh ? mesh_label(*input.document, *offset.mesh) : "keyframe 0", degrees(offset.mean()),
+                        degrees(offset.worst), weighting_name(input.audit.weighting));
+    if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
+    if (offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
+      text += fmt::format("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
+                          degrees(offset.closest_mean), degrees(offset.closest_worst));
+    text += '\n';
+  }
+  if (more > 0) text += fmt::format("  ... and {} more (--json has all)\n", grouped(more));
+  return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
+}
+
+std::string finding_words(const Audited& input, const AuditFinding& found) {
+  const std::string mesh = found.mesh ? mesh_label(*input.document, *found.mesh) : "";
+  std::string who = mesh;
+  if (found.target) {
+    who = target_words(input, found.mesh, *found.target);
+    if (found.mesh) who += " of " + mesh;
+  } else if (found.animation) {
+    who = animation_words(input, *found.animation) + ", " + node_words(input, *found.node);
+  } else if (!found.mesh) {
+    who = "sequence";
+  }
+  const std::string worst = degrees(found.degrees);
+  switch (found.kind) {
+    case Kind::kMissingNormals:
+      return fmt::format("{} moves positions and no normals ({}): {}", who,
+                         counted(found.count, "primitive", "primitives"),
+                         found.is_fault() ? "off by up to " + worst + " degrees" : "none has to turn");
+    case Kind::kWrongAtKeys:
+      return fmt::format("{}: {} contradict the geometry at {}, by up to {} degrees", who,
+                         input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals",
+                         found.target ? "weight 1" : "keyframes", worst);
+    case Kind::kWrongBetween:
+      return fmt::format("{}: right at {}, and off by up to {} degrees on the way", who,
+                         found.target && found.mesh ? "weights 0 and 1" : "keyframes", worst);
+    case Kind::kWrongTogether:
+      return fmt::format("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+    case Kind::kStaleTangents:
+      return fmt::format("{}: {} up to {} degrees from perpendicular to the right normal", who,
+                         counted(found.count, "tangent is", "tangents are"), worst);
+    case Kind::kFlat:
+      return fmt::format("{}: {} no normals, and {} shown flat, which is right", who,
+                         counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
+    case Kind::kSkinned:
+      return fmt::format("{}: {} a skin, which turns shown and right normals alike", who,
+                         counted(found.count, "node has", "nodes have"));
+    case Kind::kBaked:
+      return fmt::format("{}: baked by chronormal, with {}", who,
+                         counted(found.count, "extra target", "extra targets"));
+    case Kind::kSequenceTargets:
+      return fmt::format("{}: {} baked keyframes: only animations were judged", who,
+                         counted(found.count, "target is one of its", "targets are"));
+  }
+  return "";
+}
+
+std::string finding_lines(const Audited& input, bool faults) {
+  std::string text;
+  std::size_t rows = 0;
+  for (const AuditFinding& found : input.audit.findings) {
+    if (found.is_fault() != faults || rows++ >= kMostRows) continue;
+    text += "  " + finding_words(input, found);
+    if (found.worst_at) text += " (" + vertex_words(input, *found.worst_at) + ")";
+    text += '\n';
+  }
+  if (rows > kMostRows) text += fmt::format("  ... and {} more (--json has all)\n", grouped(rows - kMostRows));
+  if (text.empty()) return text;
+  return (faults ? "\nFaults:\n" : "\nNotes:\n") + text;
+}
+
+std::string advice(const Audited& input) {
+  if (input.audit.subjects.empty()) return "";
+  if (input.audit.error.worst <= kAuditFault)
+    return fmt::format("\nnothing to do: no normal is off by more than {:g} degree\n", kAuditFault);
+  if (input.bake.empty())
+    return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
+  return fmt::format("\nto write normals that are right at every instant: chronormal bake {} -o baked.glb\n",
+                     input.bake);
+}
+
+}  // namespace
+
+std::string worst_label(const Audited& input) {
+  if (!input.audit.worst) return "";
+  const AuditSubject& subject = input.audit.subjects[*input.audit.worst];
+  const AuditPlace& place = subject.error.worst_at;
+  std::string motion = subject.kind == AuditSubject::Kind::kTarget && subject.mesh
+                           ? target_words(input, subject.mesh, *subject.target)
+                           : subject_words(input, subject);
+  return fmt::format("{}, {} at {}", vertex_words(input, place), motion, moment_words(subject, place.at));
+}
+
+std::string audit_text(const Audited& input) {
+  std::string text = headline(input);
+  if (!input.audit.subjects.empty()) text += '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
+  return text + offset_lines(input) + finding_lines(input, true) + finding_lines(input, false) + advice(input);
+}
+
+}  // namespace chronormal::cli

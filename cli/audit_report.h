@@ -1,0 +1,38 @@
+/// The result of `audit` in its two forms.
+#ifndef CLI_AUDIT_REPORT_H_
+#define CLI_AUDIT_REPORT_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/workflow/audit.h"
+
+namespace chronormal::cli {
+
+/// One input and what was found in it.
+struct Audited {
+  std::string name;
+  Audit audit;
+  std::unique_ptr<FileBytes> file;       ///< that the document lies in
+  std::optional<GltfDocument> document;  ///< of a glTF file
+  std::optional<double> tolerance;       ///< degrees; nothing: none was asked for
+  std::string bake;                      ///< the inputs as words of a command line; empty: bake takes none such
+
+  [[nodiscard]] bool passed() const { return !tolerance || audit.error.worst <= *tolerance; }
+};
+
+/// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.
+[[nodiscard]] std::string audit_text(const Audited& input);
+
+/// One JSON object with everything, as docs/cli.md has it.
+[[nodiscard]] std::string audit_json(const Audited& input);
+
+/// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
+[[nodiscard]] std::string worst_label(const Audited& input);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_AUDIT_REPORT_H_

@@ -1,0 +1,180 @@
+/// What a host shows against what it should show: the errors of stored normals over a motion.
+///
+/// Shown at a sample is what the rule makes of the stored normals; what should be shown is n(t), area-weighted or by
+/// another weighting, from the positions at that time, in double. An author may give normals of his own (another
+/// weighting, a bevel); that offset is kept and is no fault:
+///
+///     authored offset    the angle between a stored base normal and the weighted normal of the geometry
+///     motion error       the angle between what is shown at a sample and what should be, the offset kept
+///
+///     glTF       the rotation from n(0) to the stored N, fixed per vertex (workflow/gltf_shading.h)
+///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
+///                offset grows by is an error. Between two keyframes the two rotations are blended
+///
+/// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
+///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says.
+/// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
+///            Not judged but counted: pairs whose n(t) is below 1e-4 of the largest control normal of its element over
+///            the motion, so that its direction means nothing, and pairs for which the sum of stored normals is zero.
+/// Units      degrees; weights; seconds.
+/// Threads    on all cores; the same bits on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_H_
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/weighting.h"
+
+namespace chronormal {
+
+/// What a host makes of stored normals between two keyframes.
+enum class AuditRule {
+  kGltf,   ///< normalize(N + sum w D), with the file's deltas, in float32
+  kLerp,   ///< a straight line between the stored normals of the keyframes
+  kNlerp,  ///< the same between their unit vectors
+  kSlerp,  ///< the arc between them
+  kStep,   ///< those of the keyframe before, up to the next one
+  kFlat,   ///< face normals of the mesh as it is, instead of stored ones
+};
+
+[[nodiscard]] std::string_view audit_rule_name(AuditRule rule) noexcept;
+/// Errors: kUsage, with all names.
+[[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
+
+/// Errors below this are no fault of a file: normals are stored in 8 bits, too.
+inline constexpr double kAuditFault = 1;  // degrees
+
+/// Bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
+inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
+inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
+
+struct AuditOptions {
+  std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
+  std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals
+  std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
+  Weighting weighting = Weighting::kArea;  ///< of the right normals: that of the program which the file comes from
+  bool weld = true;                        ///< sequences: vertices at one point in all keyframes are one
+  /// Called with the number of segments.
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+
+/// A vertex at a moment, as the file counts.
+struct AuditPlace {
+  std::optional<std::size_t> mesh, primitive;  ///< of a glTF file
+  std::size_t vertex = 0;                      ///< of the primitive, or of the motion
+  std::size_t segment = 0;                     ///< of the subject
+  double at = 0;                               ///< weight of the target, or time
+};
+
+struct MotionError {
+  std::size_t judged = 0;  ///< pairs
+  double sum = 0, sum_of_squares = 0;
+  double worst = 0;
+  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+  std::array<std::size_t, kAuditBins> histogram{};
+  std::size_t no_normal = 0;  ///< not judged: n(t) too small
+  std::size_t no_shown = 0;   ///< not judged: the stored normals add up to zero
+
+  [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
+  [[nodiscard]] double rms() const noexcept {
+    return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
+  }
+  void add(double degrees, const AuditPlace& place) noexcept;
+  void add(const MotionError& other) noexcept;
+};
+
+/// One motion: a target from weight 0 to 1, the weight track of a node, or a sequence.
+struct AuditSubject {
+  enum class Kind { kTarget, kTrack, kSequence };
+
+  Kind kind = Kind::kTarget;
+  std::string name;                                   ///< of the target or the animation; may be empty
+  std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
+  std::optional<std::size_t> animation, track, node;  ///< of a track
+  std::size_t segments = 0, samples = 0;              ///< samples of each segment
+  std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
+  MotionError error;
+  MotionError at_keys;  ///< of the same, those at both ends of each segment
+};
+
+/// How far stored base normals are from the geometry.
+struct AuthoredOffset {
+  std::optional<std::size_t> mesh;  ///< of a glTF file
+  std::size_t vertices = 0;         ///< that have both
+  double sum = 0, worst = 0;
+  AuditPlace worst_at;
+  /// The weighting that comes closest to the stored normals, and how close.
+  Weighting closest = Weighting::kArea;
+  double closest_mean = 0, closest_worst = 0;
+
+  [[nodiscard]] double mean() const noexcept { return vertices > 0 ? sum / static_cast<double>(vertices) : 0; }
+};
+
+struct AuditFinding {
+  enum class Kind {
+    kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
+    kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
+    kWrongBetween,    ///< right there, and off on the way
+    kWrongTogether,   ///< targets right one by one, and off where an animation has several at once
+    kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
+    kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
+    kSkinned,         ///< a note: skins turn the shown and the right normal alike
+    kBaked,           ///< a note: a bake was here
+    kSequenceTargets  ///< a note: baked keyframes, which mean nothing one by one
+  };
+  Kind kind;
+  std::optional<std::size_t> mesh, target, node, animation;
+  std::size_t count = 0;               ///< primitives, targets or nodes, as the kind has it
+  double degrees = 0;                  ///< the worst
+  std::optional<AuditPlace> worst_at;  ///< where there is one
+
+  /// Normals may be missing where the motion does not turn them.
+  [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kFlat && degrees > kAuditFault; }
+};
+
+struct Audit {
+  AuditRule rule = AuditRule::kGltf;
+  Weighting weighting = Weighting::kArea;
+  /// Whether normals are stored for every keyframe; else a player computes them there.
+  bool stored = true;
+  std::vector<AuditSubject> subjects;
+  std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
+  MotionError error;      ///< of all subjects
+  std::optional<std::size_t> worst;  ///< the subject with the worst error
+  std::vector<AuthoredOffset> offsets;
+  std::vector<AuditFinding> findings;  ///< faults first
+};
+
+/// Audits the targets of all meshes, each alone, and all weight tracks. Extra targets of a bake are no subjects: with
+/// each target alone they get the products that they stand for, and a track gives them what the file says. A file in
+/// which nothing moves has no subjects.
+/// Errors: of GltfDocument and read_gltf_shading(); kUsage for an animation that is not there, and fewer than 2
+/// samples.
+[[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
+
+/// Normals that files store beside a motion, (corners, 3) each, of any length.
+struct SequenceNormals {
+  /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
+  std::vector<std::vector<float>> of_keyframes;
+};
+
+/// Audits a sequence, or targets over a base (motion/motion.h), each segment of which is a subject then. Without stored
+/// normals, a player computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
+/// between. Errors: kUsage for the rule gltf, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
+/// Precondition: the motion is valid
+[[nodiscard]] Result<Audit> audit(const Motion& motion, const SequenceNormals& normals, bool is_targets,
+                                  const AuditOptions& options);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_H_

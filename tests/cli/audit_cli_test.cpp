@@ -1,0 +1,190 @@
+// What scripts and people get from `audit`: the verdict, the tables, the JSON, exit codes.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/gltf_builder.h"
+#include "tests/support/process.h"
+#include "tests/support/shaded_mesh.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+using Json = nlohmann::json;
+
+class AuditCli : public testing::Test {
+ protected:
+  AuditCli() {
+    folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+    folder_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nvn 0 -1 0\nf 1//1 2//1 3//1\n");
+    folder_.write("stale.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+    folder_.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    test::GltfBuilder builder = test::hinge().file();
+    builder.json["meshes"][0]["name"] = "Hinge";
+    builder.json["meshes"][0]["extras"]["targetNames"] = {"fold\x1b[2J"};
+    builder.add_track(builder.add_animation("swing"), 0, std::vector<float>{0, 2}, std::vector<float>{0, 1});
+    folder_.write("hinge.glb", builder.glb());
+  }
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
+    return run_shell(std::string(CHRONORMAL_PROGRAM) + " audit " + arguments, folder_.path(), input);
+  }
+  [[nodiscard]] std::string text_of(const std::string& arguments, const std::string& input = "") const {
+    const ProcessResult result = run(arguments, input);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    return result.out;
+  }
+  [[nodiscard]] Json json_of(const std::string& arguments, const std::string& input = "") const {
+    return Json::parse(text_of(arguments + " --json", input));
+  }
+  void expect_error(const std::string& arguments, int exit_code, const std::string& word) const {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+void expect_words(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << "\nin\n" << text;
+}
+
+TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
+  const std::string text = text_of("hinge.glb");
+  EXPECT_EQ(text.find("hinge.glb: worst 90.00 degrees, mean "), 0U) << text;
+  expect_words(text,
+               {"vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n",
+                "shown by the rule gltf, from the stored normals; 126 pairs judged in 2 motions\n",
+                "animation 0 (swing), node 0", "90 and more",
+                "target 0 (fold\\x1b[2J) of Hinge moves positions and no normals (1 primitive): off by up to 90.00"});
+  const std::string last =
+      "\nto write normals that are right at every instant: chronormal bake hinge.glb -o baked.glb\n";
+  ASSERT_GT(text.size(), last.size());
+  EXPECT_EQ(text.substr(text.size() - last.size()), last);
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+}
+
+TEST_F(AuditCli, tolerance_is_a_gate) {
+  const ProcessResult beyond = run("hinge.glb --tolerance 89.9");
+  EXPECT_EQ(beyond.exit_code, 4);
+  expect_words(beyond.out, {"worst 90.00 degrees, ", ", beyond 89.9 degrees\n"});
+  EXPECT_EQ(beyond.err,
+            "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
+            "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
+  expect_words(text_of("hinge.glb --tolerance 90.1"), {", within 90.1 degrees\n"});
+  const ProcessResult json = run("hinge.glb --tolerance 1 --json");
+  EXPECT_EQ(json.exit_code, 4);
+  EXPECT_EQ(Json::parse(json.out)["passed"], false);
+  EXPECT_EQ(json_of("hinge.glb --tolerance 91")["passed"], true);
+  EXPECT_EQ(json_of("hinge.glb")["passed"], Json());
+}
+
+TEST_F(AuditCli, json_is_one_object_with_schema_1) {
+  const Json json = json_of("hinge.glb --samples 2");
+  EXPECT_EQ(json["command"], "audit");
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["input"]["name"], "hinge.glb");
+  EXPECT_EQ(json["rule"], "gltf");
+  EXPECT_EQ(json["weighting"], "area");
+  EXPECT_EQ(json["judged"], 12);
+  EXPECT_DOUBLE_EQ(json["worst_degrees"], 90);
+  EXPECT_DOUBLE_EQ(json["mean_degrees"], 30);
+  EXPECT_EQ(json["worst_at"], (Json{{"mesh", 0}, {"primitive", 0}, {"vertex", 3}, {"segment", 0}, {"weight", 1.0}}));
+  EXPECT_EQ(json["histogram"].size(), 10U);
+  ASSERT_EQ(json["subjects"].size(), 2U);
+  EXPECT_EQ(json["subjects"][0]["kind"], "target");
+  EXPECT_EQ(json["subjects"][1]["kind"], "track");
+  EXPECT_EQ(json["subjects"][1]["name"], "swing");
+  EXPECT_DOUBLE_EQ(json["subjects"][1]["worst_at"]["time"], 2);
+  ASSERT_EQ(json["findings"].size(), 1U);
+  EXPECT_EQ(json["findings"][0]["kind"], "missing_normals");
+  EXPECT_EQ(json["findings"][0]["fault"], true);
+  EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
+}
+
+TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_player) {
+  Json json = json_of("a.obj b.obj");
+  EXPECT_EQ(json["rule"], "nlerp");
+  EXPECT_EQ(json["stored_normals"], true);
+  EXPECT_LT(json["worst_degrees"], 1e-4);
+  expect_words(text_of("a.obj b.obj"), {"nothing to do: no normal is off by more than 1 degree\n"});
+  json = json_of("a.obj stale.obj");
+  EXPECT_NEAR(json["worst_degrees"], 90, 1e-9);
+  EXPECT_EQ(json["findings"][0]["kind"], "wrong_at_keys");
+  json = json_of("a.obj bare.obj --rule slerp");
+  EXPECT_EQ(json["stored_normals"], false);
+  EXPECT_GT(json["worst_degrees"], 4);
+  expect_words(
+      text_of("bare.obj a.obj --rule slerp"),
+      {"normals that a player computes at keyframes, where none are stored", "right at keyframes, and off by up to"});
+}
+
+TEST_F(AuditCli, built_in_morphs_and_targets_of_a_base_are_inputs) {
+  expect_words(text_of("--sample twist --samples 3"), {"twist: worst ", "chronormal bake --sample twist"});
+  expect_words(text_of("--base a.obj b.obj bare.obj --rule slerp"),
+               {"put the targets into a glTF file, and bake that\n"});
+  const Json json = json_of("--base a.obj b.obj bare.obj");
+  ASSERT_EQ(json["subjects"].size(), 2U);
+  EXPECT_EQ(json["subjects"][1]["target"], 1);
+  EXPECT_EQ(json["subjects"][0]["name"], "b");
+}
+
+TEST_F(AuditCli, file_comes_on_standard_input_and_leaves_by_o) {
+  const std::string bytes = test::read_whole(folder_ / "hinge.glb");
+  expect_words(text_of("-", bytes), {"<stdin>: worst 90.00"});
+  EXPECT_EQ(text_of("hinge.glb --json -o out.json"), "");
+  EXPECT_EQ(Json::parse(test::read_whole(folder_ / "out.json"))["schema"], 1);
+  expect_error("hinge.glb -o out.json", 1, "out.json");
+}
+
+TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_every_gate) {
+  test::ShadedMesh mesh = test::hinge();
+  mesh.targets.clear();
+  folder_.write("still.glb", mesh.file().glb());
+  const std::string text = text_of("still.glb --tolerance 0");
+  EXPECT_EQ(text, "still.glb: nothing to judge: no target and no animation moves stored normals\n");
+  mesh = test::hinge();
+  mesh.normals.clear();
+  folder_.write("flat.glb", mesh.file().glb());
+  expect_words(text_of("flat.glb"), {"nothing to judge", "has no normals, and is shown flat, which is right"});
+}
+
+TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
+  test::ShadedMesh mesh = test::hinge();
+  mesh.targets.resize(20, mesh.targets[0]);
+  folder_.write("many.glb", mesh.file().glb());
+  expect_words(text_of("many.glb"), {"... and 4 more with smaller errors (--json has all)\n"});
+  EXPECT_EQ(json_of("many.glb")["subjects"].size(), 20U);
+}
+
+TEST_F(AuditCli, errors_say_what_is_wrong) {
+  expect_error("", 2, "nothing to read");
+  expect_error("missing.glb", 1, "missing.glb");
+  expect_error("a.obj", 3, "two frames");
+  expect_error("hinge.glb --rule cubic", 2, "--rule: there is no rule 'cubic'");
+  expect_error("a.obj b.obj --rule gltf", 2, "the rule gltf");
+  expect_error("hinge.glb --weighting mass", 2, "--weighting");
+  expect_error("hinge.glb --samples 1", 2, "--samples");
+  expect_error("hinge.glb --tolerance -1", 2, "--tolerance");
+  expect_error("hinge.glb --tolerance nan", 2, "--tolerance");
+  expect_error("hinge.glb --animation walk", 2, "walk");
+  expect_error("a.obj b.obj --animation 0", 2, "--animation");
+  expect_error("hinge.glb --world", 2, "--world");
+  folder_.write("broken.glb", "glTF\x02");
+  expect_error("broken.glb", 3, "broken.glb");
+  test::GltfBuilder builder = test::hinge().file();
+  builder.json["meshes"][0]["extras"]["chronormal"] = {{"version", 7}};
+  folder_.write("later.glb", builder.glb());
+  expect_error("later.glb", 3, "/meshes/0/extras/chronormal/version");
+}
+
+}  // namespace
+}  // namespace chronormal

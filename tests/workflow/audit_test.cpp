@@ -1,0 +1,672 @@
+#include "chronormal/workflow/audit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/parallel.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/shaded_mesh.h"
+
+namespace chronormal {
+namespace {
+
+using test::GltfBuilder;
+using test::GltfFixture;
+using test::hinge;
+using test::random_sheet;
+using test::Real;
+using test::ShadedMesh;
+using test::Vector;
+using Json = GltfBuilder::Json;
+using Kind = AuditFinding::Kind;
+
+Audit audit_of(const GltfBuilder& builder, const AuditOptions& options = {}) {
+  const GltfFixture fixture(builder);
+  EXPECT_TRUE(fixture.ok()) << fixture.error();
+  Result<Audit> result = audit(*fixture, options);
+  EXPECT_TRUE(result.ok()) << result.error().text();
+  return std::move(result).value();
+}
+
+std::vector<Kind> kinds_of(const Audit& audit) {
+  std::vector<Kind> kinds;
+  for (const AuditFinding& finding : audit.findings) kinds.push_back(finding.kind);
+  return kinds;
+}
+
+// Moves every vertex by what a function says of its place.
+ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(const Vector&)>& delta) {
+  ShadedMesh::Target target;
+  for (std::size_t v = 0; v < mesh.vertices(); ++v)
+    for (const Real c : delta(test::vector_at(mesh.positions, v))) target.positions.push_back(static_cast<float>(c));
+  return target;
+}
+
+// ---- by hand
+
+TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
+  // Vertex 0 has the face that stays; 1 and 2 the sum of a face up and one sideways; 3 has the one that folds.
+  const Audit result = audit_of(hinge().file(), {.samples = 2});
+  ASSERT_EQ(result.subjects.size(), 1U);
+  const AuditSubject& subject = result.subjects[0];
+  EXPECT_EQ(subject.kind, AuditSubject::Kind::kTarget);
+  EXPECT_EQ(subject.vertices, 3U);
+  EXPECT_EQ(subject.error.judged, 6U);
+  EXPECT_NEAR(subject.error.worst, 90, 1e-12);
+  EXPECT_NEAR(subject.error.mean(), (45 + 45 + 90) / 6.0, 1e-12);
+  EXPECT_NEAR(subject.error.rms(), std::sqrt((2 * 45.0 * 45.0 + 90.0 * 90.0) / 6), 1e-12);
+  EXPECT_EQ(subject.error.worst_at.vertex, 3U);
+  EXPECT_EQ(subject.error.worst_at.at, 1);
+  EXPECT_EQ(subject.error.histogram[0], 3U);
+  EXPECT_EQ(subject.error.histogram[8] + subject.error.histogram[7], 2U);  // 45 lies on an edge
+  EXPECT_EQ(subject.error.histogram[9] + subject.error.histogram[8], 3U - subject.error.histogram[7]);
+  EXPECT_EQ(result.worst, 0U);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals}));
+  EXPECT_EQ(result.findings[0].count, 1U);
+  EXPECT_NEAR(result.findings[0].degrees, 90, 1e-12);
+}
+
+TEST(Audit, halfway_is_where_the_drawing_has_it) {
+  // At weight 1/2 the folding face has the corner (1, 0, 1): its normal is (-1, 0, 1), as long as the drawing says.
+  const Audit result = audit_of(hinge().file(), {.samples = 3});
+  EXPECT_NEAR(result.error.mean(), (45 + 45 + 90 + 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi) / 9, 1e-12);
+}
+
+TEST(Audit, flat_rule_shows_faces) {
+  // At weight 1 the edge vertices show a face at 45 degrees from their sum, on both sides; the others are right.
+  const Audit result = audit_of(hinge().file(), {.rule = AuditRule::kFlat, .samples = 2});
+  EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 twice, 3 once
+  EXPECT_NEAR(result.error.sum, 4 * 45, 1e-12);
+}
+
+// ---- theorems
+
+TEST(Audit, rigid_translation_has_no_error) {
+  ShadedMesh mesh = random_sheet(1, 5, 0, 0.4);
+  mesh.targets.push_back(target_of(mesh, [](const Vector&) { return Vector{3, -1, 2}; }));
+  const Audit result = audit_of(mesh.file());
+  EXPECT_EQ(result.error.judged, 25U * 21);
+  EXPECT_LT(result.error.worst, 1e-4);
+  EXPECT_TRUE(std::none_of(result.findings.begin(), result.findings.end(), [](auto& f) { return f.is_fault(); }));
+}
+
+TEST(Audit, uniform_scaling_has_no_error) {
+  ShadedMesh mesh = random_sheet(2, 5, 0, 0.4);
+  mesh.targets.push_back(target_of(mesh, [](const Vector& p) { return p; }));
+  EXPECT_LT(audit_of(mesh.file()).error.worst, 1e-4);
+}
+
+TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_but_the_offset_does) {
+  ShadedMesh mesh = random_sheet(3, 5, 0, 0);
+  mesh.targets.push_back(target_of(mesh, [](const Vector&) { return Vector{0, 0, 1}; }));
+  const Audit straight = audit_of(mesh.file());
+  EXPECT_LT(straight.offsets[0].worst, 1e-4);
+  ShadedMesh tilted = random_sheet(3, 5, 0, 0.6);
+  tilted.targets = mesh.targets;
+  const Audit result = audit_of(tilted.file());
+  EXPECT_LT(result.error.worst, 1e-4);
+  EXPECT_GT(result.offsets[0].worst, 10);
+  Real sum = 0;
+  for (std::size_t v = 0; v < tilted.vertices(); ++v)
+    sum += test::degrees_between(test::vector_at(tilted.normals, v), tilted.normal(v, {0}));
+  EXPECT_NEAR(result.offsets[0].mean(), static_cast<double>(sum) / 25, 1e-9);
+}
+
+TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
+  // N = c0, D = c1 and C = c2 over |c0|, of each vertex: what a bake writes, here from three normals of the oracle.
+  ShadedMesh mesh = random_sheet(4, 5, 1, 0);
+  ShadedMesh::Target extra;
+  extra.positions.assign(mesh.positions.size(), 0);
+  mesh.targets[0].normals.clear();
+  for (std::size_t v = 0; v < mesh.vertices(); ++v) {
+    const Vector n0 = mesh.normal(v, {0}), half = mesh.normal(v, {0.5}), n1 = mesh.normal(v, {1});
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Real quadratic = 2 * (n0[c] - 2 * half[c] + n1[c]), linear = n1[c] - n0[c] - quadratic;
+      mesh.targets[0].normals.push_back(static_cast<float>(linear / test::length_of(n0)));
+      extra.normals.push_back(static_cast<float>(quadratic / test::length_of(n0)));
+    }
+  }
+  EXPECT_GT(audit_of(mesh.file()).error.worst, 0.1);
+  mesh.targets.push_back(extra);
+  GltfBuilder builder = mesh.file();
+  builder.json["meshes"][0]["extras"]["chronormal"] = {
+      {"version", 1}, {"encode", "exact"}, {"sequence", false}, {"extras", {{{"target", 1}, {"factors", {0, 0}}}}}};
+  const Audit result = audit_of(builder);
+  ASSERT_EQ(result.subjects.size(), 1U);  // an extra target is no subject
+  EXPECT_LT(result.error.worst, 1e-3);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked}));
+  EXPECT_EQ(result.findings[0].count, 1U);
+}
+
+// ---- against an oracle
+
+void expect_same(const MotionError& error, const std::vector<Real>& expected) {
+  ASSERT_EQ(error.judged, expected.size());
+  Real sum = 0, squares = 0, worst = 0;
+  for (const Real e : expected) {
+    sum += e;
+    squares += e * e;
+    worst = std::max(worst, e);
+  }
+  const auto count = static_cast<Real>(expected.size());
+  constexpr double kFloat = 2e-4;  // shown normals are summed in float32
+  EXPECT_NEAR(error.mean(), static_cast<double>(sum / count), kFloat);
+  EXPECT_NEAR(error.rms(), static_cast<double>(std::sqrt(squares / count)), kFloat);
+  EXPECT_NEAR(error.worst, static_cast<double>(worst), kFloat);
+  const double edges[] = {0, 0.1, 0.5, 1, 2, 5, 10, 25, 45, 90, 181};
+  for (std::size_t bin = 0; bin < 10; ++bin) {
+    const auto inside = [&](Real e) { return e >= edges[bin] && e < edges[bin + 1]; };
+    const auto in_bin = std::count_if(expected.begin(), expected.end(), inside);
+    EXPECT_NEAR(static_cast<double>(error.histogram[bin]), static_cast<double>(in_bin), 1) << edges[bin];
+  }
+}
+
+TEST(Audit, targets_alone_have_the_errors_of_an_oracle) {
+  for (std::uint64_t seed = 10; seed < 14; ++seed) {
+    const ShadedMesh mesh = random_sheet(seed, 5, 3, 0.3);
+    const Audit result = audit_of(mesh.file(), {.samples = 6});
+    ASSERT_EQ(result.subjects.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<Real> expected;
+      for (std::size_t v = 0; v < mesh.vertices(); ++v) {
+        for (int i = 0; i < 6; ++i) {
+          std::vector<double> weights(3);
+          weights[k] = i / 5.0;
+          expected.push_back(mesh.error(v, weights));
+        }
+      }
+      expect_same(result.subjects[k].error, expected);
+      const AuditPlace& at = result.subjects[k].error.worst_at;
+      std::vector<double> weights(3);
+      weights[k] = at.at;
+      EXPECT_NEAR(static_cast<double>(mesh.error(at.vertex, weights)), result.subjects[k].error.worst, 2e-4);
+      EXPECT_EQ(at.mesh, 0U);
+      EXPECT_EQ(at.primitive, 0U);
+    }
+  }
+}
+
+// Weights of a cubic spline between two keys, as appendix C of the specification has it.
+double hermite(double t, double v0, double out0, double in1, double v1, double td) {
+  const double t2 = t * t, t3 = t2 * t;
+  return (2 * t3 - 3 * t2 + 1) * v0 + td * (t3 - 2 * t2 + t) * out0 + (-2 * t3 + 3 * t2) * v1 + td * (t3 - t2) * in1;
+}
+
+TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
+  const ShadedMesh mesh = random_sheet(20, 4, 2, 0.2);
+  GltfBuilder builder = mesh.file();
+  const std::vector<float> times = {0.5F, 1, 3};
+  const double weights[3][2] = {{0, 0.25}, {1, 0.5}, {-0.5, 1.25}};
+  builder.add_track(builder.add_animation("linear"), 0, times, std::vector<float>{0, 0.25F, 1, 0.5F, -0.5F, 1.25F});
+  builder.add_track(builder.add_animation("step"), 0, times, std::vector<float>{0, 0.25F, 1, 0.5F, -0.5F, 1.25F},
+                    "STEP");
+  builder.add_track(builder.add_animation("cubic"), 0, times,
+                    std::vector<float>{0, 0, 0, 0.25F, 1, -1, 2, 1, 1, 0.5F, -1, 0.5F, 3, 1, -0.5F, 1.25F, 0, 0},
+                    "CUBICSPLINE");
+  const double out[2][2] = {{1, -1}, {-1, 0.5}}, in[2][2] = {{2, 1}, {3, 1}};
+  const Audit result = audit_of(builder, {.samples = 4});
+  ASSERT_EQ(result.subjects.size(), 5U);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AuditSubject& subject = result.subjects[2 + a];
+    EXPECT_EQ(subject.kind, AuditSubject::Kind::kTrack);
+    EXPECT_EQ(subject.animation, a);
+    EXPECT_EQ(subject.node, 0U);
+    EXPECT_EQ(subject.segments, 2U);
+    std::vector<Real> expected;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (int i = 0; i < 4; ++i) {
+        const double t = i / 3.0, td = times[s + 1] - times[s];
+        std::vector<double> w(2);
+        for (std::size_t k = 0; k < 2; ++k) {
+          if (a == 0) w[k] = (1 - t) * weights[s][k] + t * weights[s + 1][k];
+          if (a == 1) w[k] = weights[s][k];
+          if (a == 2) w[k] = hermite(t, weights[s][k], out[s][k], in[s][k], weights[s + 1][k], td);
+        }
+        for (std::size_t v = 0; v < mesh.vertices(); ++v) expected.push_back(mesh.error(v, w));
+      }
+    }
+    expect_same(subject.error, expected);
+    EXPECT_GE(subject.error.worst_at.at, 0.5);
+    EXPECT_LE(subject.error.worst_at.at, 3);
+  }
+}
+
+TEST(Audit, angle_weighting_judges_by_angles) {
+  // Around vertex 0 a wide face and a narrow one, of which the target lifts the far corner.
+  ShadedMesh mesh;
+  mesh.corners = {0, 1, 2, 0, 2, 3};
+  mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 4, 0};
+  for (int v = 0; v < 4; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
+  mesh.targets = {{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2}, {}, {}}};
+  const Audit result = audit_of(mesh.file(), {.samples = 2, .weighting = Weighting::kAngle});
+  const auto unit_normal = [](Vector a, Vector b) { return test::unit_of(test::crossed(a, b)); };
+  const Vector x = {1, 0, 0}, y = {0, 1, 0}, far = {-1, 4, 2};
+  const auto radians = [](const Vector& a, const Vector& b) {
+    return std::atan2(test::length_of(test::crossed(a, b)), test::dotted(a, b));
+  };
+  Vector sum = test::plus({0, 0, 0}, unit_normal(x, y), radians(x, y));
+  sum = test::plus(sum, unit_normal(y, far), radians(y, far));
+  const Vector up = {0, 0, 1};
+  const Real at_0 = test::degrees_between(up, sum), at_3 = test::degrees_between(up, unit_normal(y, far));
+  Vector sum_2 = test::plus({0, 0, 0}, unit_normal(x, y), radians({0, -1, 0}, {1, -1, 0}));
+  sum_2 = test::plus(sum_2, unit_normal(y, far), radians({0, -1, 0}, {-1, 3, 2}));
+  const Real at_2 = test::degrees_between(up, sum_2);
+  EXPECT_NEAR(result.error.sum, static_cast<double>(at_0 + at_2 + at_3), 1e-9);
+}
+
+TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
+  ShadedMesh mesh = random_sheet(5, 6, 1, 0);
+  // Every face counts alike around a vertex.
+  for (std::size_t v = 0; v < mesh.vertices(); ++v) {
+    Vector sum = {0, 0, 0};
+    for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+      if (mesh.corners[c] != v) continue;
+      const std::size_t f = c - c % 3;
+      const Vector p = test::vector_at(mesh.positions, mesh.corners[f]);
+      const Vector e = test::plus(test::vector_at(mesh.positions, mesh.corners[f + 1]), p, -1);
+      const Vector g = test::plus(test::vector_at(mesh.positions, mesh.corners[f + 2]), p, -1);
+      sum = test::plus(sum, test::unit_of(test::crossed(e, g)));
+    }
+    const Vector stored = test::unit_of(sum);
+    for (std::size_t c = 0; c < 3; ++c) mesh.normals[3 * v + c] = static_cast<float>(stored[c]);
+  }
+  const Audit result = audit_of(mesh.file());
+  ASSERT_EQ(result.offsets.size(), 1U);
+  EXPECT_EQ(result.offsets[0].closest, Weighting::kUniform);
+  EXPECT_LT(result.offsets[0].closest_worst, 1e-4);
+  EXPECT_GT(result.offsets[0].worst, 0.1);
+}
+
+// ---- what is not judged
+
+TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
+  // The face of vertex 3 has no area at weight 1/2, where vertex 3 crosses the edge, and points down after it.
+  ShadedMesh mesh = hinge();
+  mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
+  const Audit result = audit_of(mesh.file(), {.samples = 3});
+  // At weight 1 the two faces around the edge cancel: 1 and 2 have no normal there either.
+  EXPECT_EQ(result.error.no_normal, 3U);
+  EXPECT_EQ(result.error.judged, 6U);
+  EXPECT_NEAR(result.error.sum, 180, 1e-9);
+}
+
+TEST(Audit, stored_normals_that_add_up_to_zero_are_counted_and_not_judged) {
+  ShadedMesh mesh = hinge();
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1};
+  const Audit result = audit_of(mesh.file(), {.samples = 2});
+  EXPECT_EQ(result.error.no_shown, 1U);
+  EXPECT_EQ(result.error.judged, 5U);
+  EXPECT_NEAR(result.error.worst, 45, 1e-12);
+}
+
+TEST(Audit, deltas_of_normals_alone_are_motion_of_what_is_shown) {
+  ShadedMesh mesh = hinge();
+  mesh.targets[0] = {std::vector<float>(12, 0), {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {}};
+  const Audit result = audit_of(mesh.file(), {.samples = 2});
+  EXPECT_EQ(result.error.judged, 2U);
+  EXPECT_NEAR(result.error.worst, 45, 1e-5);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongAtKeys}));
+}
+
+TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
+  ShadedMesh mesh = hinge();
+  mesh.targets[0].positions.assign(12, 0);
+  Audit result = audit_of(mesh.file());
+  EXPECT_TRUE(result.subjects.empty());
+  EXPECT_EQ(result.still, 1U);
+  EXPECT_FALSE(result.worst.has_value());
+  mesh = hinge();
+  mesh.normals.clear();  // flat
+  result = audit_of(mesh.file());
+  EXPECT_TRUE(result.subjects.empty());
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kFlat}));
+  mesh = hinge();
+  mesh.targets.clear();
+  EXPECT_TRUE(audit_of(mesh.file()).subjects.empty());
+}
+
+// ---- faults
+
+TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
+  // At weight 1 the sum of both faces is (-4, 0, 4), so N + D = unit of that; the free vertex goes from z to -x.
+  ShadedMesh mesh = hinge();
+  const float h = std::sqrt(0.5F);
+  mesh.targets[0].normals = {0, 0, 0, -h, 0, h - 1, -h, 0, h - 1, -1, 0, -1};
+  const Audit result = audit_of(mesh.file());
+  ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
+  EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
+  EXPECT_GT(result.error.worst, 1);
+  mesh.targets[0].normals[11] = 0;  // vertex 3 shows (-1, 0, 1) at weight 1
+  const Audit wrong = audit_of(mesh.file());
+  ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
+  EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
+  EXPECT_EQ(wrong.findings[0].worst_at->vertex, 3U);
+}
+
+TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
+  // Two stretches along x and y: alone neither turns the plane x + z = 0 ... but shears of one each do together.
+  ShadedMesh mesh;
+  mesh.corners = {0, 1, 2};
+  mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1): linear. With deltas of e and f along x, z: a term w0 w1.
+  mesh.targets = {{{0, 0, 0, 0, 0, 1, 0, 0, 0}, {-1, 0, 0, -1, 0, 0, -1, 0, 0}, {}},
+                  {{0, 0, 0, 0, 0, 0, 1, 0, 0}, {}, {}}};
+  // n = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
+  GltfBuilder builder = mesh.file();
+  builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  const Audit result = audit_of(builder);
+  ASSERT_EQ(result.subjects.size(), 3U);
+  EXPECT_LT(result.subjects[0].error.worst, 1e-4);
+  EXPECT_LT(result.subjects[1].error.worst, 1e-4);
+  EXPECT_NEAR(result.error.worst, std::atan(1 / std::sqrt(2)) * 180 / std::numbers::pi, 1e-4);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongTogether, Kind::kMissingNormals}));
+  EXPECT_FALSE(result.findings[1].is_fault());  // target 1 turns nothing
+}
+
+TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
+  ShadedMesh mesh = hinge();
+  for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {1, 0, 0, 1});
+  const Audit result = audit_of(mesh.file());
+  ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kStaleTangents}));
+  EXPECT_EQ(result.findings[1].count, 3U);
+  EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
+  EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
+  // Right tangents: along the folded face, and half-way up at the edge.
+  mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
+  EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
+  // Along the hinge nothing leans.
+  mesh.targets[0].tangents.clear();
+  mesh.tangents.clear();
+  for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {0, 1, 0, 1});
+  EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
+}
+
+TEST(Audit, skins_and_baked_sequences_are_notes) {
+  GltfBuilder builder = hinge().file();
+  builder.json["nodes"][0]["skin"] = 0;
+  EXPECT_EQ(kinds_of(audit_of(builder)), (std::vector<Kind>{Kind::kMissingNormals, Kind::kSkinned}));
+  builder = hinge().file();
+  builder.json["meshes"][0]["extras"]["chronormal"] = {{"version", 1}, {"encode", "exact"}, {"sequence", true}};
+  Audit result = audit_of(builder);
+  EXPECT_TRUE(result.subjects.empty());  // its targets mean nothing alone
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked, Kind::kSequenceTargets}));
+  builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  result = audit_of(builder);
+  ASSERT_EQ(result.subjects.size(), 1U);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongAtKeys, Kind::kBaked, Kind::kSequenceTargets}));
+}
+
+// ---- tracks
+
+TEST(Audit, tracks_with_the_same_keys_are_subjects_of_their_own_nodes) {
+  GltfBuilder builder = hinge().file();
+  builder.add_node(0);
+  const std::size_t animation = builder.add_animation("both");
+  builder.add_track(animation, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  Json channel = builder.json["animations"][0]["channels"][0];
+  channel["target"]["node"] = 1;
+  builder.json["animations"][0]["channels"].push_back(channel);
+  const Audit result = audit_of(builder);
+  ASSERT_EQ(result.subjects.size(), 3U);
+  EXPECT_EQ(result.subjects[1].node, 0U);
+  EXPECT_EQ(result.subjects[2].node, 1U);
+  EXPECT_EQ(result.subjects[1].error.sum, result.subjects[2].error.sum);
+  EXPECT_EQ(result.error.judged, 3U * 3 * 21);
+}
+
+TEST(Audit, long_tracks_get_fewer_samples_and_single_keys_one) {
+  GltfBuilder builder = hinge().file();
+  std::vector<float> times, weights;
+  for (int k = 0; k < 34; ++k) {
+    times.push_back(static_cast<float>(k));
+    weights.push_back(static_cast<float>(k % 2));
+  }
+  builder.add_track(builder.add_animation("long"), 0, times, weights);
+  builder.add_track(builder.add_animation("pose"), 0, std::vector<float>{2}, std::vector<float>{1});
+  builder.add_track(builder.add_animation("still"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0});
+  const Audit result = audit_of(builder);
+  ASSERT_EQ(result.subjects.size(), 3U);
+  EXPECT_EQ(result.subjects[1].segments, 33U);
+  EXPECT_EQ(result.subjects[1].samples, 5U);
+  EXPECT_EQ(result.subjects[2].segments, 1U);
+  EXPECT_EQ(result.subjects[2].samples, 1U);
+  EXPECT_NEAR(result.subjects[2].error.mean(), 60, 1e-12);
+  EXPECT_EQ(result.subjects[2].error.worst_at.at, 2);
+  EXPECT_EQ(result.still, 1U);
+}
+
+TEST(Audit, one_animation_can_be_asked_for) {
+  GltfBuilder builder = hinge().file();
+  builder.add_track(builder.add_animation("a"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  builder.add_track(builder.add_animation("b"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0.5F});
+  const Audit result = audit_of(builder, {.animation = "b"});
+  ASSERT_EQ(result.subjects.size(), 1U);
+  EXPECT_EQ(result.subjects[0].animation, 1U);
+  const GltfFixture fixture(builder);
+  const Result<Audit> missing = audit(*fixture, {.animation = "c"});
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, ErrorCode::kUsage);
+}
+
+TEST(Audit, other_rules_join_the_normals_of_the_keys) {
+  // One triangle; vertex 2 goes from y to z, so that n(t) = (0, -t, 1 - t). Stored at the keys: (0, 0, 1) and
+  // (0, -3, 0).
+  ShadedMesh mesh;
+  mesh.corners = {0, 1, 2};
+  mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+  mesh.targets = {{{0, 0, 0, 0, 0, 0, 0, -1, 1}, {0, -3, -1, 0, -3, -1, 0, -3, -1}, {}}};
+  const auto sum = [&](AuditRule rule) { return audit_of(mesh.file(), {.rule = rule, .samples = 5}).error.sum / 3; };
+  const auto angle = [](double y, double z) { return std::atan2(y, z) * 180 / std::numbers::pi; };
+  double lerp_sum = 0, slerp_sum = 0, step_sum = 0;
+  for (int i = 0; i < 5; ++i) {
+    const double t = i / 4.0, right = angle(t, 1 - t);
+    lerp_sum += std::fabs(angle(3 * t, 1 - t) - right);
+    slerp_sum += std::fabs(90 * t - right);
+    step_sum += right;
+  }
+  EXPECT_NEAR(sum(AuditRule::kGltf), lerp_sum, 1e-4);
+  EXPECT_NEAR(sum(AuditRule::kLerp), lerp_sum, 1e-4);
+  EXPECT_NEAR(sum(AuditRule::kNlerp), 0, 1e-4);
+  EXPECT_NEAR(sum(AuditRule::kSlerp), slerp_sum, 1e-4);
+  EXPECT_NEAR(sum(AuditRule::kStep), step_sum, 1e-4);
+  EXPECT_NEAR(sum(AuditRule::kFlat), 0, 1e-4);
+}
+
+TEST(Audit, any_number_of_threads_gives_the_same_bits) {
+  const ShadedMesh mesh = random_sheet(30, 70, 1, 0.2);
+  const auto run = [&](std::size_t threads) {
+    const ThreadLimit limit(threads);
+    return audit_of(mesh.file());
+  };
+  const Audit one = run(1), many = run(7);
+  EXPECT_EQ(one.error.sum, many.error.sum);
+  EXPECT_EQ(one.error.sum_of_squares, many.error.sum_of_squares);
+  EXPECT_EQ(one.error.worst, many.error.worst);
+  EXPECT_EQ(one.error.worst_at.vertex, many.error.worst_at.vertex);
+  EXPECT_EQ(one.error.histogram, many.error.histogram);
+}
+
+TEST(Audit, bad_options_are_refused) {
+  const GltfFixture fixture(hinge().file());
+  for (const std::size_t samples : {0U, 1U}) {
+    const Result<Audit> result = audit(*fixture, {.samples = samples});
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::kUsage);
+  }
+  EXPECT_FALSE(make_audit_rule("cubic").ok());
+  for (const AuditRule rule :
+       {AuditRule::kGltf, AuditRule::kLerp, AuditRule::kNlerp, AuditRule::kSlerp, AuditRule::kStep, AuditRule::kFlat})
+    EXPECT_EQ(make_audit_rule(audit_rule_name(rule)).value(), rule);
+}
+
+// ---- sequences
+
+// One triangle whose vertex 2 goes from y over z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
+Motion turning() {
+  Motion motion;
+  motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""},
+                      {{0, 0, 0, 1, 0, 0, 0, 0, 1}, 2, ""},
+                      {{0, 0, 0, 1, 0, 0, 0, -1, 0}, 4, ""}};
+  motion.connect_as_sequence();
+  return motion;
+}
+
+std::vector<float> thrice(float x, float y, float z) { return {x, y, z, x, y, z, x, y, z}; }
+
+Audit audit_of(const Motion& motion, const SequenceNormals& normals, const AuditOptions& options = {}) {
+  Result<Audit> result = audit(motion, normals, false, options);
+  EXPECT_TRUE(result.ok()) << result.error().text();
+  return std::move(result).value();
+}
+
+TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
+  const Audit result = audit_of(turning(), {}, {.rule = AuditRule::kSlerp, .samples = 5});
+  EXPECT_FALSE(result.stored);
+  ASSERT_EQ(result.subjects.size(), 1U);
+  EXPECT_EQ(result.subjects[0].segments, 2U);
+  EXPECT_EQ(result.error.judged, 3U * 2 * 5);
+  const double quarter = std::atan2(1.0, 3.0) * 180 / std::numbers::pi;  // n at t = 1/4
+  EXPECT_NEAR(result.error.worst, 22.5 - quarter, 1e-5);
+  EXPECT_EQ(result.error.worst_at.at, 0.5);
+  EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
+  EXPECT_TRUE(result.offsets.empty());
+  // Straight lines between unit normals are right here.
+  EXPECT_LT(audit_of(turning(), {}).error.worst, 1e-4);
+}
+
+TEST(Audit, stored_normals_of_a_sequence_that_stay_behind_are_errors) {
+  const SequenceNormals stale{{thrice(0, 0, 1), thrice(0, 0, 1), thrice(0, 0, 1)}};
+  const Audit result = audit_of(turning(), stale, {.samples = 2});
+  EXPECT_TRUE(result.stored);
+  EXPECT_NEAR(result.error.worst, 180, 1e-9);
+  EXPECT_NEAR(result.error.mean(), (0 + 90 + 90 + 180) / 4.0, 1e-9);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongAtKeys}));
+  EXPECT_LT(result.offsets[0].worst, 1e-9);
+}
+
+TEST(Audit, offset_that_an_author_carries_along_is_none) {
+  // 45 degrees towards x at every keyframe.
+  const SequenceNormals tilted{{thrice(1, 0, 1), thrice(2, -2, 0), thrice(3, 0, -3)}};
+  const Audit result = audit_of(turning(), tilted, {.samples = 2});
+  EXPECT_LT(result.error.worst, 1e-4);
+  ASSERT_EQ(result.offsets.size(), 1U);
+  EXPECT_NEAR(result.offsets[0].worst, 45, 1e-9);
+  EXPECT_EQ(result.offsets[0].vertices, 3U);
+  // What it grows by is an error: 60 degrees instead of 45.
+  SequenceNormals growing = tilted;
+  const float t = std::tan(60 * std::numbers::pi_v<float> / 180);
+  growing.of_keyframes[1] = thrice(t, -1, 0);
+  EXPECT_NEAR(audit_of(turning(), growing, {.samples = 2}).error.worst, 15, 1e-4);
+}
+
+TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
+  // The hinge, as a sequence. With a hard edge each face has its own normal, which a straight line gets right.
+  const ShadedMesh mesh = hinge();
+  Motion motion;
+  motion.topology = Topology::triangles(4, mesh.corners).value();
+  std::vector<float> folded = mesh.positions;
+  for (std::size_t i = 0; i < folded.size(); ++i) folded[i] += mesh.targets[0].positions[i];
+  motion.keyframes = {{mesh.positions, 0, ""}, {folded, 1, ""}};
+  motion.connect_as_sequence();
+  const Audit soft = audit_of(motion, {});
+  EXPECT_EQ(soft.subjects[0].vertices, 3U);
+  const SequenceNormals hard{{{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, 0}}};
+  const Audit result = audit_of(motion, hard);
+  EXPECT_FALSE(result.stored);
+  EXPECT_EQ(result.subjects[0].vertices, 3U);  // of the folding face alone
+  const Audit flat = audit_of(motion, hard, {.rule = AuditRule::kFlat});
+  EXPECT_LT(flat.error.worst, 1e-9);
+}
+
+TEST(Audit, targets_of_a_base_are_subjects_of_their_own) {
+  Motion motion = turning();
+  motion.segments = {{0, 1}, {0, 2}};
+  motion.keyframes[1].name = "up";
+  const Result<Audit> result = audit(motion, {}, true, {});
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result.value().subjects.size(), 2U);
+  EXPECT_EQ(result.value().subjects[0].name, "up");
+  EXPECT_EQ(result.value().subjects[1].target, 1U);
+  EXPECT_EQ(result.value().subjects[1].error.no_normal, 3U);  // flat at t = 1/2
+}
+
+TEST(Audit, sequences_refuse_what_does_not_fit) {
+  const auto code = [](const SequenceNormals& normals, const AuditOptions& options) {
+    const Result<Audit> result = audit(turning(), normals, false, options);
+    return result.ok() ? std::string() : result.error().text();
+  };
+  EXPECT_NE(code({}, {.rule = AuditRule::kGltf}), "");
+  EXPECT_NE(code({{thrice(0, 0, 1), thrice(0, 0, 1)}}, {}), "");
+  EXPECT_NE(code({{{0, 0, 1}}}, {}), "");
+  EXPECT_NE(code({{thrice(0, 0, std::nanf(""))}}, {}), "");
+  EXPECT_EQ(code({{thrice(0, 0, 1)}}, {}), "");
+}
+
+// ---- files by other people
+
+class AuditOfRealFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("CHRONORMAL_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+    data_ = folder;
+  }
+  [[nodiscard]] Audit of(const std::string& path, const AuditOptions& options = {}) const {
+    const Result<GltfDocument> document = GltfDocument::open(data_ + "/gltf/" + path);
+    EXPECT_TRUE(document.ok());
+    Result<Audit> result = audit(document.value(), options);
+    EXPECT_TRUE(result.ok()) << result.error().text();
+    return std::move(result).value();
+  }
+
+  std::string data_;
+};
+
+TEST_F(AuditOfRealFiles, stored_target_normals_of_the_sphere_are_wrong) {
+  const Audit result = of("AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf");
+  ASSERT_EQ(result.subjects.size(), 3U);
+  EXPECT_NEAR(result.subjects[0].at_keys.worst, 179.5, 0.6);
+  EXPECT_NEAR(result.subjects[1].at_keys.worst, 55.69, 0.01);
+  EXPECT_EQ(result.findings[0].kind, Kind::kWrongAtKeys);
+}
+
+TEST_F(AuditOfRealFiles, cube_is_right_at_its_targets_and_off_half_way) {
+  const Audit result = of("AnimatedMorphCube/glTF/AnimatedMorphCube.gltf", {.samples = 3});
+  EXPECT_LT(result.subjects[1].at_keys.worst, 0.01);
+  EXPECT_NEAR(result.subjects[1].error.worst, 4.018, 0.001);
+  EXPECT_EQ(result.subjects[1].error.worst_at.at, 0.5);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
+}
+
+TEST_F(AuditOfRealFiles, files_without_target_normals_are_found) {
+  const Audit result = of("MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf");
+  ASSERT_FALSE(result.findings.empty());
+  EXPECT_EQ(result.findings[0].kind, Kind::kMissingNormals);
+  EXPECT_EQ(result.findings[0].count, 2U);
+  EXPECT_NEAR(result.error.worst, 38.66, 0.01);
+}
+
+TEST_F(AuditOfRealFiles, angle_weighted_normals_are_an_authored_offset) {
+  const Audit area = of("MorphStressTest/glTF/MorphStressTest.gltf");
+  ASSERT_FALSE(area.offsets.empty());
+  EXPECT_EQ(area.offsets[0].closest, Weighting::kAngle);
+  EXPECT_LT(area.offsets[0].closest_worst, 0.7);
+  EXPECT_GT(area.error.worst, 2.6);
+  const Audit angle = of("MorphStressTest/glTF/MorphStressTest.gltf", {.weighting = Weighting::kAngle});
+  EXPECT_LT(angle.subjects[0].at_keys.worst, 0.01);
+  EXPECT_LT(angle.error.worst, 0.35);
+}
+
+}  // namespace
+}  // namespace chronormal
