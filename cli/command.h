@@ -79,6 +79,8 @@ struct NamedMotion {
 int report(const std::string& command, const Error& error);
 
 // The commands. Each adds itself to the program and writes its exit code there when it has run.
+void add_audit_command(CLI::App& program, int& exit_code);
+void add_bake_command(CLI::App& program, int& exit_code);
 void add_compare_command(CLI::App& program, int& exit_code);
 void add_convert_command(CLI::App& program, int& exit_code);
 void add_inspect_command(CLI::App& program, int& exit_code);

@@ -34,6 +34,8 @@ int main(int argument_count, char** arguments) {
     program.require_subcommand(1);
     program.footer("chronormal COMMAND --help explains a command.");
     int exit_code = kExitDone;
+    add_audit_command(program, exit_code);
+    add_bake_command(program, exit_code);
     add_compare_command(program, exit_code);
     add_convert_command(program, exit_code);
     add_inspect_command(program, exit_code);

@@ -11,12 +11,16 @@
 #include "chronormal/core/vec3.h"          // three-component vectors over any scalar
 #include "chronormal/core/views.h"         // vectors in the caller's memory, as planes or packed
 
-#include "chronormal/motion/motion.h"    // keyframes, and the straight segments between them
-#include "chronormal/motion/topology.h"  // which vertices make which face
-#include "chronormal/motion/validate.h"  // the check between data from outside and everything that computes
+#include "chronormal/motion/blend_set.h"  // a base and targets, with any weights at once
+#include "chronormal/motion/motion.h"     // keyframes, and the straight segments between them
+#include "chronormal/motion/topology.h"   // which vertices make which face
+#include "chronormal/motion/validate.h"   // the check between data from outside and everything that computes
 
+#include "chronormal/normals/blend_normals.h"      // exact normals of blend shapes at any weights
+#include "chronormal/normals/blend_terms.h"        // the quadratic form in the weights, a term at a time
 #include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
 #include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
+#include "chronormal/normals/end_delta.h"          // the best single delta for hosts that can only add one
 #include "chronormal/normals/evaluate.h"           // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/group_normals.h"      // normals of vertices and corners, as sums of those of faces
 #include "chronormal/normals/normal_groups.h"      // which corners share a normal: vertices, creases, split normals
@@ -31,6 +35,7 @@
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
+#include "chronormal/analysis/blend_quality.h"      // hosts that add one delta per target, at any weights
 #include "chronormal/analysis/collapse.h"           // when a normal vanishes inside a segment
 #include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
@@ -39,6 +44,7 @@
 #include "chronormal/io/builtin_morphs.h"     // morphs that need no file
 #include "chronormal/io/file.h"               // whole files in, and out without ever half a one
 #include "chronormal/io/gltf_document.h"      // glTF 2.0 files: what is in them, and their meshes as arrays
+#include "chronormal/io/gltf_edit.h"          // changes to a glTF file that keep every other byte
 #include "chronormal/io/gltf_motion.h"        // their morph targets and animations as motions
 #include "chronormal/io/make_human_target.h"  // targets of MakeHuman: sparse deltas
 #include "chronormal/io/maya_cache.h"         // Maya point caches: XML with .mc or .mcx
@@ -56,8 +62,11 @@
 #include "chronormal/io/sequence.h"           // files, patterns and folders as one motion
 #include "chronormal/io/targets.h"            // a base mesh and its morph targets
 
+#include "chronormal/workflow/audit.h"         // what a host shows against what it should
+#include "chronormal/workflow/bake.h"          // right normals written into glTF files
 #include "chronormal/workflow/compare.h"       // the paper's Table 1 for any motion
 #include "chronormal/workflow/elements.h"      // faces, vertices or corners, and their hard edges
+#include "chronormal/workflow/gltf_shading.h"  // the vertices of a glTF mesh: what they show and should
 #include "chronormal/workflow/inspect.h"       // what a motion holds, and what in it is trouble for normals
 #include "chronormal/workflow/inspect_gltf.h"  // the same of a glTF file: stored normals, targets, tracks
 #include "chronormal/workflow/sample.h"        // normals at chosen times, or at weights of blend shapes

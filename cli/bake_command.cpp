@@ -1,0 +1,261 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/motion_files.h"
+#include "chronormal/io/motion_readers.h"
+#include "chronormal/io/readers.h"
+#include "chronormal/workflow/audit.h"
+#include "cli/bake_report.h"
+#include "cli/command.h"
+#include "cli/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+// An audit looks at every target: files beyond this would wait for a line of the report.
+constexpr std::size_t kMostAudited = std::size_t{64} << 20;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string encode;  // empty: by what drives the weights
+  std::string weighting = "area";
+  double crease_angle = 180;
+  bool recompute_base = false, smooth = false, dense_zeros = false;
+  std::optional<std::size_t> most_bytes;
+  double tolerance = BakeOptions{}.tolerance;
+  bool json = false, no_audit = false;
+};
+
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+}
+
+Result<BakeOptions> understand(const Options& options) {
+  BakeOptions how;
+  if (!options.encode.empty()) {
+    if (options.encode != "exact" && options.encode != "endpoint")
+      return misuse("--encode", "it must be exact or endpoint");
+    how.encoding = options.encode == "exact" ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
+  }
+  const Result<Weighting> weighting = make_weighting(options.weighting);
+  if (!weighting) return misuse("--weighting", weighting.error().message);
+  how.weighting = weighting.value();
+  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
+    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
+  if (!(options.tolerance >= 0 && options.tolerance <= 90))
+    return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
+  how.crease_angle = options.crease_angle;
+  how.recompute_base = options.recompute_base;
+  how.smooth = options.smooth;
+  how.dense_zeros = options.dense_zeros;
+  how.most_bytes = options.most_bytes;
+  how.tolerance = options.tolerance;
+  if (options.json && is_stream(options.common.output))
+    return misuse("--json", "it goes to the standard output: write the result to a file");
+  if (const Status status = check_input(options.input); !status) return status.error();
+  return how;
+}
+
+// Where the report goes: beside the result, or out of its way.
+void say(const Options& options, const std::string& text, const std::string& json) {
+  if (options.json)
+    fmt::print("{}", json);
+  else if (!is_stream(options.common.output))
+    fmt::print("{}", text);
+  else if (!options.common.quiet)
+    fmt::print(stderr, "{}", text);
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "chronormal bake: {}\n", printable(warning));
+}
+
+std::string drivers_path(const std::string& output) {
+  return std::filesystem::path(output).replace_extension(".drivers.json").string();
+}
+
+std::optional<BeforeAndAfter> audit_both(const GltfDocument& before, const BakeOptions& how, const Options& options) {
+  const GltfOptions gltf{.allow_external = options.input.allow_external};
+  const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
+  if (!after) return std::nullopt;
+  AuditOptions audited;
+  audited.weighting = how.weighting;
+  const Result<Audit> first = audit(before, audited), second = audit(after.value(), audited);
+  if (!first || !second || first.value().subjects.empty()) return std::nullopt;
+  return BeforeAndAfter{first.value().error.worst, second.value().error.worst};
+}
+
+Status write_baked(const Options& options, std::string_view bytes, const GltfBake& baked, const GltfEdit& edit) {
+  const std::string& input = options.input.files[0];
+  // What did not change and stays in its container is copied.
+  const auto kind = [](const std::string& path) { return std::filesystem::path(path).extension(); };
+  const bool copied =
+      !baked.changed && input != "-" && bytes.starts_with("glTF") && kind(input) == kind(options.common.output);
+  if (copied) return write_output(options.common.output, bytes, options.common.force);
+  return edit.write(options.common.output, options.common.force);
+}
+
+int run_gltf(const Options& options, BakeOptions how, const FileBytes& file, Progress& progress) {
+  const auto fail = [](const Error& error) { return report("bake", error); };
+  const std::string &input = options.input.files[0], &output = options.common.output;
+  if (!options.input.animation.empty())
+    return fail(misuse("--animation", "all animations of a glTF file are baked: leave it out"));
+  if (options.input.world) return fail(misuse("--world", "meshes are baked where they are: leave it out"));
+  if (options.input.frames_per_second != 1)
+    return fail(misuse("--fps", "the animations of a glTF file have times of their own"));
+  if (options.crease_angle != 180 && !options.smooth)
+    return fail(misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth"));
+  std::optional<std::string> folder;
+  if (input != "-") folder = std::filesystem::path(input).parent_path().string();
+  const Result<GltfDocument> document = GltfDocument::read(file.bytes(), input == "-" ? "<stdin>" : short_name(input),
+                                                           folder, {.allow_external = options.input.allow_external});
+  if (!document) return fail(document.error());
+  how.progress = progress.callback("baking");
+  GltfEdit edit(document.value());
+  const Result<GltfBake> baked = bake(document.value(), how, edit);
+  progress.clear();
+  if (!baked) return fail(baked.error());
+  BakeReport told{input == "-" ? "<stdin>" : input, output, std::nullopt, std::nullopt};
+  const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
+  if (has_drivers) {
+    told.drivers_file = drivers_path(output);
+    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return fail(free.error());
+  }
+  std::vector<std::string> warnings = baked.value().warnings;
+  if (!baked.value().drivers.empty() && !has_drivers)
+    warnings.emplace_back("what drives the extra targets is written beside a file only: give -o a name");
+  for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
+  if (const Status written = write_baked(options, file.bytes(), baked.value(), edit); !written)
+    return fail(written.error());
+  if (has_drivers) {
+    if (const Status written = write_output(*told.drivers_file, baked.value().drivers, options.common.force); !written)
+      return fail(written.error());
+  }
+  warn(warnings);
+  if (!options.no_audit && baked.value().changed && !is_stream(output) && file.bytes().size() <= kMostAudited)
+    told.audit = audit_both(document.value(), how, options);
+  say(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
+  return kExitDone;
+}
+
+bool is_sequence(const Motion& motion) {
+  for (std::size_t k = 0; k < motion.segments.size(); ++k) {
+    if (motion.segments[k].from != k || motion.segments[k].to != k + 1) return false;
+  }
+  return !motion.segments.empty();
+}
+
+int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
+  const auto fail = [](const Error& error) { return report("bake", error); };
+  const std::string& output = options.common.output;
+  if (!options.input.base.empty())
+    return fail(misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file"));
+  if (options.smooth) return fail(misuse("--smooth", "it is for primitives of glTF files that have no normals"));
+  if (options.recompute_base) return fail(misuse("--recompute-base", "it is for glTF files that have normals"));
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
+    return fail(misuse(output, "a sequence is written as .glb"));
+  const Result<NamedMotion> read = read_input(options.input, progress);
+  if (!read) return fail(read.error());
+  if (!is_sequence(read.value().motion)) {
+    return fail(invalid_input(read.value().name, "it is no sequence of keyframes that follow each other"));
+  }
+  how.progress = progress.callback("baking");
+  std::string glb;
+  const Result<SequenceBake> baked = bake_sequence(read.value().motion, how, glb);
+  progress.clear();
+  if (!baked) return fail(baked.error());
+  if (const Status written = write_output(output, glb, options.common.force); !written) return fail(written.error());
+  warn(baked.value().warnings);
+  const BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
+  const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
+  say(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
+  return kExitDone;
+}
+
+// Whether a file is glTF, by its name or else by its content.
+bool is_gltf(const std::string& path, std::string_view bytes) {
+  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
+  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
+}
+
+bool is_one_file(const InputOptions& options) {
+  if (options.files.size() != 1 || !options.base.empty()) return false;
+  const std::string& path = options.files.front();
+  std::error_code code;
+  return path == "-" || is_gltf_file(path) || std::filesystem::is_regular_file(path, code);
+}
+
+int run(const Options& options) {
+  Progress progress(options.common.quiet);
+  const Result<BakeOptions> how = understand(options);
+  if (!how) return report("bake", how.error());
+  if (const Status output = check_output(options.common.output, options.common.force); !output)
+    return report("bake", output.error());
+  if (is_one_file(options.input)) {
+    const Result<FileBytes> file = FileBytes::open(options.input.files.front());
+    if (!file) return report("bake", file.error());
+    if (is_gltf(options.input.files.front(), file.value().bytes()))
+      return run_gltf(options, how.value(), file.value(), progress);
+    if (options.input.files.front() == "-")
+      return report("bake", invalid_input("<stdin>", "one keyframe does not move: give a glTF file"));
+  }
+  return run_sequence(options, how.value(), progress);
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand("bake", "Write right normals into a glTF file, or make one of a sequence");
+  command->group("Commands");
+  auto options = std::make_shared<Options>();
+  options->input.add_to(*command);
+  command
+      ->add_option("--encode", options->encode,
+                   "exact: extra targets for the quadratic terms, driven by the animations;\n"
+                   "endpoint: the best single delta per target. Default: exact where an\n"
+                   "animation drives the weights")
+      ->type_name("HOW");
+  command
+      ->add_option("--weighting", options->weighting,
+                   "how faces count: area (default, exact), angle, uniform, area-angle, max")
+      ->type_name("NAME");
+  command
+      ->add_option("--crease", options->crease_angle,
+                   "of sequences, and with --smooth: edges between faces that differ by\n"
+                   "more than this are hard (default 180: none)")
+      ->type_name("DEG");
+  command->add_flag("--recompute-base", options->recompute_base, "replace the base normals by those of the geometry");
+  command->add_flag("--smooth", options->smooth, "give normals to primitives that have none, which are flat");
+  command->add_option("--max-bytes", options->most_bytes, "fail where more would be added")->type_name("N");
+  command->add_flag("--dense-zeros", options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "leave out targets that turn no normal by more than this, and cut cubic\n"
+                   "splines so finely (default 0.001)")
+      ->type_name("DEG");
+  command->add_flag("--no-audit", options->no_audit, "do not compare the errors before and after");
+  command->add_flag("--json", options->json, "one JSON object");
+  options->common.add_to(*command, true);
+  command->footer(
+      "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
+      "targets. OUT may be INPUT, with --force.\n"
+      "\nExamples:\n"
+      "  chronormal bake face.glb -o face.exact.glb\n"
+      "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
+      "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace chronormal::cli

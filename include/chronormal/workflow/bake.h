@@ -1,0 +1,97 @@
+/// Writes right normals into ordinary glTF files.
+///
+///     exact      extra morph targets that carry the quadratic terms of eq. 30, driven by products of weights: exact at
+///                every instant in every host that adds up targets
+///     endpoint   the best single delta per target (normals/end_delta.h): right at the ends, with a stated error
+///     between
+///
+/// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_H_
+#define CHRONORMAL_WORKFLOW_BAKE_H_
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/io/gltf_edit.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/gltf_shading.h"
+
+namespace chronormal {
+
+enum class BakeEncoding { kExact, kEndpoint };
+
+struct BakeOptions {
+  std::optional<BakeEncoding> encoding = {};  ///< nothing: exact where animations drive the weights, else endpoint
+  Weighting weighting = Weighting::kArea;     ///< others than area are fitted, with a stated error
+  bool smooth = false;                        ///< primitives without NORMAL get normals, instead of staying flat
+  double crease_angle = 180;                  ///< degrees: hard edges of those, and of sequences
+  bool recompute_base = false;                ///< replace the base normals by those of the geometry; hard edges stay
+  bool dense_zeros = false;  ///< write zeros as bytes: for readers that need every accessor to have some
+  std::optional<std::size_t> most_bytes = {};  ///< refuse to add more than this
+  /// Degrees: pairs whose lack, all together, turns no normal by more are left out; cubic splines are cut to this.
+  double tolerance = 0.001;
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+
+/// What was done to one mesh.
+struct BakedMesh {
+  std::size_t mesh = 0;
+  std::string name;
+  BakeEncoding encoding = BakeEncoding::kExact;
+  std::size_t elements = 0;             ///< different normals
+  std::vector<GltfExtraTarget> extras;  ///< targets that were added
+  std::size_t bytes = 0;                ///< of new arrays, without those that an earlier mesh has too, and tracks
+  std::size_t undriven = 0;             ///< of exact: moving targets that no animation drives, baked as endpoint
+  std::size_t left_flat = 0;            ///< primitives without NORMAL that stay flat
+  std::size_t without_base = 0;         ///< vertices whose faces have no area in the base: see docs/cli.md
+  double largest_error = 0;             ///< degrees, of endpoint targets and fits: each alone, over w in [0, 1]
+  double resampling_error = 0;          ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool already_baked = false;           ///< nothing was changed
+};
+
+struct GltfBake {
+  std::vector<BakedMesh> meshes;      ///< those with targets that move
+  std::vector<std::string> pointers;  ///< JSON pointers that were replaced or added
+  std::vector<std::string> warnings;  ///< for a person: one sentence each
+  std::size_t added_targets = 0, added_bytes = 0;
+  std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
+  bool changed = false;
+  /// What a host must compute for extra targets that nothing drives, as JSON; empty where all are driven.
+  std::string drivers;
+};
+
+/// Bakes a document into a new edit of it, which the caller writes. Meshes that a bake was at before stay as they are.
+///
+/// Weights    those of all animations, of nodes and of meshes: where two targets are active at once, their pair gets an
+///            extra target. Exact is meant at these; other weights are as exact but for pairs that got none.
+/// Fits       by weightings other than area, exact works where no two targets move a normal at once.
+///
+/// Errors: of GltfDocument and of read_gltf_shading(); kInvalidInput where nothing moves, more than most_bytes would be
+/// added (with what it would take), extras of a mesh are no object, base normals to replace are compressed by Draco, or
+/// an extension drives weights; kUsage for a weighting that cannot be exact.
+[[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
+
+struct SequenceBake {
+  std::size_t keyframes = 0, vertices = 0, targets = 0, extra_targets = 0;
+  std::size_t bytes = 0;            ///< of the file
+  double largest_error = 0;         ///< degrees, of endpoint; of a weighting that is fitted
+  std::size_t without_normals = 0;  ///< elements that have no area in the whole motion
+  std::vector<std::string> warnings;
+};
+
+/// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
+/// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Vertices of hard edges
+/// (crease angle) are doubled. glb gets the bytes of the file.
+/// Errors: kInvalidInput for more than most_bytes or 4 GiB, and for polygons that cannot be cut into triangles.
+/// Precondition: the motion is valid and a sequence (segments k -> k + 1)
+[[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_H_

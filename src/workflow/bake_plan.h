@@ -1,0 +1,38 @@
+/// What the bake of one mesh needs: which pairs of targets get an extra one, and what is left out. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
+#define CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake_terms.h"
+#include "workflow/bake_tracks.h"
+#include "workflow/bake_weights.h"
+
+namespace chronormal {
+
+struct MeshPlan {
+  std::size_t mesh = 0;
+  BakeEncoding encoding = BakeEncoding::kExact;
+  bool is_driven = false;             ///< an animation gives some moving target a weight
+  std::vector<bool> is_line;          ///< of each target: it gets the best single delta
+  std::vector<WeightProduct> extras;  ///< ascending (i, j)
+  std::vector<bool> is_shown;         ///< of each element: some vertex shows it
+  std::vector<double> largest;        ///< of each element: the length of its largest term
+  double left_out = 0;                ///< degrees: what the pairs turn that were left out
+};
+
+/// Decides. use has the weights of the file; is_driven, whether animations give some. Errors: kUsage where a fitted
+/// weighting is asked for targets that are active together; kInvalidInput where there would be too many pairs.
+[[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
+                                         const NormalTerms& terms, const WeightUse& use, bool is_driven,
+                                         const BakeOptions& options);
+
+[[nodiscard]] inline bool moves(const GltfShading& shading, std::size_t target) noexcept {
+  return !shading.set.targets[target].vertices.empty();
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_PLAN_H_

@@ -1,0 +1,64 @@
+/// Which morph targets are active at once, by the weights that a file gives them. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_WEIGHTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_WEIGHTS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/io/gltf_document.h"
+
+namespace chronormal {
+
+/// The keys of a track and what is between them. A cubic spline with one key is none: it holds still.
+struct WeightTrack {
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  GltfKeys keys;
+  std::size_t targets = 0;
+
+  [[nodiscard]] std::size_t size() const noexcept { return keys.times.size(); }
+  [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;
+  /// Per second; of cubic splines only.
+  [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
+  /// A weight from one key to the next as a cubic in Bernstein form. Steps hold their value.
+  /// key + 1 < size()
+  [[nodiscard]] std::array<double, 4> piece(std::size_t key, std::size_t target) const noexcept;
+};
+
+/// Gathers the weights that one mesh is given: tracks, and poses that stand still.
+class WeightUse {
+ public:
+  explicit WeightUse(std::size_t targets) : largest_(targets, 0.0), together_(targets * targets, false) {}
+
+  /// The track must have this many targets, and outlive this.
+  void add_track(const WeightTrack& track);
+  void add_pose(std::vector<double> weights);
+
+  /// Whether both weights are other than zero at some instant. (Between keys of a cubic spline a weight counts as other
+  /// than zero where any of the four numbers that shape it is.)
+  [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return together_[i * largest_.size() + j]; }
+  /// A bound of |w_i|.
+  [[nodiscard]] double largest(std::size_t i) const { return largest_[i]; }
+  [[nodiscard]] std::size_t targets() const noexcept { return largest_.size(); }
+
+  /// How many poses samples() has at most.
+  [[nodiscard]] std::size_t sample_count() const noexcept;
+  /// Poses that the weights pass through: keys, and fifteen between any two; where these are more than `most`, some of
+  /// them, evenly.
+  [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const;
+
+ private:
+  void add_active(std::vector<std::size_t> active);
+
+  std::vector<double> largest_;
+  std::vector<bool> together_;     // (targets, targets), symmetric
+  std::vector<std::size_t> last_;  // what add_active() was given last
+  std::vector<std::vector<double>> poses_;
+  std::vector<const WeightTrack*> tracks_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_WEIGHTS_H_

@@ -1,0 +1,160 @@
+// What scripts and people get from `bake`: files, a report, exit codes.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+using Json = nlohmann::json;
+
+class BakeCli : public testing::Test {
+ protected:
+  BakeCli() {
+    test::GltfBuilder moving = test::hills_document(2);
+    moving.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+    folder_.write("moving.glb", moving.glb());
+    folder_.write("moving.gltf", moving.gltf());
+    folder_.write("still.glb", test::still_hills_document(1).glb());
+    folder_.write("f_0.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 3 2 4\n");
+    folder_.write("f_1.obj", "v 0 0 0\nv 1 0 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 3 2 4\n");
+    folder_.write("f_2.obj", "v 0 0 1\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 3 2 4\n");
+  }
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
+    return run_shell(std::string(CHRONORMAL_PROGRAM) + " bake " + arguments, folder_.path(), input);
+  }
+  [[nodiscard]] std::string bytes_of(const std::string& name) const { return test::read_whole(folder_ / name); }
+  void expect_error(const std::string& arguments, int exit_code, const std::string& word) const {
+    const std::size_t entries = folder_.entry_count();
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
+    EXPECT_EQ(folder_.entry_count(), entries);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+void expect_words(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << "\nin\n" << text;
+}
+
+TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
+  const ProcessResult result = run("moving.glb -o out.glb");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_words(result.out, {"moving.glb -> out.glb\n", "hills  exact", "3 targets and ", "bytes of arrays were added",
+                            "1 weight track is a cubic spline now", "worst error by audit: "});
+  expect_words(result.err, {"chronormal bake: hills: 5 targets are more than the 8 morphed attributes"});
+  EXPECT_TRUE(bytes_of("out.glb").starts_with("glTF"));
+}
+
+TEST_F(BakeCli, json_is_one_object_with_schema_1) {
+  const ProcessResult result = run("moving.glb -o out.glb --json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["command"], "bake");
+  EXPECT_EQ(json["output"], "out.glb");
+  EXPECT_TRUE(json["changed"]);
+  EXPECT_EQ(json["meshes"][0]["encoding"], "exact");
+  EXPECT_EQ(json["meshes"][0]["extra_targets"][1], Json({{"target", 3}, {"factors", {0, 1}}}));
+  EXPECT_EQ(json["added_targets"], 3);
+  EXPECT_GT(json["added_bytes"], 0);
+  EXPECT_GT(json["audit"]["worst_degrees_before"], 5);
+  EXPECT_LT(json["audit"]["worst_degrees_after"], 0.05);
+  bool names_normal = false;
+  for (const Json& pointer : json["pointers"]) names_normal |= pointer == "/meshes/0/primitives/0/targets/0/NORMAL";
+  EXPECT_TRUE(names_normal) << json["pointers"];
+  EXPECT_FALSE(Json::parse(run("moving.glb -o b.glb --json --no-audit").out).contains("audit"));
+}
+
+TEST_F(BakeCli, output_may_be_the_input) {
+  const std::string before = bytes_of("moving.glb");
+  expect_error("moving.glb -o moving.glb", 1, "--force");
+  EXPECT_EQ(bytes_of("moving.glb"), before);
+  ASSERT_EQ(run("moving.glb -o out.glb").exit_code, 0);
+  ASSERT_EQ(run("moving.glb -o moving.glb --force").exit_code, 0);
+  EXPECT_EQ(bytes_of("moving.glb"), bytes_of("out.glb"));
+}
+
+TEST_F(BakeCli, a_baked_file_is_copied_as_it_is) {
+  for (const std::string extension : {".glb", ".gltf"}) {
+    ASSERT_EQ(run("moving" + extension + " -o once" + extension).exit_code, 0);
+    const ProcessResult again = run("once" + extension + " -o twice" + extension);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    expect_words(again.out, {"nothing to bake: it was baked before; the output is as the input\n"});
+    EXPECT_EQ(bytes_of("twice" + extension), bytes_of("once" + extension));
+    EXPECT_NE(bytes_of("once" + extension), bytes_of("moving" + extension));
+  }
+}
+
+TEST_F(BakeCli, without_animations_the_default_is_endpoint_and_exact_writes_formulas) {
+  const ProcessResult endpoint = run("still.glb -o out.glb");
+  EXPECT_EQ(endpoint.exit_code, 0);
+  expect_words(endpoint.out, {"hills  endpoint"});
+  expect_words(endpoint.err, {"no animation drives"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.drivers.json"));
+  const ProcessResult exact = run("still.glb -o face.exact.glb --encode exact");
+  EXPECT_EQ(exact.exit_code, 0) << exact.err;
+  expect_words(exact.out, {"face.exact.drivers.json"});
+  EXPECT_EQ(Json::parse(bytes_of("face.exact.drivers.json"))["meshes"][0]["extras"][0]["formula"], "w0*w0");
+  // The map is not overwritten either.
+  std::filesystem::remove(folder_ / "face.exact.glb");
+  expect_error("still.glb -o face.exact.glb --encode exact", 1, "face.exact.drivers.json");
+}
+
+TEST_F(BakeCli, standard_streams_work) {
+  const ProcessResult result = run("- -o - < moving.glb > piped.glb; exit $?");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  ASSERT_EQ(run("moving.glb -o out.glb").exit_code, 0);
+  EXPECT_EQ(bytes_of("piped.glb"), bytes_of("out.glb"));
+  expect_words(result.err, {"hills  exact"});
+}
+
+TEST_F(BakeCli, sequences_become_an_animated_glb) {
+  const ProcessResult result = run("'f_*.obj' -o dance.glb --fps 24");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_words(result.out, {"f_*.obj -> dance.glb\n", "3 keyframes"});
+  const test::GltfPlayer player(bytes_of("dance.glb"));
+  EXPECT_EQ(player.json["animations"].size(), 1U);
+  EXPECT_EQ(Json::parse(run("f_0.obj f_1.obj f_2.obj -o b.glb --json").out)["keyframes"], 3);
+}
+
+TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
+  expect_error("moving.glb -o out.glb --encode best", 2, "--encode");
+  expect_error("moving.glb -o out.glb --weighting heavy", 2, "--weighting");
+  expect_error("moving.glb -o out.glb --weighting angle", 2, "--encode endpoint");
+  expect_error("moving.glb -o out.glb --tolerance -1", 2, "--tolerance");
+  expect_error("moving.glb -o out.glb --crease 200", 2, "--crease");
+  expect_error("moving.glb -o out.glb --crease 30", 2, "--smooth");
+  expect_error("moving.glb -o out.glb --fps 24", 2, "--fps");
+  expect_error("moving.glb -o out.glb --world", 2, "--world");
+  expect_error("moving.glb -o out.glb --animation move", 2, "--animation");
+  expect_error("moving.glb -o out.obj", 2, "out.obj");
+  expect_error("moving.glb -o - --json", 2, "--json");
+  expect_error("moving.glb", 2, "--output");
+  expect_error("moving.glb -o out.glb --max-bytes 100", 3, "at most 100");
+  expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");
+  expect_error("--base f_0.obj f_1.obj -o out.glb", 2, "--base");
+  expect_error("f_0.obj f_1.obj -o out.glb --smooth", 2, "--smooth");
+  expect_error("f_0.obj f_1.obj -o out.glb --recompute-base", 2, "--recompute-base");
+  expect_error("none.glb -o out.glb", 1, "none.glb");
+  folder_.write("bad.glb", "glTF");
+  expect_error("bad.glb -o out.glb", 3, "bad.glb");
+  folder_.write("mesh.glb", test::still_hills_document(0).glb());
+  expect_error("mesh.glb -o out.glb", 3, "nothing moves");
+}
+
+TEST_F(BakeCli, a_full_device_is_an_error) { EXPECT_EQ(run("moving.glb -o /dev/full").exit_code, 1); }
+
+}  // namespace
+}  // namespace chronormal

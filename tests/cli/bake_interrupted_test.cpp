@@ -1,0 +1,101 @@
+// What is left of a file where the writing of a new one fails or is killed: the old one, or the new one, never a part.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class InterruptedBake : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run("convert --sample bend -o 'bend_%d.obj'").exit_code, 0);
+    ASSERT_EQ(run("bake 'bend_*.obj' -o new.glb --no-audit").exit_code, 0);
+    whole_ = test::read_whole(folder_ / "new.glb");
+    ASSERT_GT(whole_.size(), 1000u);
+  }
+
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
+    return run_shell(before + CHRONORMAL_PROGRAM " " + arguments, folder_.path());
+  }
+  // Bakes over a file in a folder, which must fail with exit code 1 and leave it.
+  void expect_refused(const std::string& folder) const {
+    const ProcessResult result = run("bake 'bend_*.obj' --force --no-audit -o " + folder + "/old.glb");
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_NE(result.err.find(folder + "/old.glb"), std::string::npos) << result.err;
+    EXPECT_EQ(test::read_whole(folder_ / (folder + "/old.glb")), kOld);
+    EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
+  }
+  [[nodiscard]] std::ptrdiff_t entries(const std::string& folder) const {
+    return std::distance(fs::directory_iterator(folder_ / folder), {});
+  }
+
+  static constexpr const char* kOld = "what was there before";
+  test::TemporaryFolder folder_;
+  std::string whole_;
+};
+
+TEST_F(InterruptedBake, full_device_is_an_error_and_stays_a_device) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const ProcessResult result = run("bake 'bend_*.obj' --no-audit -o /dev/full");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("/dev/full: No space left on device"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
+  fs::create_directory(folder_ / "closed");
+  folder_.write("closed/old.glb", kOld);
+  if (::geteuid() != 0) {
+    fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+    expect_refused("closed");
+    fs::permissions(folder_ / "closed", fs::perms::owner_all);
+    return;
+  }
+  // Permissions are nothing to root; a mount is.
+  const std::string mount = "mount --bind closed closed && mount -o remount,bind,ro closed";
+  if (run_shell(mount, folder_.path()).exit_code != 0) GTEST_SKIP() << "root may not mount here";
+  expect_refused("closed");
+  EXPECT_EQ(run_shell("umount closed", folder_.path()).exit_code, 0);
+}
+
+TEST_F(InterruptedBake, full_disk_keeps_its_file) {
+  fs::create_directory(folder_ / "small");
+  if (run_shell("mount -t tmpfs -o size=64k none small", folder_.path()).exit_code != 0)
+    GTEST_SKIP() << "no small file system can be mounted here";
+  folder_.write("small/old.glb", kOld);
+  expect_refused("small");
+  EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
+}
+
+TEST_F(InterruptedBake, killed_at_any_moment_leaves_the_old_file_or_the_new_one) {
+  constexpr int kTimes = 50;
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("bake 'bend_*.obj' --force --no-audit -o killed.glb").exit_code, 0);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  int killed = 0;
+  for (int k = 0; k < kTimes; ++k) {
+    folder_.write("killed.glb", kOld);
+    const ProcessResult result = run("bake 'bend_*.obj' --force --no-audit -o killed.glb",
+                                     "timeout --signal=KILL " + std::to_string(1.1 * seconds * (k + 1) / kTimes) + " ");
+    killed += result.exit_code != 0 ? 1 : 0;
+    const std::string left = test::read_whole(folder_ / "killed.glb");
+    if (result.exit_code == 0)
+      EXPECT_EQ(left.size(), whole_.size());
+    else
+      EXPECT_TRUE(left == kOld || left == whole_) << k << ": " << left.size() << " of " << whole_.size() << " bytes";
+  }
+  EXPECT_GT(killed, kTimes / 5);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,158 @@
+/// Fields of hills that morph, as glTF files, and what a bake makes of them.
+#ifndef CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
+#define CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/workflow/bake.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/gltf_truth.h"
+
+namespace chronormal::test {
+
+/// A document, the bake of it, and hosts of both.
+struct Baked {
+  std::unique_ptr<GltfFixture> source;
+  std::string bytes;  ///< of the result; empty where there is none
+  std::string error;
+  GltfBake report;
+  std::unique_ptr<GltfPlayer> before, after;
+
+  [[nodiscard]] bool ok() const { return error.empty(); }
+  [[nodiscard]] const nlohmann::json& json() const { return after->json; }
+  [[nodiscard]] const nlohmann::json& mesh(std::size_t m = 0) const { return after->json["meshes"][m]; }
+  [[nodiscard]] std::vector<float> numbers(const nlohmann::json& accessor) const {
+    return after->accessor(accessor.get<std::size_t>());
+  }
+};
+
+[[nodiscard]] inline Baked bake_bytes(const std::string& glb, const BakeOptions& options = {}) {
+  Baked result;
+  result.source = std::make_unique<GltfFixture>(glb);
+  if (!result.source->ok()) {
+    result.error = result.source->error();
+    return result;
+  }
+  GltfEdit edit(**result.source);
+  Result<GltfBake> report = bake(**result.source, options, edit);
+  if (!report) {
+    result.error = report.error().text();
+    return result;
+  }
+  result.report = std::move(report).value();
+  Result<std::string> bytes = edit.bytes("a.glb");
+  if (!bytes) {
+    result.error = bytes.error().text();
+    return result;
+  }
+  result.bytes = std::move(bytes).value();
+  result.before = std::make_unique<GltfPlayer>(glb);
+  result.after = std::make_unique<GltfPlayer>(result.bytes);
+  return result;
+}
+[[nodiscard]] inline Baked bake_document(const GltfBuilder& builder, const BakeOptions& options = {}) {
+  return bake_bytes(builder.glb(), options);
+}
+
+/// A field of side x side vertices with random hills.
+class Hills {
+ public:
+  explicit Hills(unsigned seed, std::size_t side = 5) : random_(seed), side_(side) {
+    for (std::size_t y = 0; y < side; ++y) {
+      for (std::size_t x = 0; x < side; ++x) {
+        positions.push_back(static_cast<float>(x));
+        positions.push_back(static_cast<float>(y));
+        positions.push_back(uniform(-0.3, 0.3));
+      }
+    }
+    for (std::size_t y = 0; y + 1 < side; ++y) {
+      for (std::size_t x = 0; x + 1 < side; ++x) {
+        const auto a = static_cast<std::uint16_t>(y * side + x), up = static_cast<std::uint16_t>(a + side);
+        for (const int corner : {a + 0, a + 1, up + 1, a + 0, up + 1, up + 0})
+          corners.push_back(static_cast<std::uint16_t>(corner));
+      }
+    }
+    for (std::size_t v = 0; v < side * side; ++v) {
+      // Upwards, as an author might have bent them.
+      const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), length = std::sqrt(x * x + y * y + 1);
+      for (const double c : {x, y, 1.0}) normals.push_back(static_cast<float>(c / length));
+    }
+  }
+
+  std::vector<float> positions, normals;
+  std::vector<std::uint16_t> corners;
+
+  [[nodiscard]] std::size_t vertices() const { return positions.size() / 3; }
+  [[nodiscard]] float uniform(double from, double to) {
+    return static_cast<float>(std::uniform_real_distribution<double>(from, to)(random_));
+  }
+  [[nodiscard]] std::size_t below(std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
+  }
+  /// Random deltas, of a share of the rows.
+  [[nodiscard]] std::vector<float> deltas(double share = 1, double size = 0.4) {
+    std::vector<float> result(positions.size());
+    const auto rows = static_cast<std::size_t>(std::ceil(share * static_cast<double>(side_)));
+    const std::size_t first = below(side_ - rows + 1);
+    for (std::size_t i = 3 * side_ * first; i < 3 * side_ * (first + rows); ++i) result[i] = uniform(-size, size);
+    return result;
+  }
+
+  /// A primitive of the field with some targets; normals: whether the base has them.
+  [[nodiscard]] GltfBuilder::Json primitive(GltfBuilder& builder, const std::vector<std::vector<float>>& targets,
+                                            bool with_normals = true) const {
+    std::vector<GltfBuilder::Json> of_targets;
+    const std::size_t base = builder.add_positions(positions);
+    for (const std::vector<float>& deltas : targets)
+      of_targets.push_back({{"POSITION", builder.add_positions(deltas)}});
+    GltfBuilder::Json primitive = GltfBuilder::primitive(base, builder.add_indices(corners), of_targets);
+    if (with_normals) primitive["attributes"]["NORMAL"] = builder.add_positions(normals);
+    return primitive;
+  }
+
+ private:
+  std::mt19937 random_;
+  std::size_t side_;
+};
+
+/// Hills with `targets` targets, one mesh on node 0.
+[[nodiscard]] inline GltfBuilder still_hills_document(std::size_t targets, unsigned seed = 1) {
+  GltfBuilder builder;
+  Hills hills(seed);
+  std::vector<std::vector<float>> deltas;
+  for (std::size_t k = 0; k < targets; ++k) deltas.push_back(hills.deltas());
+  builder.add_node(builder.add_mesh(hills.primitive(builder, deltas), {{"name", "hills"}}));
+  return builder;
+}
+
+/// The same with an animation, which is still without a track.
+[[nodiscard]] inline GltfBuilder hills_document(std::size_t targets, unsigned seed = 1) {
+  GltfBuilder builder = still_hills_document(targets, seed);
+  builder.add_animation("move");
+  return builder;
+}
+
+/// The error of a track at 101 times.
+[[nodiscard]] inline ShownError track_error(const Baked& baked, std::size_t animation = 0, std::size_t channel = 0) {
+  const auto& target = baked.before->json["animations"][animation]["channels"][channel]["target"];
+  const std::size_t mesh = baked.before->json["nodes"][target["node"].get<std::size_t>()]["mesh"];
+  const GltfTruth truth(*baked.before, mesh);
+  return shown_error(truth, *baked.after, mesh, poses_of(*baked.before, *baked.after, animation, channel));
+}
+
+inline void expect_exact(const ShownError& error) {
+  EXPECT_GT(error.judged, 0U);
+  EXPECT_LT(error.mean(), 0.01);
+  EXPECT_LT(error.worst, 0.05);
+}
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_

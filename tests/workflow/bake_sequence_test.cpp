@@ -1,0 +1,571 @@
+// Animated GLB files of sequences, as a reader shows them that knows nothing of how they were made.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/io/gltf_motion.h"
+#include "chronormal/io/motion_files.h"
+#include "chronormal/motion/validate.h"
+#include "chronormal/workflow/bake.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/reference.h"
+#include "tests/support/shown_glb.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+using fixtures::Random;
+using reference::VectorD;
+using test::ShownGlb;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// Which vertices of the file make which face, and which of them show the same normal.
+struct Surface {
+  std::vector<std::vector<std::uint32_t>> faces;
+  std::vector<std::size_t> group;
+};
+
+// All edges smooth: the faces of the motion, and one normal wherever vertices lie together in all keyframes.
+Surface smooth_surface(const Motion& motion) {
+  Surface surface;
+  for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
+    const auto face = motion.topology.face(f);
+    surface.faces.emplace_back(face.begin(), face.end());
+  }
+  std::map<std::vector<float>, std::size_t> points;
+  for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) {
+    std::vector<float> path;
+    for (const Motion::Keyframe& key : motion.keyframes) {
+      for (std::size_t c = 0; c < 3; ++c) path.push_back(key.positions[3 * v + c] + 0.0F);
+    }
+    surface.group.push_back(points.emplace(std::move(path), points.size()).first->second);
+  }
+  return surface;
+}
+
+// Every vertex of the file for itself, over its triangles.
+Surface split_surface(const ShownGlb& glb) {
+  Surface surface;
+  for (std::size_t i = 0; i < glb.corners.size(); i += 3)
+    surface.faces.push_back({glb.corners[i], glb.corners[i + 1], glb.corners[i + 2]});
+  for (std::size_t v = 0; v < glb.vertices(); ++v) surface.group.push_back(v);
+  return surface;
+}
+
+// n of every group by cross products of the positions that the file gives.
+std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, double time) {
+  const std::vector<double> weights = glb.weights(time);
+  std::vector<VectorD> positions, groups(surface.group.size(), VectorD{});
+  for (std::size_t v = 0; v < glb.vertices(); ++v) positions.push_back(glb.position(v, weights));
+  for (const auto& face : surface.faces) {
+    VectorD area{};
+    for (std::size_t c = 2; c < face.size(); ++c)
+      area = reference::add(area, reference::cross(reference::subtract(positions[face[c - 1]], positions[face[0]]),
+                                                   reference::subtract(positions[face[c]], positions[face[0]])));
+    for (const std::uint32_t v : face) groups[surface.group[v]] = reference::add(groups[surface.group[v]], area);
+  }
+  return groups;
+}
+
+struct Judged {
+  double mean = 0, max = 0;           // degrees
+  std::size_t count = 0, nearly = 0;  // pairs of vertex and time; those where n is nearly zero are not judged
+};
+
+Judged judge(const ShownGlb& glb, const Surface& surface, int times = 101) {
+  Judged judged;
+  for (int i = 0; i < times; ++i) {
+    const double time = glb.times[0] + (glb.end() - glb.times[0]) * i / (times - 1);
+    std::size_t k = 0;
+    while (k + 2 < glb.times.size() && time >= glb.times[k + 1]) ++k;
+    const std::vector<double> weights = glb.weights(time);
+    const auto exact = exact_normals(glb, surface, time), from = exact_normals(glb, surface, glb.times[k]),
+               to = exact_normals(glb, surface, glb.times[k + 1]),
+               half = exact_normals(glb, surface, 0.5 * (double{glb.times[k]} + double{glb.times[k + 1]}));
+    for (std::size_t v = 0; v < glb.vertices(); ++v) {
+      const std::size_t g = surface.group[v];
+      VectorD middle{};
+      for (std::size_t c = 0; c < 3; ++c) middle[c] = 2 * half[g][c] - 0.5 * (from[g][c] + to[g][c]);
+      const double largest =
+          std::max({reference::length(from[g]), reference::length(to[g]), reference::length(middle)});
+      if (largest == 0) continue;
+      if (reference::length(exact[g]) < 1e-4 * largest) {
+        ++judged.nearly;
+        continue;
+      }
+      const double angle = reference::angle(glb.normal(v, weights), exact[g]) / kDegree;
+      judged.max = std::max(judged.max, std::isfinite(angle) ? angle : 1000);
+      judged.mean += angle;
+      ++judged.count;
+    }
+  }
+  judged.mean /= static_cast<double>(std::max<std::size_t>(judged.count, 1));
+  return judged;
+}
+
+void expect_exact(const ShownGlb& glb, const Surface& surface) {
+  const Judged judged = judge(glb, surface);
+  EXPECT_GT(judged.count, 0U);
+  EXPECT_LT(judged.max, 0.05);
+  EXPECT_LT(judged.mean, 0.01);
+}
+
+std::string bake(const Motion& motion, const BakeOptions& options, SequenceBake* baked = nullptr) {
+  EXPECT_TRUE(validate(motion).ok());
+  std::string glb;
+  Result<SequenceBake> result = bake_sequence(motion, options, glb);
+  EXPECT_TRUE(result.ok()) << result.error().text();
+  if (result && baked != nullptr) *baked = result.value();
+  return glb;
+}
+
+// A closed mesh of which every vertex goes its own way, at uneven times.
+Motion wandering(const fixtures::ClosedMesh& mesh, std::size_t keys, double distance, std::uint64_t seed) {
+  Motion motion;
+  motion.topology = mesh.topology;
+  Random random(seed);
+  double time = 0;
+  for (std::size_t k = 0; k < keys; ++k) {
+    Motion::Keyframe key;
+    key.time = time;
+    for (const auto& point : mesh.points) {
+      for (const double c : point) key.positions.push_back(static_cast<float>(c + random.uniform(-distance, distance)));
+    }
+    motion.keyframes.push_back(std::move(key));
+    time += random.uniform(0.01, 2);
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(BakeSequence, exact_normals_are_shown_at_every_instant) {
+  for (const double distance : {0.02, 0.2}) {
+    const Motion motion = wandering(fixtures::icosphere(2), 5, distance, 1);
+    SequenceBake baked;
+    const std::string file = bake(motion, {}, &baked);
+    const ShownGlb glb(file);
+    EXPECT_EQ(glb.vertices(), motion.topology.vertex_count());
+    EXPECT_EQ(glb.targets(), 8U);
+    EXPECT_EQ(baked.keyframes, 5U);
+    EXPECT_EQ(baked.targets, 4U);
+    EXPECT_EQ(baked.extra_targets, 4U);
+    EXPECT_EQ(baked.bytes, file.size());
+    EXPECT_EQ(baked.largest_error, 0);
+    EXPECT_TRUE(baked.warnings.empty());
+    expect_exact(glb, smooth_surface(motion));
+  }
+}
+
+TEST(BakeSequence, what_is_shown_without_the_extra_targets_is_wrong) {
+  const Motion motion = wandering(fixtures::icosphere(2), 3, 0.3, 2);
+  const std::string file = bake(motion, {});
+  ShownGlb glb(file);
+  for (std::size_t i = 2; i < 4; ++i) std::fill(glb.normal_deltas[i].begin(), glb.normal_deltas[i].end(), 0.0F);
+  EXPECT_GT(judge(glb, smooth_surface(motion)).max, 1);
+}
+
+TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
+  const Motion motion = wandering(fixtures::icosphere(1), 4, 0.1, 3);
+  const std::string file = bake(motion, {});
+  const ShownGlb glb(file);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(glb.times[k], static_cast<float>(motion.keyframes[k].time)) << "seconds stay seconds";
+  for (std::size_t s = 0; s < 3; ++s) {
+    for (const double t : {0.0, 0.1, 0.5, 0.93}) {
+      const auto w = glb.weights(glb.times[s] + t * (double{glb.times[s + 1]} - double{glb.times[s]}));
+      for (std::size_t k = 1; k < 4; ++k)
+        EXPECT_NEAR(w[k - 1], k == s ? 1 - t : k == s + 1 ? t : 0, 2e-7) << s << " " << t;
+      for (std::size_t b = 0; b < 3; ++b) EXPECT_NEAR(w[3 + b], b == s ? t * (1 - t) : 0, 2e-7) << s << " " << t;
+    }
+  }
+}
+
+TEST(BakeSequence, one_segment_is_enough) {
+  const Motion motion = fixtures::smooth_morph(12);
+  const std::string file = bake(motion, {});
+  const ShownGlb glb(file);
+  EXPECT_EQ(glb.targets(), 2U);
+  expect_exact(glb, smooth_surface(motion));
+}
+
+TEST(BakeSequence, normals_are_those_of_polygons_and_not_of_their_triangles) {
+  const Motion motion = wandering(fixtures::box_grid(3), 3, 0.2, 4);
+  const std::string file = bake(motion, {});
+  const ShownGlb glb(file);
+  ASSERT_EQ(glb.corners.size(), 2 * 3 * motion.topology.face_count());
+  for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
+    const auto quad = motion.topology.face(f);
+    const std::array<std::uint32_t, 6> fan = {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]};
+    EXPECT_TRUE(std::equal(fan.begin(), fan.end(), glb.corners.begin() + static_cast<std::ptrdiff_t>(6 * f)));
+  }
+  expect_exact(glb, smooth_surface(motion));
+  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the fans alone have other normals
+}
+
+TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
+  const Motion motion = wandering(fixtures::icosphere(1), 4, 0.15, 5);
+  Motion reversed = motion;
+  std::reverse(reversed.keyframes.begin(), reversed.keyframes.end());
+  for (Motion::Keyframe& key : reversed.keyframes) key.time = 16 - key.time;
+  const std::string file = bake(motion, {}), back_file = bake(reversed, {});
+  const ShownGlb glb(file), back(back_file);
+  for (int i = 0; i <= 20; ++i) {
+    const double time = glb.end() * i / 20;
+    const auto w = glb.weights(time), back_w = back.weights(16 - time);
+    for (std::size_t v = 0; v < glb.vertices(); ++v)
+      EXPECT_LT(reference::angle(glb.normal(v, w), back.normal(v, back_w)) / kDegree, 0.01) << i;
+  }
+}
+
+TEST(BakeSequence, coinciding_vertices_show_one_normal) {
+  // Two halves of a roof with the ridge twice: 0 1 2 3 and 2' 3' 4 5.
+  Motion motion;
+  motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
+  Random random(6);
+  for (int k = 0; k < 3; ++k) {
+    std::vector<float> p = {0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 2, 1, 0, 2, 0, 0};
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] += static_cast<float>(random.uniform(-0.3, 0.3));
+    std::copy_n(p.begin() + 9, 3, p.begin() + 12);
+    std::copy_n(p.begin() + 6, 3, p.begin() + 15);
+    motion.keyframes.push_back({p, static_cast<double>(k), ""});
+  }
+  motion.connect_as_sequence();
+  const std::string file = bake(motion, {});
+  const ShownGlb glb(file);
+  const Surface surface = smooth_surface(motion);
+  EXPECT_EQ(surface.group[3], surface.group[4]);
+  expect_exact(glb, surface);
+  // At the crease they part again, without another vertex, since there are two already.
+  const std::string hard_file = bake(motion, {.crease_angle = 20});
+  const ShownGlb hard(hard_file);
+  EXPECT_EQ(hard.vertices(), 8U);
+  EXPECT_GT(reference::angle(hard.normal(3, hard.weights(0)), hard.normal(4, hard.weights(0))) / kDegree, 20);
+}
+
+TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
+  const Motion motion = wandering(fixtures::box_grid(4), 3, 0.03, 7);
+  SequenceBake baked;
+  const std::string file = bake(motion, {.crease_angle = 45}, &baked);
+  const ShownGlb glb(file);
+  // A cube of 4 x 4 quads a side: 6 x 25 vertices when every side has its own.
+  EXPECT_EQ(glb.vertices(), 150U);
+  EXPECT_EQ(baked.vertices, 150U);
+  // Positions of the motion come first.
+  for (std::size_t i = 0; i < motion.keyframes[0].positions.size(); ++i)
+    EXPECT_EQ(glb.positions[i], motion.keyframes[0].positions[i]);
+  Surface surface = split_surface(glb);
+  surface.faces.clear();
+  for (std::size_t i = 0; i < glb.corners.size(); i += 6)
+    surface.faces.push_back({glb.corners[i], glb.corners[i + 1], glb.corners[i + 2], glb.corners[i + 5]});
+  expect_exact(glb, surface);
+}
+
+// A sheet that is a point, or a line, in its first keyframe.
+Motion unfolding(bool keep_half) {
+  Motion motion = fixtures::smooth_morph(6);
+  motion.keyframes.push_back(motion.keyframes[1]);
+  motion.keyframes[1] = motion.keyframes[0];
+  motion.keyframes[1].time = 1;
+  motion.keyframes[2].time = 3;
+  std::vector<float>& first = motion.keyframes[0].positions;
+  for (std::size_t v = keep_half ? first.size() / 6 : 0; v < first.size() / 3; ++v)
+    std::fill_n(&first[3 * v], 3, 0.25F);
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(BakeSequence, a_first_keyframe_without_area_gets_a_target_of_its_own) {
+  for (const bool keep_half : {false, true}) {
+    const Motion motion = unfolding(keep_half);
+    SequenceBake baked;
+    const std::string file = bake(motion, {}, &baked);
+    const ShownGlb glb(file);
+    EXPECT_EQ(baked.targets, 3U);
+    ASSERT_EQ(baked.warnings.size(), 1U);
+    EXPECT_NE(baked.warnings[0].find("keyframe 0"), std::string::npos);
+    EXPECT_EQ(glb.json["meshes"][0]["weights"][0], 1);
+    EXPECT_EQ(glb.json["meshes"][0]["extras"]["chronormal"]["extras"][0]["factors"], nlohmann::json::array({0, 1}));
+    const Judged judged = judge(glb, smooth_surface(motion));
+    EXPECT_LT(judged.max, 0.05);
+    EXPECT_LT(judged.mean, 0.01);
+    for (std::size_t v = 0; v < glb.vertices(); ++v)
+      EXPECT_NEAR(reference::length(glb.normal(v, std::vector<double>(glb.targets(), 0.0))), 1, 1e-6);
+  }
+}
+
+TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
+  Motion motion = wandering(fixtures::icosphere(1), 4, 0.2, 8);
+  for (std::size_t k = 1; k < 3; ++k) {
+    for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // areas by 2^-24
+  }
+  SequenceBake baked;
+  const std::string file = bake(motion, {}, &baked);
+  const ShownGlb glb(file);
+  EXPECT_EQ(baked.warnings.size(), 1U);
+  // Positions are base + delta, and half a millionth of the sphere is left: their rounding is part of the surface.
+  expect_exact(glb, smooth_surface(motion));
+}
+
+TEST(BakeSequence, elements_without_area_show_something_and_are_counted) {
+  Motion motion = fixtures::smooth_morph(2);
+  for (Motion::Keyframe& key : motion.keyframes) std::fill(key.positions.begin(), key.positions.end(), 1.0F);
+  SequenceBake baked;
+  const std::string file = bake(motion, {}, &baked);
+  const ShownGlb glb(file);
+  EXPECT_EQ(baked.without_normals, 1U);  // all vertices are one point
+  EXPECT_EQ(baked.extra_targets, 0U);
+  for (std::size_t v = 0; v < glb.vertices(); ++v)
+    EXPECT_EQ(glb.normal(v, glb.weights(0.5)), (ShownGlb::Point{0, 0, 1}));
+}
+
+TEST(BakeSequence, rigid_translation_needs_no_extra_targets) {
+  Motion motion = wandering(fixtures::icosphere(1), 3, 0, 9);
+  for (float& c : motion.keyframes[0].positions) c = std::round(c * 1024) / 1024;
+  for (std::size_t k = 1; k < 3; ++k) {
+    motion.keyframes[k].positions = motion.keyframes[0].positions;
+    for (float& c : motion.keyframes[k].positions) c += static_cast<float>(k);
+  }
+  SequenceBake baked;
+  const std::string file = bake(motion, {}, &baked);
+  EXPECT_EQ(baked.extra_targets, 0U);
+  expect_exact(ShownGlb(file), smooth_surface(motion));
+}
+
+TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
+  const Motion motion = wandering(fixtures::icosphere(2), 5, 0.1, 10);
+  SequenceBake baked;
+  const std::string file = bake(motion, {.encoding = BakeEncoding::kEndpoint}, &baked);
+  const ShownGlb glb(file);
+  EXPECT_EQ(glb.targets(), 4U);
+  EXPECT_EQ(baked.extra_targets, 0U);
+  const Surface surface = smooth_surface(motion);
+  const Judged judged = judge(glb, surface, 801);
+  EXPECT_NEAR(judged.max, baked.largest_error, 0.02 * baked.largest_error);
+  for (const float time : glb.times) {
+    const auto exact = exact_normals(glb, surface, time);
+    for (std::size_t v = 0; v < glb.vertices(); ++v)
+      EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
+  }
+  // Better than unit normals at the keys.
+  ShownGlb plain = glb;
+  for (std::size_t k = 1; k < glb.times.size(); ++k) {
+    const auto exact = exact_normals(glb, surface, glb.times[k]);
+    for (std::size_t v = 0; v < glb.vertices(); ++v) {
+      const VectorD u = reference::normalised(exact[surface.group[v]]);
+      for (std::size_t c = 0; c < 3; ++c)
+        plain.normal_deltas[k - 1][3 * v + c] = static_cast<float>(u[c]) - plain.normals[3 * v + c];
+    }
+  }
+  const Judged unit = judge(plain, surface, 801);
+  EXPECT_LT(judged.max, 0.8 * unit.max);
+  EXPECT_LT(judged.mean, 0.8 * unit.mean);
+}
+
+TEST(BakeSequence, other_weightings_are_fitted_and_their_error_is_stated) {
+  const Motion motion = wandering(fixtures::icosphere(1), 3, 0.05, 11);
+  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
+    SequenceBake baked;
+    const std::string file = bake(motion, {.encoding = encoding, .weighting = Weighting::kAngle}, &baked);
+    const ShownGlb glb(file);
+    EXPECT_GT(baked.largest_error, 0);
+    EXPECT_LT(baked.largest_error, 5);
+    // At the keys the normals are those of the weighting: sums of angles times unit normals.
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<VectorD> expected(glb.vertices(), VectorD{});
+      const auto position = [&](std::uint32_t v) { return glb.position(v, glb.weights(glb.times[k])); };
+      for (std::size_t i = 0; i < glb.corners.size(); ++i) {
+        const std::size_t face = i - i % 3;
+        const VectorD a = position(glb.corners[i]), b = position(glb.corners[face + (i + 1) % 3]),
+                      c = position(glb.corners[face + (i + 2) % 3]);
+        const VectorD e = reference::subtract(b, a), f = reference::subtract(c, a);
+        VectorD& sum = expected[glb.corners[i]];
+        sum = reference::add(sum,
+                             reference::scaled(reference::angle(e, f), reference::normalised(reference::cross(e, f))));
+      }
+      for (std::size_t v = 0; v < glb.vertices(); ++v)
+        EXPECT_LT(reference::angle(glb.normal(v, glb.weights(glb.times[k])), expected[v]) / kDegree, 0.01);
+    }
+  }
+}
+
+TEST(BakeSequence, our_own_reader_gives_the_keyframes_back) {
+  for (const bool degenerate : {false, true}) {
+    const Motion motion = degenerate ? unfolding(true) : wandering(fixtures::icosphere(1), 4, 0.1, 12);
+    for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
+      const std::string file = bake(motion, {.encoding = encoding});
+      const Result<GltfDocument> document = GltfDocument::read(file, "baked");
+      ASSERT_TRUE(document.ok()) << document.error().text();
+      const Result<GltfMotion> read = read_gltf_motion(document.value(), {.animation = "motion"});
+      ASSERT_TRUE(read.ok()) << read.error().text();
+      ASSERT_TRUE(document.value().meshes()[0].mark.has_value());
+      EXPECT_TRUE(document.value().meshes()[0].mark->sequence);
+      const auto& keys = read.value().motion.keyframes;
+      ASSERT_EQ(keys.size(), motion.keyframes.size());
+      for (std::size_t k = 0; k < keys.size(); ++k) {
+        EXPECT_EQ(keys[k].time, static_cast<double>(static_cast<float>(motion.keyframes[k].time)));
+        for (std::size_t i = 0; i < keys[k].positions.size(); ++i)
+          EXPECT_NEAR(keys[k].positions[i], motion.keyframes[k].positions[i], 4e-7);
+      }
+    }
+  }
+}
+
+TEST(BakeSequence, zeros_have_bytes_where_that_is_asked_for) {
+  const Motion motion = wandering(fixtures::icosphere(2), 3, 0.1, 13);
+  const std::string lean_file = bake(motion, {}), dense_file = bake(motion, {.dense_zeros = true});
+  const ShownGlb lean(lean_file), dense(dense_file);
+  EXPECT_LT(lean_file.size(), dense_file.size());
+  for (const auto& accessor : dense.json["accessors"]) {
+    EXPECT_TRUE(accessor.contains("bufferView"));
+    EXPECT_FALSE(accessor.contains("sparse"));
+  }
+  EXPECT_EQ(lean.position_deltas, dense.position_deltas);
+  EXPECT_EQ(lean.normal_deltas, dense.normal_deltas);
+}
+
+TEST(BakeSequence, names_say_what_targets_are) {
+  const std::string file = bake(wandering(fixtures::icosphere(1), 3, 0.1, 14), {});
+  const ShownGlb glb(file);
+  const nlohmann::json expected = R"({
+    "targetNames": ["key 1", "key 2", "bend 0", "bend 1"],
+    "chronormal": {"version": 1, "encode": "exact", "sequence": true, "extras": [
+      {"target": 2, "factors": ["base", 0]}, {"target": 3, "factors": [0, 1]}]}})"_json;
+  EXPECT_EQ(glb.json["meshes"][0]["extras"], expected);
+  EXPECT_EQ(glb.json["animations"][0]["name"], "motion");
+  EXPECT_EQ(glb.json["asset"]["version"], "2.0");
+  EXPECT_TRUE(glb.json["asset"]["generator"].get<std::string>().starts_with("chronormal "));
+}
+
+TEST(BakeSequence, bounds_in_the_file_are_those_of_the_values) {
+  const std::string file = bake(wandering(fixtures::icosphere(1), 3, 0.1, 15), {});
+  const ShownGlb glb(file);
+  const auto expect_bounds = [&](const nlohmann::json& index, const std::vector<float>& values,
+                                 std::size_t components) {
+    const auto& accessor = glb.json["accessors"][index.get<std::size_t>()];
+    for (std::size_t c = 0; c < components; ++c) {
+      float low = values[c], high = values[c];
+      for (std::size_t i = c; i < values.size(); i += components)
+        low = std::min(low, values[i]), high = std::max(high, values[i]);
+      EXPECT_EQ(accessor["min"][c].get<double>(), low);
+      EXPECT_EQ(accessor["max"][c].get<double>(), high);
+    }
+  };
+  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+  expect_bounds(primitive["attributes"]["POSITION"], glb.positions, 3);
+  for (std::size_t i = 0; i < glb.targets(); ++i)
+    expect_bounds(primitive["targets"][i]["POSITION"], glb.position_deltas[i], 3);
+  expect_bounds(glb.json["animations"][0]["samplers"][0]["input"], glb.times, 1);
+}
+
+TEST(BakeSequence, negative_times_are_shifted_and_that_is_said) {
+  Motion motion = wandering(fixtures::icosphere(1), 3, 0.1, 16);
+  for (Motion::Keyframe& key : motion.keyframes) key.time -= 5;
+  SequenceBake baked;
+  const std::string file = bake(motion, {}, &baked);
+  EXPECT_EQ(ShownGlb(file).times[0], 0);
+  EXPECT_EQ(baked.warnings.size(), 1U);
+}
+
+TEST(BakeSequence, indices_have_16_bits_below_the_one_that_restarts_primitives) {
+  for (const std::uint32_t vertices : {65535U, 65536U}) {
+    Motion motion;
+    motion.topology = fixtures::make_triangles(vertices, {0, 1, vertices - 1});
+    for (const double time : {0.0, 1.0}) motion.keyframes.push_back({std::vector<float>(3 * vertices), time, ""});
+    motion.keyframes[1].positions[3] = motion.keyframes[1].positions[3 * vertices - 2] = 1;
+    motion.connect_as_sequence();
+    const std::string file = bake(motion, {});
+    const ShownGlb glb(file);
+    EXPECT_EQ(glb.json["accessors"][0]["componentType"], vertices == 65535 ? 5123 : 5125);
+    EXPECT_EQ(glb.corners, (std::vector<std::uint32_t>{0, 1, vertices - 1}));
+  }
+}
+
+TEST(BakeSequence, what_cannot_be_written_is_refused) {
+  Motion motion = wandering(fixtures::icosphere(1), 3, 0.1, 17);
+  std::string glb = "untouched";
+  const auto refusal = [&](const BakeOptions& options) {
+    const Result<SequenceBake> result = bake_sequence(motion, options, glb);
+    EXPECT_FALSE(result.ok());
+    EXPECT_EQ(glb, "untouched");
+    return result.ok() ? Error{} : result.error();
+  };
+  for (const std::size_t most : {std::size_t{0}, std::size_t{2000}, bake(motion, {}).size() - 1}) {
+    const Error error = refusal({.most_bytes = most});
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+    EXPECT_NE(error.message.find(std::to_string(most)), std::string::npos) << error.message;
+  }
+  EXPECT_TRUE(bake_sequence(motion, {.most_bytes = bake(motion, {}).size()}, glb).ok());
+  glb = "untouched";
+  EXPECT_EQ(refusal({.crease_angle = 190}).code, ErrorCode::kUsage);
+  EXPECT_EQ(refusal({.crease_angle = std::nan("")}).code, ErrorCode::kUsage);
+
+  motion.keyframes[1].time = 1e9;
+  motion.keyframes[2].time = 1e9 + 1;
+  const Error times = refusal({});
+  EXPECT_EQ(times.code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(times.place, "keyframe 2");
+  motion.keyframes[2].time = 2e9;
+
+  motion.keyframes[0].positions[0] = -3e38F;
+  motion.keyframes[1].positions[0] = 3e38F;
+  const Error far = refusal({});
+  EXPECT_EQ(far.code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(far.place, "keyframe 1, vertex 0");
+}
+
+TEST(BakeSequence, progress_ends_with_everything_done) {
+  const Motion motion = wandering(fixtures::icosphere(1), 4, 0.1, 18);
+  std::size_t last = 0, whole = 0;
+  BakeOptions options;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    EXPECT_GT(done, last);
+    last = done;
+    whole = total;
+  };
+  (void)bake(motion, options);
+  EXPECT_EQ(last, whole);
+  EXPECT_GT(whole, 0U);
+}
+
+TEST(BakeSequence, real_sequences_are_exact) {
+  const char* const data = std::getenv("CHRONORMAL_DATA");
+  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+  const fs::path folder = data;
+  const std::vector<std::vector<std::string>> inputs = {
+      {(folder / "sequences/rumba_13").string()},
+      {(folder / "sequences/thick_cloth").string()},
+      {(folder / "sequences/md2_faerie/faerie.md2").string()},
+      {(folder / "caches/max_cache_box/max_cache_box_44.obj").string(),
+       (folder / "caches/max_cache_box/max_cache_box.pc2").string()}};
+  for (const auto& input : inputs) {
+    MotionOptions options;
+    options.frames_per_second = 24;
+    const Result<Motion> motion = read_motion(input, options);
+    ASSERT_TRUE(motion.ok()) << motion.error().text();
+    SequenceBake baked;
+    const std::string file = bake(motion.value(), {}, &baked);
+    const ShownGlb glb(file);
+    const Judged judged = judge(glb, smooth_surface(motion.value()));
+    std::printf("%s: %zu keyframes, %zu bytes, mean %.6f, max %.5f degrees, %zu of %zu left out\n", input[0].c_str(),
+                baked.keyframes, baked.bytes, judged.mean, judged.max, judged.nearly, judged.count);
+    EXPECT_LT(judged.max, 0.05) << input[0];
+    EXPECT_LT(judged.mean, 0.01) << input[0];
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

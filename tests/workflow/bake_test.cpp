@@ -1,0 +1,398 @@
+#include "chronormal/workflow/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+
+namespace chronormal {
+namespace {
+
+using Json = nlohmann::json;
+using test::Baked;
+using test::GltfBuilder;
+using test::Pose;
+using test::ShownError;
+
+BakeOptions with(BakeEncoding encoding) {
+  BakeOptions options;
+  options.encoding = encoding;
+  return options;
+}
+
+// One target alone at weights from 0 to 1, extra targets as their formulas say.
+std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::size_t target) {
+  const Json& targets = baked.before->json["meshes"][mesh]["primitives"][0]["targets"];
+  const Json& after = baked.json()["meshes"][mesh];
+  std::vector<Pose> poses;
+  for (int i = 0; i <= 100; ++i) {
+    Pose pose;
+    pose.before.assign(targets.size(), 0.0);
+    pose.before[target] = i / 100.0;
+    pose.after.assign(after["primitives"][0]["targets"].size(), 0.0F);
+    pose.after[target] = static_cast<float>(i / 100.0);
+    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // stays flat
+      poses.push_back(std::move(pose));
+      continue;
+    }
+    for (const Json& extra : after["extras"]["chronormal"]["extras"]) {
+      const auto factor = [&](int n) {
+        return pose.after[extra["factors"][static_cast<std::size_t>(n)].get<std::size_t>()];
+      };
+      pose.after[extra["target"].get<std::size_t>()] = factor(0) * factor(1);
+    }
+    poses.push_back(std::move(pose));
+  }
+  return poses;
+}
+
+ShownError target_error(const Baked& baked, std::size_t target, std::size_t mesh = 0) {
+  return test::shown_error(test::GltfTruth(*baked.before, mesh), *baked.after, mesh,
+                           poses_of_target(baked, mesh, target));
+}
+
+// A random document: one to four targets of random extent, a track of some interpolation with weights in [-1, 2].
+GltfBuilder random_document(unsigned seed) {
+  GltfBuilder builder;
+  test::Hills hills(seed);
+  const std::size_t targets = 1 + hills.below(4), keys = 2 + hills.below(4);
+  std::vector<std::vector<float>> deltas;
+  for (std::size_t k = 0; k < targets; ++k) deltas.push_back(hills.deltas(hills.uniform(0.2, 1), 0.15));
+  builder.add_node(builder.add_mesh(hills.primitive(builder, deltas)));
+  const char* interpolation = std::vector{"LINEAR", "STEP", "CUBICSPLINE"}[seed % 3];
+  std::vector<float> times, values;
+  for (std::size_t key = 0; key < keys; ++key) {
+    times.push_back((times.empty() ? 0 : times.back()) + hills.uniform(0.01, 1));
+    for (std::size_t k = 0; k < targets * (seed % 3 == 2 ? 3 : 1); ++k)
+      values.push_back(hills.below(3) == 0 ? 0.0F : hills.uniform(-1, 2));
+  }
+  builder.add_animation("random");
+  builder.add_track(0, 0, times, values, interpolation);
+  return builder;
+}
+
+TEST(Bake, exact_is_exact_for_random_targets_and_tracks) {
+  std::size_t driven = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const Baked baked = test::bake_document(random_document(seed), with(BakeEncoding::kExact));
+    ASSERT_EQ(baked.error, "");
+    const ShownError error = test::track_error(baked);
+    test::expect_exact(error);
+    driven += baked.report.added_targets > 0 ? 1 : 0;
+  }
+  EXPECT_GT(driven, 50U);
+}
+
+TEST(Bake, what_is_not_baked_is_wrong) {
+  // The measure itself: without extra targets the same file is off.
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  Baked baked = test::bake_document(builder);
+  baked.after = std::make_unique<test::GltfPlayer>(builder.glb());
+  EXPECT_GT(test::track_error(baked).worst, 5);
+}
+
+TEST(Bake, endpoint_is_right_at_both_ends_and_states_its_error) {
+  for (unsigned seed = 1; seed < 8; ++seed) {
+    const Baked baked = test::bake_document(test::still_hills_document(2, seed), with(BakeEncoding::kEndpoint));
+    ASSERT_EQ(baked.error, "");
+    EXPECT_EQ(baked.report.added_targets, 0U);
+    double worst = 0;
+    for (std::size_t target = 0; target < 2; ++target) {
+      worst = std::max(worst, target_error(baked, target).worst);
+      std::vector<Pose> poses = poses_of_target(baked, 0, target);
+      const ShownError ends =
+          test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, {poses.front(), poses.back()});
+      EXPECT_LT(ends.worst, 1e-3);
+    }
+    EXPECT_LE(worst, baked.report.meshes[0].largest_error + 1e-3);
+    EXPECT_GE(worst, 0.9 * baked.report.meshes[0].largest_error);
+  }
+}
+
+TEST(Bake, encoding_is_exact_where_animations_drive_weights_and_else_endpoint) {
+  GltfBuilder builder = test::still_hills_document(1);
+  const Baked still = test::bake_document(builder);
+  EXPECT_EQ(still.report.meshes[0].encoding, BakeEncoding::kEndpoint);
+  ASSERT_FALSE(still.report.warnings.empty());
+  EXPECT_NE(still.report.warnings[0].find("no animation drives"), std::string::npos);
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  EXPECT_EQ(test::bake_document(builder).report.meshes[0].encoding, BakeEncoding::kExact);
+}
+
+TEST(Bake, exact_without_animations_comes_with_its_formulas) {
+  const Baked baked = test::bake_document(test::still_hills_document(2), with(BakeEncoding::kExact));
+  ASSERT_EQ(baked.report.meshes[0].extras.size(), 3U);
+  const Json drivers = Json::parse(baked.report.drivers);
+  EXPECT_EQ(drivers["meshes"][0]["name"], "hills");
+  EXPECT_EQ(drivers["meshes"][0]["extras"][1], Json({{"target", 3}, {"formula", "w0*w1"}, {"factors", {0, 1}}}));
+  std::vector<Pose> poses;
+  for (const auto& [a, b] : {std::pair{0.5F, 0.5F}, {1.0F, 0.25F}, {-0.5F, 1.5F}})
+    poses.push_back({{static_cast<double>(a), static_cast<double>(b)}, {a, b, a * a, a * b, b * b}});
+  test::expect_exact(test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses));
+}
+
+TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
+  GltfBuilder builder = test::hills_document(2);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 0});
+  const Baked baked = test::bake_document(builder);
+  const BakedMesh& mesh = baked.report.meshes[0];
+  EXPECT_EQ(mesh.encoding, BakeEncoding::kExact);
+  EXPECT_EQ(mesh.undriven, 1U);
+  EXPECT_EQ(mesh.extras.size(), 1U);
+  EXPECT_LT(target_error(baked, 0).worst, 0.05);
+  const double worst = target_error(baked, 1).worst;
+  EXPECT_LE(worst, mesh.largest_error + 1e-3);
+  EXPECT_GE(worst, 0.9 * mesh.largest_error);
+}
+
+TEST(Bake, a_baked_file_is_left_as_it_is) {
+  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
+    GltfBuilder builder = test::hills_document(2);
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+    const Baked first = test::bake_document(builder, with(encoding));
+    ASSERT_TRUE(first.report.changed);
+    const Baked second = test::bake_bytes(first.bytes, with(encoding));
+    ASSERT_EQ(second.error, "");
+    EXPECT_FALSE(second.report.changed);
+    EXPECT_TRUE(second.report.meshes[0].already_baked);
+    EXPECT_EQ(second.report.meshes[0].encoding, encoding);
+    EXPECT_EQ(second.bytes, first.bytes);
+  }
+}
+
+TEST(Bake, stored_normals_of_any_length_keep_their_length_and_offset) {
+  GltfBuilder builder;
+  test::Hills hills(4);
+  for (std::size_t i = 0; i < hills.normals.size(); ++i) hills.normals[i] *= i / 3 % 2 == 0 ? 0.5F : 3;
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas()})));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  test::expect_exact(test::track_error(test::bake_document(builder)));
+}
+
+TEST(Bake, base_without_area_is_right_but_near_weight_0) {
+  GltfBuilder builder;
+  test::Hills hills(5);
+  const std::vector<float> spread = hills.positions;
+  hills.positions.assign(spread.size(), 0);  // all in one point
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {spread})));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
+  // Split normals: each vertex is an element, the base of which has no area.
+  const Baked baked = test::bake_document(builder);
+  ASSERT_EQ(baked.error, "");
+  EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
+  const ShownError error = test::track_error(baked);
+  EXPECT_GT(error.judged, 0U);
+  EXPECT_LT(error.worst, 1e-6 / (0.01 * 0.01) * 180 / 3.14);
+}
+
+TEST(Bake, smooth_gives_normals_to_flat_primitives) {
+  GltfBuilder builder;
+  test::Hills hills(6);
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas()}, false)));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  const Baked flat = test::bake_document(builder);
+  EXPECT_FALSE(flat.report.changed);
+  EXPECT_EQ(flat.report.meshes[0].left_flat, 1U);
+  EXPECT_EQ(flat.bytes, builder.glb());
+  Baked smooth = test::bake_document(builder, {.smooth = true});
+  ASSERT_EQ(smooth.error, "");
+  // The truth reads base normals from the file: those that are there now.
+  smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
+  const test::GltfTruth truth(*smooth.before, 0);
+  std::vector<Pose> poses;
+  for (int i = 0; i <= 100; ++i) {
+    const std::vector<float> weights = smooth.after->weights_at(0, 0, i / 100.0);
+    poses.push_back({{weights.begin(), weights.end()}, weights});
+  }
+  test::expect_exact(test::shown_error(truth, *smooth.after, 0, poses));
+  const std::vector<test::LongVector> base = truth.normals_at({0, 0});
+  for (std::size_t v = 0; v < base.size(); ++v)
+    EXPECT_LT(test::degrees_between(base[v], truth.vertices[v].stored), 1e-4);
+}
+
+TEST(Bake, recomputed_base_is_that_of_the_geometry) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  const Baked baked = test::bake_document(builder, {.recompute_base = true});
+  ASSERT_EQ(baked.error, "");
+  const std::vector<test::LongVector> base = test::GltfTruth(*baked.before, 0).normals_at({0});
+  const std::vector<float> stored = baked.numbers(baked.mesh()["primitives"][0]["attributes"]["NORMAL"]);
+  for (std::size_t v = 0; v < base.size(); ++v) {
+    const test::LongVector n = {stored[3 * v], stored[3 * v + 1], stored[3 * v + 2]};
+    EXPECT_LT(test::degrees_between(base[v], n), 1e-4);
+    EXPECT_NEAR(static_cast<double>(test::length_of(n)), 1, 1e-6);
+  }
+}
+
+TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
+  GltfBuilder builder;
+  test::Hills hills(7);
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas(1, 0.3), hills.deltas(1, 0.001)})));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  const auto added = [&builder](double tolerance) {
+    BakeOptions options;
+    options.tolerance = tolerance;
+    const Baked baked = test::bake_document(builder, options);
+    EXPECT_EQ(baked.error, "");
+    const double stated = baked.report.meshes[0].resampling_error;
+    EXPECT_LE(stated, tolerance);
+    EXPECT_LE(test::track_error(baked).worst, stated + 1e-3);
+    return baked.report.added_targets;
+  };
+  EXPECT_EQ(added(0), 3U);
+  EXPECT_EQ(added(0.2), 1U) << "the square of the strong target alone";
+  EXPECT_EQ(added(90), 0U);
+}
+
+TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
+  GltfBuilder builder;
+  test::Hills hills(8);
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // twice as large
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  const Baked baked = test::bake_document(builder);
+  EXPECT_EQ(baked.report.added_targets, 0U);
+  test::expect_exact(test::track_error(baked));
+}
+
+TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_over) {
+  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2; no square or pair alone is as long, all are.
+  GltfBuilder builder;
+  test::Hills hills(8);
+  const std::vector<float>& grow = hills.positions;
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {grow, grow, grow})));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, -0.2F, -0.2F, -0.2F});
+  test::expect_exact(test::track_error(test::bake_document(builder)));
+}
+
+TEST(Bake, a_wink_in_a_long_animation_is_not_overlooked) {
+  GltfBuilder builder = test::hills_document(1);
+  std::vector<float> times(20000), values(20000);
+  for (std::size_t key = 0; key < times.size(); ++key) times[key] = static_cast<float>(key);
+  values[7777] = 1;
+  builder.add_track(0, 0, times, values);
+  const Baked baked = test::bake_document(builder);
+  ASSERT_EQ(baked.report.added_targets, 1U);
+  const test::GltfTruth truth(*baked.before, 0);
+  const std::vector<float> half = baked.after->weights_at(0, 0, 7776.5);
+  test::expect_exact(test::shown_error(truth, *baked.after, 0, {{{0.5}, half}}));
+}
+
+TEST(Bake, fitted_weightings_are_within_their_bound_of_the_weighted_normals) {
+  GltfBuilder builder;
+  test::Hills hills(10);
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas(1, 0.1)})));
+  builder.add_animation("");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  BakeOptions options;
+  options.weighting = Weighting::kUniform;
+  const Baked baked = test::bake_document(builder, options);
+  ASSERT_EQ(baked.error, "");
+  test::GltfTruth truth(*baked.before, 0);
+  truth.uniform = true;
+  const ShownError error = test::shown_error(truth, *baked.after, 0, test::poses_of(*baked.before, *baked.after, 0, 0));
+  EXPECT_GT(baked.report.meshes[0].largest_error, 0);
+  EXPECT_LT(baked.report.meshes[0].largest_error, 2);
+  EXPECT_LE(error.worst, baked.report.meshes[0].largest_error + 1e-3);
+  EXPECT_GT(test::track_error(baked).worst, 2 * error.worst) << "by area it is another normal";
+}
+
+TEST(Bake, fitted_weightings_of_targets_that_are_active_together_are_refused) {
+  GltfBuilder builder = test::hills_document(2);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  BakeOptions options;
+  options.weighting = Weighting::kAngle;
+  EXPECT_NE(test::bake_document(builder, options).error.find("--encode endpoint"), std::string::npos);
+  options.encoding = BakeEncoding::kEndpoint;
+  EXPECT_EQ(test::bake_document(builder, options).error, "");
+}
+
+TEST(Bake, errors_say_what_and_where) {
+  GltfBuilder builder = test::still_hills_document(1);
+  const auto expect = [](const GltfBuilder& document, const BakeOptions& options, const std::string& words) {
+    const std::string error = test::bake_document(document, options).error;
+    EXPECT_NE(error.find(words), std::string::npos) << error;
+  };
+  expect(builder, {.most_bytes = 10}, "bytes, and at most 10 are allowed");
+  builder.json["meshes"][0]["extras"] = 5;
+  expect(builder, {}, "/meshes/0/extras: it is no object");
+  GltfBuilder still;
+  test::Hills hills(1);
+  still.add_mesh(hills.primitive(still, {std::vector<float>(hills.positions.size())}));
+  expect(still, {}, "nothing moves");
+  GltfBuilder none;
+  none.add_mesh(hills.primitive(none, {}));
+  expect(none, {}, "nothing moves");
+}
+
+TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
+  for (const float scale : {1e-30F, 1e-12F, 1e12F, 1e18F}) {
+    SCOPED_TRACE(scale);
+    GltfBuilder builder;
+    test::Hills hills(11);
+    std::vector<float> deltas = hills.deltas();
+    for (float& x : hills.positions) x *= scale;
+    for (float& x : deltas) x *= scale;
+    builder.add_node(builder.add_mesh(hills.primitive(builder, {deltas})));
+    builder.add_animation("");
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+    test::expect_exact(test::track_error(test::bake_document(builder)));
+  }
+}
+
+// Every moving glTF of the data: along its animations, and each target alone.
+TEST(BakeRealData, exact_is_exact_in_every_file) {
+  const char* data = std::getenv("CHRONORMAL_DATA");
+  if (data == nullptr) GTEST_SKIP() << "CHRONORMAL_DATA names no folder";
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(data) + "/gltf")) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".gltf" && extension != ".glb") continue;
+    SCOPED_TRACE(entry.path().string());
+    const Result<GltfDocument> document = GltfDocument::open(entry.path().string());
+    ASSERT_TRUE(document.ok()) << document.error().text();
+    const Result<std::string> glb = GltfEdit(document.value()).bytes("a.glb");
+    ASSERT_TRUE(glb.ok()) << glb.error().text();
+    const Baked baked = test::bake_bytes(glb.value(), with(BakeEncoding::kExact));
+    if (baked.error.find("nothing moves") != std::string::npos) continue;
+    ASSERT_EQ(baked.error, "");
+    ++files;
+    std::map<std::size_t, test::GltfTruth> truths;
+    for (std::size_t a = 0; a < document.value().animations().size(); ++a) {
+      for (const GltfTrack& track : document.value().animations()[a].tracks) {
+        const std::size_t mesh = *document.value().nodes()[track.node].mesh;
+        const test::GltfTruth& truth = truths.try_emplace(mesh, *baked.before, mesh).first->second;
+        const ShownError error =
+            test::shown_error(truth, *baked.after, mesh, test::poses_of(*baked.before, *baked.after, a, track.channel));
+        EXPECT_LT(error.mean(), 0.01);
+        EXPECT_LT(error.worst, 0.05);
+      }
+    }
+    for (const BakedMesh& mesh : baked.report.meshes) {
+      for (std::size_t k = 0; k < document.value().meshes()[mesh.mesh].target_count; ++k) {
+        const ShownError error = target_error(baked, k, mesh.mesh);
+        EXPECT_LT(error.mean(), 0.01);
+        EXPECT_LT(error.worst, 0.05);
+      }
+    }
+  }
+  EXPECT_GE(files, 9U);
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,406 @@
+// What hosts and the specification ask of extra targets beside right normals, one test for each.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+#include "tests/support/gltf_compressed.h"
+
+namespace chronormal {
+namespace {
+
+using Json = nlohmann::json;
+using test::Baked;
+using test::GltfBuilder;
+
+const std::vector<float> kTimes = {0, 0.1F, 1};  // 0.1F is not 0.1
+
+// Two targets, and a track in which both move at once.
+GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
+  GltfBuilder builder = test::hills_document(2);
+  if (interpolation == std::string("CUBICSPLINE"))
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0, 1, 2, 0, 0, 1, 0.5F, 0, 0},
+                      interpolation);
+  else
+    builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0.25F, 0, 1}, interpolation);
+  return builder;
+}
+
+Baked baked(const GltfBuilder& builder, const BakeOptions& options = {}) {
+  Baked result = test::bake_document(builder, options);
+  EXPECT_EQ(result.error, "");
+  return result;
+}
+
+const Json& sampler_of(const Baked& baked, std::size_t animation = 0, std::size_t channel = 0) {
+  const Json& a = baked.json()["animations"][animation];
+  return a["samplers"][a["channels"][channel]["sampler"].get<std::size_t>()];
+}
+
+TEST(BakeTraps, positions_of_extra_targets_are_zeros_without_a_view_but_with_bounds) {
+  const Baked result = baked(moving_hills());
+  const Json& targets = result.mesh()["primitives"][0]["targets"];
+  ASSERT_EQ(targets.size(), 5U);
+  for (std::size_t k = 2; k < 5; ++k) {
+    const Json& accessor = result.json()["accessors"][targets[k]["POSITION"].get<std::size_t>()];
+    EXPECT_FALSE(accessor.contains("bufferView"));
+    EXPECT_EQ(accessor["min"], Json({0, 0, 0}));
+    EXPECT_EQ(accessor["max"], Json({0, 0, 0}));
+    for (const float x : result.numbers(targets[k]["POSITION"])) EXPECT_EQ(x, 0);
+  }
+}
+
+TEST(BakeTraps, dense_zeros_are_bytes_of_every_accessor) {
+  const Baked result = baked(moving_hills(), {.dense_zeros = true});
+  const std::size_t old = result.before->json["accessors"].size();
+  for (std::size_t a = old; a < result.json()["accessors"].size(); ++a) {
+    EXPECT_TRUE(result.json()["accessors"][a].contains("bufferView")) << a;
+    EXPECT_FALSE(result.json()["accessors"][a].contains("sparse")) << a;
+  }
+}
+
+TEST(BakeTraps, all_primitives_of_a_mesh_have_the_same_number_of_targets) {
+  GltfBuilder builder;
+  test::Hills hills(3);
+  const std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
+  const std::size_t mesh = builder.add_mesh(hills.primitive(builder, deltas));
+  builder.add_primitive(mesh, hills.primitive(builder, deltas, false));  // flat
+  Json points = hills.primitive(builder, deltas);
+  points["mode"] = 0;
+  points["targets"][1]["NORMAL"] = builder.add_positions(deltas[0]);
+  builder.add_primitive(mesh, points);
+  builder.add_node(mesh);
+  builder.add_animation("");
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0.25F, 0, 1});
+  const Baked result = baked(builder);
+  const Json& primitives = result.mesh()["primitives"];
+  EXPECT_EQ(result.report.meshes[0].left_flat, 1U);
+  for (const Json& primitive : primitives) {
+    ASSERT_EQ(primitive["targets"].size(), 5U);
+    for (const Json& target : primitive["targets"]) EXPECT_TRUE(target.contains("POSITION"));
+  }
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_TRUE(primitives[0]["targets"][k].contains("NORMAL"));
+    EXPECT_FALSE(primitives[1]["targets"][k].contains("NORMAL")) << "a flat primitive has no base normals";
+    EXPECT_TRUE(primitives[2]["targets"][k].contains("NORMAL")) << "as another target of it has";
+  }
+  EXPECT_EQ(primitives[2]["targets"][1]["NORMAL"], points["targets"][1]["NORMAL"]) << "points keep what they have";
+  test::expect_exact(test::track_error(result));
+}
+
+TEST(BakeTraps, targets_that_lack_what_others_have_get_zeros) {
+  GltfBuilder builder = moving_hills();
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["targets"].push_back({{"NORMAL", primitive["attributes"]["NORMAL"]}});  // moves no vertex
+  builder.json["animations"] = Json::array();
+  builder.add_animation("");
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 0, 1, 0.25F, 0, 0, 1, 0});
+  const Baked result = baked(builder);
+  const Json& third = result.mesh()["primitives"][0]["targets"][2];
+  EXPECT_EQ(third["NORMAL"], primitive["attributes"]["NORMAL"]) << "a target that moves nothing keeps its normals";
+  for (const float x : result.numbers(third["POSITION"])) EXPECT_EQ(x, 0);
+}
+
+TEST(BakeTraps, extra_targets_have_tangents_where_others_have) {
+  GltfBuilder builder = moving_hills();
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TANGENT"] = builder.add_accessor("VEC4", std::vector<float>(100, 0.5F));
+  primitive["targets"][0]["TANGENT"] = primitive["targets"][0]["POSITION"];
+  const Baked result = baked(builder);
+  for (std::size_t k = 2; k < 5; ++k) {
+    for (const float x : result.numbers(result.mesh()["primitives"][0]["targets"][k].at("TANGENT"))) EXPECT_EQ(x, 0);
+  }
+}
+
+TEST(BakeTraps, default_weights_grow_by_their_products) {
+  GltfBuilder builder = moving_hills();
+  builder.json["meshes"][0]["weights"] = {0.5, 3};
+  builder.json["nodes"][0]["weights"] = {0.25, 2};
+  builder.add_node(0);
+  const Baked result = baked(builder);
+  EXPECT_EQ(result.mesh()["weights"], Json({0.5, 3, 0.25, 1.5, 9}));
+  EXPECT_EQ(result.json()["nodes"][0]["weights"], Json({0.25, 2, 0.0625, 0.5, 4}));
+  EXPECT_FALSE(result.json()["nodes"][1].contains("weights"));
+  EXPECT_FALSE(baked(moving_hills()).mesh().contains("weights"));
+}
+
+TEST(BakeTraps, target_names_grow_where_there_are_some) {
+  GltfBuilder builder = moving_hills();
+  EXPECT_FALSE(baked(builder).mesh()["extras"].contains("targetNames"));
+  builder.json["meshes"][0]["extras"] = {{"targetNames", {"smile", "blink"}}, {"mine", nullptr}};
+  const Baked result = baked(builder);
+  EXPECT_EQ(result.mesh()["extras"]["targetNames"],
+            Json({"smile", "blink", "chronormal w0*w0", "chronormal w0*w1", "chronormal w1*w1"}));
+  EXPECT_TRUE(result.mesh()["extras"]["mine"].is_null());
+  EXPECT_EQ(result.mesh()["extras"]["chronormal"]["extras"][1], Json({{"target", 3}, {"factors", {0, 1}}}));
+}
+
+TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
+  const Baked result = baked(moving_hills());
+  const Json& sampler = sampler_of(result);
+  EXPECT_EQ(sampler["interpolation"], "CUBICSPLINE");
+  EXPECT_EQ(sampler["input"], sampler_of(baked(moving_hills("STEP")))["input"]) << "no keys were added";
+  EXPECT_EQ(result.report.converted_tracks, 1U);
+  // Keys 0, 0.1F, 1: weights (0, 0), (1, 0.25), (0, 1); slopes per second from the float32 times.
+  const double first = 0.1F, second = 1 - first, a = 1 / first, b = 0.25 / first, c = -1 / second, d = 0.75 / second;
+  const std::vector<double> expected = {0,       0,    0,     0,
+                                        0,  //
+                                        0,       0,    0,     0,
+                                        0,  //
+                                        a,       b,    0,     0,
+                                        0,  //
+                                        a,       b,    2 * a, b + 0.25 * a,
+                                        0.5 * b,  //
+                                        1,       0.25, 1,     0.25,
+                                        0.0625,  //
+                                        c,       d,    2 * c, d + 0.25 * c,
+                                        0.5 * d,  //
+                                        c,       d,    0,     c,
+                                        2 * d,  //
+                                        0,       1,    0,     0,
+                                        1,  //
+                                        0,       0,    0,     0,
+                                        0};
+  const std::vector<float> values = result.numbers(sampler["output"]);
+  ASSERT_EQ(values.size(), expected.size());
+  for (std::size_t n = 0; n < values.size(); ++n) EXPECT_EQ(values[n], static_cast<float>(expected[n])) << n;
+  test::expect_exact(test::track_error(result));
+}
+
+TEST(BakeTraps, linear_tracks_in_which_products_are_linear_stay) {
+  GltfBuilder builder = moving_hills();
+  builder.add_animation("one holds still");
+  builder.add_track(1, 0, kTimes, std::vector<float>{0.5F, 0, 0.5F, 0, 0.5F, 0});
+  const Baked result = baked(builder);
+  const Json& sampler = sampler_of(result, 1);
+  EXPECT_EQ(sampler["interpolation"], "LINEAR");
+  EXPECT_EQ(result.numbers(sampler["output"]),
+            (std::vector<float>{0.5F, 0, 0.25F, 0, 0, 0.5F, 0, 0.25F, 0, 0, 0.5F, 0, 0.25F, 0, 0}));
+  EXPECT_EQ(result.report.converted_tracks, 1U);
+  test::expect_exact(test::track_error(result, 1));
+}
+
+TEST(BakeTraps, steps_stay_steps_with_the_products_of_keys) {
+  const Baked result = baked(moving_hills("STEP"));
+  EXPECT_EQ(sampler_of(result)["interpolation"], "STEP");
+  EXPECT_EQ(result.numbers(sampler_of(result)["output"]),
+            (std::vector<float>{0, 0, 0, 0, 0, 1, 0.25F, 1, 0.25F, 0.0625F, 0, 1, 0, 0, 1}));
+  test::expect_exact(test::track_error(result));
+}
+
+TEST(BakeTraps, single_keys_stay) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, std::vector<float>{2}, std::vector<float>{0.5F});
+  const Baked result = baked(builder);
+  EXPECT_EQ(sampler_of(result)["interpolation"], "LINEAR");
+  EXPECT_EQ(result.numbers(sampler_of(result)["output"]), (std::vector<float>{0.5F, 0.25F}));
+}
+
+TEST(BakeTraps, cubic_splines_get_keys_and_a_stated_error) {
+  const Baked result = baked(moving_hills("CUBICSPLINE"));
+  const Json& sampler = sampler_of(result);
+  const std::vector<float> times = result.numbers(sampler["input"]);
+  EXPECT_GT(times.size(), 2U);
+  EXPECT_EQ(times.front(), 0);
+  EXPECT_EQ(times.back(), 1);
+  const Json& input = result.json()["accessors"][sampler["input"].get<std::size_t>()];
+  EXPECT_EQ(input["min"], Json({0.0}));
+  EXPECT_EQ(input["max"], Json({1.0}));
+  EXPECT_GT(result.report.meshes[0].resampling_error, 0);
+  EXPECT_LE(result.report.meshes[0].resampling_error, 0.001);
+  const test::ShownError error = test::track_error(result);
+  test::expect_exact(error);
+  EXPECT_LE(error.worst, result.report.meshes[0].resampling_error + 1e-3) << "but for float32";
+  // The weights that were there are as they were.
+  for (int i = 0; i <= 100; ++i) {
+    const auto before = result.before->weights_at(0, 0, i / 100.0), after = result.after->weights_at(0, 0, i / 100.0);
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(before[k], after[k], 1e-6F);
+  }
+  const Baked coarse = baked(moving_hills("CUBICSPLINE"), {.tolerance = 0.5});
+  EXPECT_LT(coarse.numbers(sampler_of(coarse)["input"]).size(), times.size());
+  EXPECT_LE(test::track_error(coarse).worst, coarse.report.meshes[0].resampling_error + 1e-3);
+}
+
+TEST(BakeTraps, every_animation_is_extended) {
+  GltfBuilder builder = moving_hills();
+  for (int n = 0; n < 3; ++n) {
+    builder.add_animation("more");
+    builder.add_track(static_cast<std::size_t>(n) + 1, 0, kTimes, std::vector<float>{0, 0, 1, 1, 0.5F, 2});
+  }
+  const Baked result = baked(builder);
+  for (std::size_t a = 0; a < 4; ++a) {
+    EXPECT_EQ(result.after->weights_at(a, 0, 0.3).size(), 5U);
+    test::expect_exact(test::track_error(result, a));
+  }
+}
+
+TEST(BakeTraps, instances_get_what_any_of_their_tracks_needs) {
+  GltfBuilder builder = test::hills_document(2);
+  builder.add_node(0);
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});             // target 0 alone
+  builder.add_track(0, 1, kTimes, std::vector<float>{0, 0, 0, 1, 0, 0.5F}, "STEP");  // target 1 alone
+  const Baked result = baked(builder);
+  ASSERT_EQ(result.report.meshes[0].extras.size(), 2U) << "never both at once";
+  EXPECT_EQ(result.report.meshes[0].undriven, 0U);
+  EXPECT_EQ(result.report.converted_tracks, 1U);
+  test::expect_exact(test::track_error(result, 0, 0));
+  test::expect_exact(test::track_error(result, 0, 1));
+}
+
+TEST(BakeTraps, instances_that_stand_still_are_exact_too) {
+  for (const bool of_node : {true, false}) {
+    GltfBuilder builder = test::hills_document(2);
+    builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});  // target 0 alone
+    builder.add_node(0);
+    (of_node ? builder.json["nodes"][1] : builder.json["meshes"][0])["weights"] = {0.5, 0.75};
+    const Baked result = baked(builder);
+    ASSERT_EQ(result.report.meshes[0].extras.size(), 3U);
+    const Json& weights = (of_node ? result.json()["nodes"][1] : result.mesh())["weights"];
+    const test::Pose pose = {{0.5, 0.75}, weights.get<std::vector<float>>()};
+    test::expect_exact(test::shown_error(test::GltfTruth(*result.before, 0), *result.after, 0, {pose}));
+  }
+}
+
+TEST(BakeTraps, a_sampler_that_only_this_mesh_uses_is_changed_in_place) {
+  GltfBuilder builder = moving_hills();
+  builder.add_node(0);
+  builder.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"node", 1}, {"path", "weights"}}}});
+  const Baked result = baked(builder);
+  EXPECT_EQ(result.json()["animations"][0]["samplers"].size(), 1U);
+  test::expect_exact(test::track_error(result, 0, 0));
+  test::expect_exact(test::track_error(result, 0, 1));
+}
+
+TEST(BakeTraps, a_sampler_that_other_meshes_use_is_left_to_them) {
+  GltfBuilder builder = moving_hills();
+  test::Hills other(9);
+  const std::vector<float> still(other.positions.size());
+  builder.add_node(builder.add_mesh(other.primitive(builder, {still, still})));           // node 1 does not move
+  builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas(), still})));  // node 2 needs less
+  for (const int node : {1, 2})
+    builder.json["animations"][0]["channels"].push_back(
+        {{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  const Baked result = baked(builder);
+  const Json& animation = result.json()["animations"][0];
+  EXPECT_EQ(animation["samplers"].size(), 3U);
+  EXPECT_EQ(animation["samplers"][0], result.before->json["animations"][0]["samplers"][0]);
+  EXPECT_EQ(result.after->weights_at(0, 0, 0.3).size(), 5U);
+  EXPECT_EQ(result.after->weights_at(0, 1, 0.3).size(), 2U);
+  EXPECT_EQ(result.after->weights_at(0, 2, 0.3).size(), 3U);
+  test::expect_exact(test::track_error(result, 0, 0));
+  test::expect_exact(test::track_error(result, 0, 2));
+}
+
+TEST(BakeTraps, of_meshes_that_share_a_sampler_each_gets_its_own) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
+  test::Hills other(9);
+  builder.add_node(builder.add_mesh(other.primitive(builder, {other.positions})));  // grows: needs no extra target
+  builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas()})));
+  for (const int node : {1, 2})
+    builder.json["animations"][0]["channels"].push_back(
+        {{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  const Baked result = baked(builder);
+  EXPECT_EQ(result.json()["animations"][0]["samplers"].size(), 3U);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    EXPECT_EQ(result.after->weights_at(0, channel, 0.3).size(), channel == 1 ? 1U : 2U);
+    test::expect_exact(test::track_error(result, 0, channel));
+  }
+  GltfBuilder two = test::hills_document(1);
+  two.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
+  two.add_node(two.add_mesh(other.primitive(two, {other.deltas(), other.deltas()})));
+  two.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"node", 1}, {"path", "weights"}}}});
+  EXPECT_FALSE(test::bake_document(two).ok()) << "a track has weights for all targets";
+  two.json["meshes"][1] = Json::object();
+  two.json["meshes"][1]["primitives"] = {other.primitive(two, {other.deltas()})};
+  const Baked shared = baked(two);
+  EXPECT_EQ(shared.json()["animations"][0]["samplers"].size(), 2U);
+  test::expect_exact(test::track_error(shared, 0, 0));
+  test::expect_exact(test::track_error(shared, 0, 1));
+}
+
+TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, kTimes, std::vector<std::uint8_t>{0, 255, 51});
+  const Baked result = baked(builder);
+  const Json& output = result.json()["accessors"][sampler_of(result)["output"].get<std::size_t>()];
+  EXPECT_EQ(output["componentType"], 5126);
+  EXPECT_FALSE(output.value("normalized", false));
+  test::expect_exact(test::track_error(result));
+}
+
+TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {
+  const auto warns = [](const Baked& result) {
+    for (const std::string& warning : result.report.warnings) {
+      if (warning.find("8 morphed attributes") != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(warns(baked(moving_hills())));  // 5 targets of positions and normals
+  GltfBuilder one = test::hills_document(1);
+  one.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
+  EXPECT_FALSE(warns(baked(one)));
+}
+
+TEST(BakeTraps, primitives_that_draco_compresses_get_the_same_deltas) {
+  test::Hills hills(12);
+  const std::vector<float> deltas = hills.deltas();
+  const auto animate = [](GltfBuilder& builder, Json primitive) {
+    builder.add_node(builder.add_mesh(std::move(primitive)));
+    builder.add_animation("");
+    builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
+  };
+  GltfBuilder plain, compressed;
+  animate(plain, hills.primitive(plain, {deltas}));
+  const std::string coded = test::draco_mesh(hills.positions, {hills.corners.begin(), hills.corners.end()},
+                                             test::DracoOrder::kKept, hills.normals);
+  animate(compressed, test::draco_primitive(compressed, coded, hills.vertices(), hills.corners.size(), true,
+                                            {{{"POSITION", compressed.add_positions(deltas)}}}));
+  const Baked expected = baked(plain), result = baked(compressed);
+  const Json& primitive = result.mesh()["primitives"][0];
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(result.numbers(primitive["targets"][k]["NORMAL"]),
+              expected.numbers(expected.mesh()["primitives"][0]["targets"][k]["NORMAL"]));
+  }
+  EXPECT_EQ(primitive["extensions"], compressed.json["meshes"][0]["primitives"][0]["extensions"]);
+  EXPECT_NE(test::bake_document(compressed, {.recompute_base = true}).error.find("Draco"), std::string::npos);
+}
+
+TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
+  const Baked result = baked(moving_hills());
+  EXPECT_TRUE(result.after->bin().starts_with(result.before->bin()));
+  const auto& pointers = result.report.pointers;
+  EXPECT_TRUE(std::is_sorted(pointers.begin(), pointers.end()));
+  Json patched = result.after->json;
+  for (const std::string& pointer : pointers) {
+    const Json::json_pointer at(pointer);
+    if (result.before->json.contains(at)) patched[at] = result.before->json[at];
+  }
+  for (auto& [key, value] : result.before->json["meshes"][0]["primitives"][0]["attributes"].items())
+    EXPECT_EQ(result.mesh()["primitives"][0]["attributes"][key], value);
+  // What is new lies behind what there was.
+  for (const Json::json_pointer& list : {Json::json_pointer("/accessors"), Json::json_pointer("/bufferViews"),
+                                         Json::json_pointer("/meshes/0/primitives/0/targets")}) {
+    Json& items = patched[list];
+    items.erase(items.begin() + static_cast<std::ptrdiff_t>(result.before->json[list].size()), items.end());
+  }
+  patched["meshes"][0].erase("extras");
+  for (Json& target : patched["meshes"][0]["primitives"][0]["targets"]) target.erase("NORMAL");
+  EXPECT_EQ(patched, result.before->json);
+}
+
+TEST(BakeTraps, weights_that_an_extension_drives_are_refused) {
+  GltfBuilder builder = moving_hills();
+  builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
+  builder.json["animations"][0]["channels"].push_back(
+      {{"sampler", 0},
+       {"target",
+        {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/meshes/0/weights"}}}}}}}});
+  EXPECT_NE(test::bake_document(builder).error.find("KHR_animation_pointer"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chronormal
