@@ -1,0 +1,223 @@
+// Moving glTF files made here: a tube that twists, waves and swells, with what may go wrong when it is baked.
+import { Accessor, Document } from '@gltf-transform/core';
+import { ExactNormals } from './exact.mjs';
+import { newIO } from './reader.mjs';
+
+// A tube around the y axis, closed around, open at its ends: rows x columns quads, each two triangles.
+function tube(columns, rows) {
+  const indices = [];
+  for (let r = 0; r < rows; ++r) {
+    for (let c = 0; c < columns; ++c) {
+      const next = (c + 1) % columns;
+      const [a, b] = [r * columns + c, r * columns + next];
+      indices.push(a, a + columns, b, b, a + columns, b + columns);
+    }
+  }
+  return { columns, rows, indices: Uint16Array.from(indices) };
+}
+
+// place(angle, height) is where a vertex is: height from -1 to 1.
+function placed({ columns, rows }, place) {
+  const positions = [];
+  for (let r = 0; r <= rows; ++r)
+    for (let c = 0; c < columns; ++c) positions.push(...place((2 * Math.PI * c) / columns, (2 * r) / rows - 1));
+  return Float32Array.from(positions);
+}
+
+const straight = (a, y) => [0.55 * Math.cos(a), y, 0.55 * Math.sin(a)];
+
+function twisted(turn) {
+  return (a, y) => straight(a + turn * (y + 1) * 0.5, y);
+}
+
+// Ripples across and around.
+function waved(a, y) {
+  const radius = 0.55 + 0.22 * Math.sin(9 * y + 2 * a);
+  return [radius * Math.cos(a), y, radius * Math.sin(a)];
+}
+
+const minus = (a, b) => a.map((x, i) => x - b[i]);
+
+function unitNormals(positions, indices) {
+  const zeros = new Float32Array(positions.length).map((_, i) => (i % 3 === 0 ? 1 : 0));
+  const flat = { positions, normals: zeros, indices, triangles: true, targets: [] };
+  const exact = new ExactNormals({ primitives: [flat] });
+  const sums = exact.sums([]);
+  const result = new Float32Array(positions.length);
+  exact.elementOf[0].forEach((element, v) => {
+    const sum = sums.subarray(3 * element, 3 * element + 3);
+    const length = Math.hypot(...sum);
+    for (let c = 0; c < 3; ++c) result[3 * v + c] = sum[c] / length;
+  });
+  return result;
+}
+
+// A primitive as writeFile() takes it: base and targets with the right normal of each shape stored.
+function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
+  const positions = placed(grid, base);
+  const normals = unitNormals(positions, grid.indices);
+  return {
+    positions,
+    normals,
+    indices: grid.indices,
+    targets: targets.map((target) => {
+      const there = placed(grid, target);
+      return {
+        positions: minus(there, positions),
+        normals: targetNormals ? minus(unitNormals(there, grid.indices), normals) : null,
+      };
+    }),
+  };
+}
+
+// Only some triangles of a primitive, with all of its vertices.
+function part(primitive, from, to) {
+  return { ...primitive, indices: primitive.indices.slice(from, to) };
+}
+
+// {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?} as one GLB.
+async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights = null }) {
+  const document = new Document();
+  const buffer = document.createBuffer();
+  const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  const mesh = document.createMesh('tube');
+  for (const { positions, normals, indices, targets } of primitives) {
+    const material = document.createMaterial().setDoubleSided(true);
+    const primitive = document.createPrimitive().setMaterial(material);
+    primitive.setIndices(accessor(Accessor.Type.SCALAR, indices));
+    primitive.setAttribute('POSITION', accessor(Accessor.Type.VEC3, positions));
+    if (normals) primitive.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, normals));
+    for (const target of targets) {
+      const morph = document.createPrimitiveTarget();
+      morph.setAttribute('POSITION', accessor(Accessor.Type.VEC3, target.positions));
+      if (normals && target.normals) morph.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, target.normals));
+      primitive.addTarget(morph);
+    }
+    mesh.addPrimitive(primitive);
+  }
+  mesh.setWeights(weights ?? primitives[0].targets.map(() => 0));
+  const scene = document.createScene();
+  document.getRoot().setDefaultScene(scene);
+  const placedNodes = nodes.map(({ at, weights: own }) => {
+    const node = document.createNode().setMesh(mesh).setTranslation(at);
+    if (own) node.setWeights(own);
+    scene.addChild(node);
+    return node;
+  });
+  if (tracks.length > 0) {
+    const animation = document.createAnimation('move');
+    for (const { node, interpolation, times, values } of tracks) {
+      const sampler = document.createAnimationSampler().setInterpolation(interpolation);
+      sampler.setInput(accessor(Accessor.Type.SCALAR, Float32Array.from(times)));
+      sampler.setOutput(accessor(Accessor.Type.SCALAR, Float32Array.from(values)));
+      const channel = document.createAnimationChannel().setTargetPath('weights');
+      channel.setTargetNode(placedNodes[node]).setSampler(sampler);
+      animation.addSampler(sampler).addChannel(channel);
+    }
+  }
+  await newIO().write(path, document);
+}
+
+const linear = (values, node = 0, times = values.map((_, k) => 0.75 * k)) => ({
+  node,
+  interpolation: 'LINEAR',
+  times,
+  values: values.flat(),
+});
+
+const grid = tube(36, 48);
+const twist = () => primitiveOf(grid, straight, [twisted(2.4)]);
+const wave = () => primitiveOf(grid, straight, [waved]);
+
+// Name -> what writes it. All have one target active at a time, but for `pair`.
+export const fixtures = {
+  twist: (path) => writeFile(path, { primitives: [twist()], tracks: [linear([0, 1, 0.25])] }),
+  wave: (path) => writeFile(path, { primitives: [wave()], tracks: [linear([0, 1])] }),
+  no_target_normals: (path) =>
+    writeFile(path, {
+      primitives: [primitiveOf(grid, straight, [waved], { targetNormals: false })],
+      tracks: [linear([0, 1])],
+    }),
+  spline: (path) =>
+    writeFile(path, {
+      primitives: [wave()],
+      // In-tangent, value and out-tangent of three keys: the weight goes beyond 0.8, and out of [0, 1].
+      tracks: [{ node: 0, interpolation: 'CUBICSPLINE', times: [0, 1, 2], values: [0, 0, 6, 0, 0.8, -3, 0.4, 0.2, 0] }],
+    }),
+  step: (path) =>
+    writeFile(path, {
+      primitives: [wave()],
+      tracks: [{ node: 0, interpolation: 'STEP', times: [0, 0.5, 1, 1.5], values: [0, 0.5, 0.4, 0.25] }],
+    }),
+  two_primitives: (path) => {
+    const whole = twist();
+    const half = 3 * 36 * 48;
+    return writeFile(path, {
+      primitives: [part(whole, 0, half), part(whole, half, 2 * half)],
+      tracks: [linear([0, 1])],
+    });
+  },
+  one_flat_primitive: (path) => {
+    const whole = wave();
+    const half = 3 * 36 * 48;
+    const targets = whole.targets.map(({ positions }) => ({ positions, normals: null }));
+    return writeFile(path, {
+      primitives: [part(whole, 0, half), { ...part(whole, half, 2 * half), normals: null, targets }],
+      tracks: [linear([0, 1])],
+    });
+  },
+  instances: (path) =>
+    writeFile(path, {
+      primitives: [twist()],
+      nodes: [{ at: [-1.3, 0, 0] }, { at: [0, 0, 0] }, { at: [1.3, 0, 0], weights: [0.5] }],
+      tracks: [linear([0, 1, 0]), linear([1, 0.25], 1, [0, 1.5])],
+    }),
+  // Base normals that an author has bent away from those of the geometry.
+  authored: (path) => {
+    const primitive = twist();
+    for (let v = 0; v < primitive.normals.length; v += 3) {
+      const [x, y, z] = [primitive.normals[v], 0.35, primitive.normals[v + 2]];
+      primitive.normals.set([x, y, z].map((c) => c / Math.hypot(x, y, z)), v);
+    }
+    primitive.targets[0].normals = null;
+    return writeFile(path, { primitives: [primitive], tracks: [linear([0, 1])] });
+  },
+  // Two targets one after the other, as an exporter writes a sequence of keyframes.
+  keyframes: (path) =>
+    writeFile(path, {
+      primitives: [primitiveOf(grid, straight, [twisted(1.8), waved])],
+      tracks: [linear([[0, 0], [1, 0], [0, 1], [0, 0]])],
+    }),
+  pair: (path) =>
+    writeFile(path, {
+      primitives: [primitiveOf(grid, straight, [twisted(1.2), waved])],
+      tracks: [linear([[0, 0], [1, 0.3], [0.2, 1]])],
+    }),
+};
+
+// The keyframes of a sequence, as the text of OBJ files.
+export function sequenceFrames() {
+  return [straight, twisted(1.6), waved].map((place) => {
+    const positions = placed(grid, place);
+    const lines = [];
+    for (let v = 0; v < positions.length; v += 3) lines.push(`v ${[...positions.subarray(v, v + 3)].join(' ')}`);
+    for (let f = 0; f < grid.indices.length; f += 3)
+      lines.push(`f ${[...grid.indices.subarray(f, f + 3)].map((v) => v + 1).join(' ')}`);
+    return `${lines.join('\n')}\n`;
+  });
+}
+
+// A vase that gets flutes and twists, for the picture: with target normals, or without, as many exporters write it.
+export function writeVase(path, { targetNormals }) {
+  const profile = (y) => 0.45 + 0.13 * Math.sin(2.4 * y + 2);
+  const fluted = (a, y) => {
+    const depth = 0.35 * Math.min(1, 3 * (1 - y * y));
+    const radius = profile(y) * (1 + depth * Math.sin(6 * a - 9 * y));
+    const turned = a + 1.1 * (y + 1);
+    return [radius * Math.cos(turned), y, radius * Math.sin(turned)];
+  };
+  const fine = tube(160, 140);
+  const plain = (a, y) => [0.45 * Math.cos(a), y, 0.45 * Math.sin(a)];
+  const primitive = primitiveOf(fine, plain, [fluted], { targetNormals });
+  return writeFile(path, { primitives: [primitive], tracks: [linear([0, 1], 0, [0, 1])] });
+}

@@ -1,0 +1,38 @@
+// The page's entry: both clients behind the same three functions, and the comparison, so that pixels stay in the page.
+import * as babylon from './babylon_page.mjs';
+import { differenceOfPictures, drawPicture } from './picture.mjs';
+import { compareNormals } from './pixels.mjs';
+import * as three from './three_page.mjs';
+
+const clients = { three, babylon };
+
+const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+const loaded = (client, base64) => clients[client].load(bytesOf(base64));
+
+// For each moment {time, truth, view}: what the client draws of each file at that time of an animation, against the
+// still file `truth`. Files are GLB in base64. Returns, for each moment, what compareNormals() says of each file.
+window.compareInClient = async (client, files, animation, moments, size) => {
+  const { play, drawNormals } = clients[client];
+  const models = [];
+  for (const file of files) models.push(await loaded(client, file));
+  const results = [];
+  for (const { time, truth, view } of moments) {
+    const still = await loaded(client, truth);
+    play(still, null, 0);
+    const expected = await drawNormals(still, view, size);
+    const row = [];
+    for (const model of models) {
+      play(model, animation, time);
+      row.push(compareNormals(await drawNormals(model, view, size), expected, size));
+    }
+    still.scene.dispose?.();
+    results.push(row);
+  }
+  for (const model of models) model.scene.dispose?.();
+  return results;
+};
+
+window.drawPicture = (items, ...others) =>
+  drawPicture(items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
+
+window.differenceOfPictures = (...pictures) => differenceOfPictures(...pictures.map(bytesOf));

@@ -1,0 +1,25 @@
+// What the validator of Khronos says of a file, errors and warnings only.
+import { readFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import validator from 'gltf-validator';
+
+const WARNING = 1;
+
+// Each as "CODE at POINTER: message".
+export async function complaints(path) {
+  const report = await validator.validateBytes(new Uint8Array(await readFile(path)), {
+    uri: path,
+    maxIssues: 0,
+    externalResourceFunction: async (uri) =>
+      new Uint8Array(await readFile(join(dirname(path), decodeURIComponent(uri)))),
+  });
+  return report.issues.messages
+    .filter((issue) => issue.severity <= WARNING)
+    .map((issue) => `${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
+}
+
+// Those of a file that the file it was made from did not have: bake does not mend what it is given.
+export async function newComplaints(path, sourcePath) {
+  const before = new Set(await complaints(sourcePath));
+  return (await complaints(path)).filter((complaint) => !before.has(complaint));
+}
