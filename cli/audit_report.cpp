@@ -21,7 +21,10 @@ using Kind = AuditFinding::Kind;
 constexpr std::size_t kMostRows = 16, kLongestName = 32, kLongestBar = 40;
 constexpr double kSeen = 0.005;  // degrees: what two decimals show
 
-std::string degrees(double value) { return fmt::format("{:.2f}", value); }
+// Two decimals, or the power of ten of what would be none of it.
+std::string degrees(double value) {
+  return value == 0 || value >= 0.005 ? fmt::format("{:.2f}", value) : fmt::format("{:.0e}", value);
+}
 
 std::string named(std::string what, const std::string& name) {
   return name.empty() ? what : what.append(" (").append(printable(name, kLongestName)).append(")");

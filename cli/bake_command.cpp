@@ -84,15 +84,19 @@ std::string drivers_path(const std::string& output) {
   return std::filesystem::path(output).replace_extension(".drivers.json").string();
 }
 
-std::optional<BeforeAndAfter> audit_both(const GltfDocument& before, const BakeOptions& how, const Options& options) {
+// What audit(how) says of what was there before, and audit() of the file that was written.
+template <class AuditBefore>
+std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& options,
+                                         const AuditBefore& audit_before) {
+  if (options.no_audit || is_stream(options.common.output)) return std::nullopt;
+  AuditOptions audited;
+  audited.weighting = how.weighting;
   const GltfOptions gltf{.allow_external = options.input.allow_external};
   const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
   if (!after) return std::nullopt;
-  AuditOptions audited;
-  audited.weighting = how.weighting;
-  const Result<Audit> first = audit(before, audited), second = audit(after.value(), audited);
+  const Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
   if (!first || !second || first.value().subjects.empty()) return std::nullopt;
-  return BeforeAndAfter{first.value().error.worst, second.value().error.worst};
+  return BeforeAndAfter{first.value().error, second.value().error};
 }
 
 Status write_baked(const Options& options, std::string_view bytes, const GltfBake& baked, const GltfEdit& edit) {
@@ -142,8 +146,10 @@ int run_gltf(const Options& options, BakeOptions how, const FileBytes& file, Pro
       return fail(written.error());
   }
   warn(warnings);
-  if (!options.no_audit && baked.value().changed && !is_stream(output) && file.bytes().size() <= kMostAudited)
-    told.audit = audit_both(document.value(), how, options);
+  if (baked.value().changed && file.bytes().size() <= kMostAudited) {
+    told.audit =
+        audit_both(how, options, [&](const AuditOptions& audited) { return audit(document.value(), audited); });
+  }
   say(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
   return kExitDone;
 }
@@ -177,7 +183,13 @@ int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   if (!baked) return fail(baked.error());
   if (const Status written = write_output(output, glb, options.common.force); !written) return fail(written.error());
   warn(baked.value().warnings);
-  const BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
+  BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
+  if (glb.size() <= kMostAudited) {
+    told.audit = audit_both(how, options, [&](AuditOptions audited) {
+      audited.rule = AuditRule::kNlerp;
+      return audit(read.value().motion, SequenceNormals{}, false, audited);
+    });
+  }
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
   say(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   return kExitDone;

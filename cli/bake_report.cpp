@@ -44,8 +44,9 @@ std::string lines_after(const BakeReport& report) {
   if (report.drivers_file)
     text += fmt::format("what a host must compute for the extra targets is in {}\n", printable(*report.drivers_file));
   if (report.audit) {
-    text += fmt::format("worst error by audit: {} -> {} degrees\n", four_decimals(report.audit->before),
-                        four_decimals(report.audit->after));
+    const auto& [before, after] = *report.audit;
+    text += fmt::format("by audit: worst {} -> {}, mean {} -> {} degrees\n", four_decimals(before.worst),
+                        four_decimals(after.worst), four_decimals(before.mean()), four_decimals(after.mean()));
   }
   return text;
 }
@@ -74,6 +75,15 @@ Json mesh_json(const BakedMesh& mesh) {
           {"vertices_without_base", mesh.without_base},
           {"target_error_degrees", mesh.largest_error},
           {"track_error_degrees", mesh.resampling_error}};
+}
+
+void add_audit(const BakeReport& report, Json& json) {
+  if (!report.audit) return;
+  const auto& [before, after] = *report.audit;
+  json["audit"] = {{"worst_degrees_before", before.worst},
+                   {"worst_degrees_after", after.worst},
+                   {"mean_degrees_before", before.mean()},
+                   {"mean_degrees_after", after.mean()}};
 }
 
 std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace).append("\n"); }
@@ -110,8 +120,10 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   text += fmt::format("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
                       counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
                       counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
-  text += fmt::format("{}: at most {} degrees from the exact normals\n", encoding_name(encoding),
-                      four_decimals(bake.largest_error));
+  text += encoding == BakeEncoding::kExact && bake.largest_error == 0
+              ? "exact at every instant\n"
+              : fmt::format("{}: at most {} degrees from the exact normals\n", encoding_name(encoding),
+                            four_decimals(bake.largest_error));
   return text + lines_after(report);
 }
 
@@ -127,8 +139,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
   json["pointers"] = bake.pointers;
   json["warnings"] = bake.warnings;
   json["drivers"] = report.drivers_file ? Json(*report.drivers_file) : Json();
-  if (report.audit)
-    json["audit"] = {{"worst_degrees_before", report.audit->before}, {"worst_degrees_after", report.audit->after}};
+  add_audit(report, json);
   return dumped(json);
 }
 
@@ -143,6 +154,7 @@ std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const Bak
   json["error_degrees"] = bake.largest_error;
   json["without_normals"] = bake.without_normals;
   json["warnings"] = bake.warnings;
+  add_audit(report, json);
   return dumped(json);
 }
 

@@ -6,13 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 
 namespace chronormal::cli {
 
-/// The worst errors of a file before and after, in degrees.
+/// The errors of what is shown before and after, by audit.
 struct BeforeAndAfter {
-  double before = 0, after = 0;
+  MotionError before, after;
 };
 
 struct BakeReport {

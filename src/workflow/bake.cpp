@@ -176,9 +176,10 @@ class Baker {
                                "weights near 0");
     }
     if (!plan.extras.empty() && (mesh.target_count + plan.extras.size()) * 2 > kMorphedAttributes) {
-      bake_.warnings.push_back(name + std::to_string(mesh.target_count + plan.extras.size()) +
-                               " targets are more than the 8 morphed attributes that every host has room for; some "
-                               "leave out those of the smallest weights");
+      const std::size_t targets = mesh.target_count + plan.extras.size();
+      bake_.warnings.push_back(
+          name + std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
+          " morphed attributes; hosts that have room for 8 leave out those of the smallest weights");
     }
     if (!plan.is_driven && !plan.extras.empty()) add_drivers(mesh, report);
   }

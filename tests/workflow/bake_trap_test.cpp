@@ -335,7 +335,7 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
 TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {
   const auto warns = [](const Baked& result) {
     for (const std::string& warning : result.report.warnings) {
-      if (warning.find("8 morphed attributes") != std::string::npos) return true;
+      if (warning.find("morphed attributes") != std::string::npos) return true;
     }
     return false;
   };
