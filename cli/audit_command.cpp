@@ -4,21 +4,16 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "chronormal/io/file.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/io/motion_readers.h"
-#include "chronormal/io/obj.h"
-#include "chronormal/io/readers.h"
-#include "chronormal/io/sequence.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
+#include "cli/inputs.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -36,23 +31,6 @@ struct Options {
   bool no_weld = false;
   bool json = false;
 };
-
-Error misuse(std::string place, std::string message) {
-  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
-
-// Whether the input is one glTF file, by its name or else by its content.
-bool is_gltf(const std::string& path, std::string_view bytes) {
-  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
-  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
-}
-
-bool is_one_file(const InputOptions& input) {
-  if (input.files.size() != 1 || !input.base.empty()) return false;
-  std::error_code code;
-  return input.files[0] == "-" || is_gltf_file(input.files[0]) ||
-         std::filesystem::is_regular_file(input.files[0], code);
-}
 
 // A word as a shell reads it back.
 std::string shell_word(const std::string& word) {
@@ -74,70 +52,20 @@ std::string words_of(const InputOptions& input) {
   return words;
 }
 
-Result<Audited> audit_gltf(std::unique_ptr<FileBytes> file, const InputOptions& input, const AuditOptions& options) {
+Result<Audited> audit_gltf(FileBytes file, const InputOptions& input, const AuditOptions& options) {
   const std::string& path = input.files[0];
   std::optional<std::string> folder;
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
-  Result<GltfDocument> document = GltfDocument::read(file->bytes(), path == "-" ? "<stdin>" : short_name(path), folder,
-                                                     {.allow_external = input.allow_external});
+  Result<GltfDocument> document = GltfDocument::read(std::move(file), path == "-" ? "<stdin>" : short_name(path),
+                                                     folder, {.allow_external = input.allow_external});
   if (!document) return document.error();
   Result<Audit> found = audit(document.value(), options);
   if (!found) return found.error();
   Audited result;
   result.name = path == "-" ? "<stdin>" : path;
   result.audit = std::move(found).value();
-  result.file = std::move(file);
   result.document = std::move(document).value();
   return result;
-}
-
-// The OBJ files whose normals belong to the motion: one for each keyframe, or the mesh of a cache or of targets.
-Result<std::vector<std::string>> files_with_normals(const InputOptions& input) {
-  const auto is_obj = [](const std::string& file) {
-    const MeshReader* reader = file == "-" ? nullptr : find_mesh_reader(file);
-    return reader != nullptr && reader->name == "obj";
-  };
-  std::vector<std::string> files;
-  if (!input.base.empty()) {
-    if (is_obj(input.base)) files.push_back(input.base);
-    return files;
-  }
-  if (input.files.empty() || (input.files.size() == 1 && find_motion_reader(input.files[0]) != nullptr)) return files;
-  const auto is_cache = [](const std::string& file) {
-    const std::string path = file.substr(0, file.rfind('#'));
-    return find_cache_reader(path) != nullptr || path.ends_with(".xml") || path.ends_with(".XML");
-  };
-  if (input.files.size() == 2 && is_cache(input.files[0]) != is_cache(input.files[1])) {
-    const std::string& mesh = input.files[is_cache(input.files[0]) ? 1 : 0];
-    if (is_obj(mesh)) files.push_back(mesh);
-    return files;
-  }
-  Result<std::vector<std::string>> frames = find_frames(input.files);
-  if (!frames) return frames;
-  for (const std::string& frame : frames.value())
-    if (!is_obj(frame)) return files;
-  return frames;
-}
-
-// Normals of all keyframes where every file has some, else of keyframe 0 where that has.
-Result<SequenceNormals> read_normals(const InputOptions& input, const Topology& topology) {
-  const Result<std::vector<std::string>> files = files_with_normals(input);
-  if (!files) return files.error();
-  SequenceNormals normals;
-  for (const std::string& path : files.value()) {
-    const Result<FileBytes> file = FileBytes::open(path);
-    if (!file) return file.error();
-    Result<ObjShading> shading = read_obj_shading(file.value().bytes(), short_name(path));
-    if (!shading) return shading.error();
-    if (shading.value().topology != topology)
-      return invalid_input(path, "the faces are not those of the motion: the file has changed meanwhile");
-    if (shading.value().normal_of_corner.empty()) {
-      normals.of_keyframes.resize(std::min<std::size_t>(1, normals.of_keyframes.size()));
-      break;
-    }
-    normals.of_keyframes.push_back(std::move(shading.value().normal_of_corner));
-  }
-  return normals;
 }
 
 Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
@@ -145,15 +73,14 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
     const std::string& path = options.input.files[0];
     Result<FileBytes> opened = FileBytes::open(path);
     if (!opened) return opened.error();
-    auto file = std::make_unique<FileBytes>(std::move(opened).value());
-    if (is_gltf(path, file->bytes())) return audit_gltf(std::move(file), options.input, how);
+    if (is_gltf(path, opened.value().bytes())) return audit_gltf(std::move(opened).value(), options.input, how);
     if (!options.input.animation.empty())
       return misuse("--animation", "it chooses among those of a glTF file: name one");
   }
   const Result<NamedMotion> input = read_input(options.input, progress);
   if (!input) return input.error();
   const Motion& motion = input.value().motion;
-  const Result<SequenceNormals> normals = read_normals(options.input, motion.topology);
+  const Result<StoredNormals> normals = read_stored_normals(options.input, motion.topology);
   if (!normals) return normals.error();
   const bool is_targets = !options.input.base.empty() || (motion.segments.size() > 1 && is_blend_shapes(motion));
   Result<Audit> found = audit(motion, normals.value(), is_targets, how);

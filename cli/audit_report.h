@@ -2,11 +2,9 @@
 #ifndef CLI_AUDIT_REPORT_H_
 #define CLI_AUDIT_REPORT_H_
 
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "chronormal/io/file.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/workflow/audit.h"
 
@@ -16,7 +14,6 @@ namespace chronormal::cli {
 struct Audited {
   std::string name;
   Audit audit;
-  std::unique_ptr<FileBytes> file;       ///< that the document lies in
   std::optional<GltfDocument> document;  ///< of a glTF file
   std::optional<double> tolerance;       ///< degrees; nothing: none was asked for
   std::string bake;                      ///< the inputs as words of a command line; empty: bake takes none such

@@ -6,16 +6,17 @@
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "chronormal/io/file.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/io/motion_readers.h"
-#include "chronormal/io/readers.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/bake_report.h"
 #include "cli/command.h"
+#include "cli/inputs.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -35,10 +36,6 @@ struct Options {
   double tolerance = BakeOptions{}.tolerance;
   bool json = false, no_audit = false;
 };
-
-Error misuse(std::string place, std::string message) {
-  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
 
 Result<BakeOptions> understand(const Options& options) {
   BakeOptions how;
@@ -99,17 +96,7 @@ std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& 
   return BeforeAndAfter{first.value().error, second.value().error};
 }
 
-Status write_baked(const Options& options, std::string_view bytes, const GltfBake& baked, const GltfEdit& edit) {
-  const std::string& input = options.input.files[0];
-  // What did not change and stays in its container is copied.
-  const auto kind = [](const std::string& path) { return std::filesystem::path(path).extension(); };
-  const bool copied =
-      !baked.changed && input != "-" && bytes.starts_with("glTF") && kind(input) == kind(options.common.output);
-  if (copied) return write_output(options.common.output, bytes, options.common.force);
-  return edit.write(options.common.output, options.common.force);
-}
-
-int run_gltf(const Options& options, BakeOptions how, const FileBytes& file, Progress& progress) {
+int run_gltf(const Options& options, BakeOptions how, FileBytes file, Progress& progress) {
   const auto fail = [](const Error& error) { return report("bake", error); };
   const std::string &input = options.input.files[0], &output = options.common.output;
   if (!options.input.animation.empty())
@@ -121,14 +108,19 @@ int run_gltf(const Options& options, BakeOptions how, const FileBytes& file, Pro
     return fail(misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth"));
   std::optional<std::string> folder;
   if (input != "-") folder = std::filesystem::path(input).parent_path().string();
-  const Result<GltfDocument> document = GltfDocument::read(file.bytes(), input == "-" ? "<stdin>" : short_name(input),
-                                                           folder, {.allow_external = options.input.allow_external});
+  const std::size_t size = file.bytes().size();
+  const Result<GltfDocument> document =
+      GltfDocument::read(std::move(file), input == "-" ? "<stdin>" : short_name(input), folder,
+                         {.allow_external = options.input.allow_external});
   if (!document) return fail(document.error());
   how.progress = progress.callback("baking");
   GltfEdit edit(document.value());
   const Result<GltfBake> baked = bake(document.value(), how, edit);
   progress.clear();
   if (!baked) return fail(baked.error());
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
+#endif
   BakeReport told{input == "-" ? "<stdin>" : input, output, std::nullopt, std::nullopt};
   const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
   if (has_drivers) {
@@ -139,14 +131,13 @@ int run_gltf(const Options& options, BakeOptions how, const FileBytes& file, Pro
   if (!baked.value().drivers.empty() && !has_drivers)
     warnings.emplace_back("what drives the extra targets is written beside a file only: give -o a name");
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  if (const Status written = write_baked(options, file.bytes(), baked.value(), edit); !written)
-    return fail(written.error());
+  if (const Status written = edit.write(output, options.common.force); !written) return fail(written.error());
   if (has_drivers) {
     if (const Status written = write_output(*told.drivers_file, baked.value().drivers, options.common.force); !written)
       return fail(written.error());
   }
   warn(warnings);
-  if (baked.value().changed && file.bytes().size() <= kMostAudited) {
+  if (baked.value().changed && size <= kMostAudited) {
     told.audit =
         audit_both(how, options, [&](const AuditOptions& audited) { return audit(document.value(), audited); });
   }
@@ -176,6 +167,17 @@ int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   if (!is_sequence(read.value().motion)) {
     return fail(invalid_input(read.value().name, "it is no sequence of keyframes that follow each other"));
   }
+  // Hard edges are those that the file shows, where nothing else is asked for.
+  StoredNormals stored;
+  if (options.crease_angle == 180) {
+    Result<StoredNormals> normals = read_stored_normals(options.input, read.value().motion.topology);
+    if (!normals) return fail(normals.error());
+    stored = std::move(normals).value();
+    if (!stored.of_keyframes.empty()) {
+      const std::vector<float>& first = stored.of_keyframes.front();
+      how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+    }
+  }
   how.progress = progress.callback("baking");
   std::string glb;
   const Result<SequenceBake> baked = bake_sequence(read.value().motion, how, glb);
@@ -184,28 +186,16 @@ int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   if (const Status written = write_output(output, glb, options.common.force); !written) return fail(written.error());
   warn(baked.value().warnings);
   BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
-  if (glb.size() <= kMostAudited) {
+  // An audit judges the triangles of a file, whatever polygons they come from.
+  if (glb.size() <= kMostAudited && read.value().motion.topology.all_triangles()) {
     told.audit = audit_both(how, options, [&](AuditOptions audited) {
       audited.rule = AuditRule::kNlerp;
-      return audit(read.value().motion, SequenceNormals{}, false, audited);
+      return audit(read.value().motion, stored, false, audited);
     });
   }
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
   say(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   return kExitDone;
-}
-
-// Whether a file is glTF, by its name or else by its content.
-bool is_gltf(const std::string& path, std::string_view bytes) {
-  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
-  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
-}
-
-bool is_one_file(const InputOptions& options) {
-  if (options.files.size() != 1 || !options.base.empty()) return false;
-  const std::string& path = options.files.front();
-  std::error_code code;
-  return path == "-" || is_gltf_file(path) || std::filesystem::is_regular_file(path, code);
 }
 
 int run(const Options& options) {
@@ -215,10 +205,10 @@ int run(const Options& options) {
   if (const Status output = check_output(options.common.output, options.common.force); !output)
     return report("bake", output.error());
   if (is_one_file(options.input)) {
-    const Result<FileBytes> file = FileBytes::open(options.input.files.front());
+    Result<FileBytes> file = FileBytes::open(options.input.files.front());
     if (!file) return report("bake", file.error());
     if (is_gltf(options.input.files.front(), file.value().bytes()))
-      return run_gltf(options, how.value(), file.value(), progress);
+      return run_gltf(options, how.value(), std::move(file).value(), progress);
     if (options.input.files.front() == "-")
       return report("bake", invalid_input("<stdin>", "one keyframe does not move: give a glTF file"));
   }
@@ -249,7 +239,9 @@ void add_bake_command(CLI::App& program, int& exit_code) {
       ->type_name("DEG");
   command->add_flag("--recompute-base", options->recompute_base, "replace the base normals by those of the geometry");
   command->add_flag("--smooth", options->smooth, "give normals to primitives that have none, which are flat");
-  command->add_option("--max-bytes", options->most_bytes, "fail where more would be added")->type_name("N");
+  command->add_option("--max-bytes", options->most_bytes, "fail where more bytes of arrays would be added")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
   command->add_flag("--dense-zeros", options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)");
   command
       ->add_option("--tolerance", options->tolerance,

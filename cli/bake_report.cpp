@@ -73,6 +73,7 @@ Json mesh_json(const BakedMesh& mesh) {
           {"undriven_targets", mesh.undriven},
           {"flat_primitives", mesh.left_flat},
           {"vertices_without_base", mesh.without_base},
+          {"vertices_without_stored_normal", mesh.without_stored},
           {"target_error_degrees", mesh.largest_error},
           {"track_error_degrees", mesh.resampling_error}};
 }
@@ -95,8 +96,14 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   if (!bake.changed) {
     bool any_baked = false;
     for (const BakedMesh& mesh : bake.meshes) any_baked |= mesh.already_baked;
-    return text + (any_baked ? "nothing to bake: it was baked before; the output is as the input\n"
-                             : "nothing to bake: the output is as the input\n");
+    if (any_baked) {
+      return text +
+             "nothing to bake: it was baked before; the output is as the input. To bake it in another way, start from "
+             "the original\n";
+    }
+    return text + (bake.meshes.empty()
+                       ? "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n"
+                       : "nothing to bake: the output is as the input\n");
   }
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
@@ -104,7 +111,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   table.add_column("normals", "", Table::Align::kRight);
   table.add_column("extra targets", "", Table::Align::kRight);
   table.add_column("deltas", "bytes", Table::Align::kRight);
-  table.add_column("error", "degrees", Table::Align::kRight);
+  table.add_column("error alone", "degrees", Table::Align::kRight);
   for (const BakedMesh& mesh : bake.meshes) add_row(mesh, table);
   text.append("\n").append(table.text()).append("\n");
   text += fmt::format("{} and {} were added", counted(bake.added_targets, "target", "targets"),
@@ -120,10 +127,11 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   text += fmt::format("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
                       counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
                       counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
-  text += encoding == BakeEncoding::kExact && bake.largest_error == 0
-              ? "exact at every instant\n"
-              : fmt::format("{}: at most {} degrees from the exact normals\n", encoding_name(encoding),
-                            four_decimals(bake.largest_error));
+  if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
+    text += "exact at every instant\n";
+  else
+    text += fmt::format("{}: at most {} degrees from the right normals, as far as can be proven\n",
+                        encoding == BakeEncoding::kExact ? "fitted" : "endpoint", four_decimals(bake.largest_error));
   return text + lines_after(report);
 }
 

@@ -15,6 +15,8 @@ namespace {
 std::string morph_list() {
   std::string list = "a built-in morph (compare --each takes several):";
   for (const BuiltinMorph& morph : builtin_morphs()) list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
+  for (const BuiltinMorph& morph : builtin_blend_shapes())
+    list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
   return list;
 }
 

@@ -4,6 +4,7 @@
 #include "chronormal/io/file.h"
 #include "chronormal/workflow/compare.h"
 #include "cli/command.h"
+#include "cli/compare_blend.h"
 #include "cli/compare_report.h"
 
 namespace chronormal::cli {
@@ -22,6 +23,9 @@ struct Options {
   bool json = false;
   bool csv = false;
   bool no_times = false;
+  BlendArguments blend;
+  bool elements_given = false;
+  std::string of_schemes;  // an option that was given, which has no meaning with --blend
 };
 
 std::vector<std::string> split_at_commas(const std::string& list) {
@@ -48,6 +52,7 @@ std::string footer() {
          "  chronormal compare --each walk/ run/ --sample twist\n"
          "  chronormal compare --base face.obj targets/\n"
          "  chronormal compare face.glb --elements vertices\n"
+         "  chronormal compare face.glb --blend 100\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
@@ -103,7 +108,26 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   return comparisons;
 }
 
+int run_blend(const Options& options) {
+  if (!options.of_schemes.empty())
+    return report("compare",
+                  {ErrorCode::kUsage, options.of_schemes, "it is about schemes, and does not go with --blend"});
+  if (const Status output = check_output(options.common.output, options.common.force); !output)
+    return report("compare", output.error());
+  Progress progress(options.common.quiet);
+  const auto comparison =
+      compare_blend_input(options.input, options.elements, options.elements_given, options.blend, progress);
+  if (!comparison) return report("compare", comparison.error());
+  const std::string text = options.json  ? blend_json(comparison.value())
+                           : options.csv ? blend_csv(comparison.value())
+                                         : blend_table(comparison.value());
+  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+    return report("compare", written.error());
+  return kExitDone;
+}
+
 int run(const Options& options) {
+  if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
   if (options.samples < 2 || options.samples > kMostSamples)
     return report("compare", {ErrorCode::kUsage, "--samples", "it must be a whole number from 2 to 1,000,000"});
@@ -153,12 +177,18 @@ void add_compare_command(CLI::App& program, int& exit_code) {
   command->add_option("--access", options->access, "random (default), or sequential: played step by step")
       ->type_name("KIND")
       ->check(CLI::IsMember({"random", "sequential"}).description(""));
+  options->blend.add_to(*command);
   CLI::Option* json = command->add_flag("--json", options->json, "one JSON object");
   command->add_flag("--csv", options->csv, "comma-separated values, a line per scheme")->excludes(json);
   command->add_flag("--no-times", options->no_times, "leave out measured times: the same output on every run");
   options->common.add_to(*command, false);
   command->footer(footer());
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, command, &exit_code] {
+    options->elements_given = command->count("--elements") > 0;
+    for (const char* const name : {"--each", "--schemes", "--samples", "--access"})
+      if (command->count(name) > 0) options->of_schemes = name;
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace chronormal::cli

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/inspect_trouble.h"
 #include "cli/table.h"
 
 namespace chronormal::cli {
@@ -14,10 +15,6 @@ using Json = nlohmann::ordered_json;
 using Align = Table::Align;
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
-
-std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
-}
 
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
@@ -71,16 +68,6 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   return schemes;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string one_element(ElementKind kind) {
   if (kind == ElementKind::kVertices) return "vertex";
   return kind == ElementKind::kCorners ? "corner" : "face";
@@ -122,6 +109,16 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
 
 std::string compare_table(const NamedComparison& input, bool with_times) {
   Table table;

@@ -26,6 +26,9 @@ struct NamedComparison {
 /// A header line, and a line per input and scheme. Names with commas, quotes or line ends are quoted (RFC 4180).
 [[nodiscard]] std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times);
 
+/// A field of a CSV line, in quotes where it has to be.
+[[nodiscard]] std::string csv_field(const std::string& text);
+
 }  // namespace chronormal::cli
 
 #endif  // CLI_COMPARE_REPORT_H_

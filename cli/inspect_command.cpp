@@ -11,6 +11,7 @@
 #include "chronormal/io/motion_readers.h"
 #include "chronormal/io/readers.h"
 #include "cli/command.h"
+#include "cli/inputs.h"
 #include "cli/inspect_report.h"
 
 namespace chronormal::cli {
@@ -70,19 +71,6 @@ Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptio
                               std::move(parts), curve_error,         split,
                               animation};
   return result;
-}
-
-// Whether a file is glTF, by its name or else by its content.
-bool is_gltf(const std::string& path, std::string_view bytes) {
-  const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
-  return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));
-}
-
-bool is_one_file(const InputOptions& options) {
-  if (options.files.size() != 1 || !options.base.empty()) return false;
-  const std::string& path = options.files.front();
-  std::error_code code;
-  return path == "-" || is_gltf_file(path) || std::filesystem::is_regular_file(path, code);
 }
 
 Result<Inspected> inspect_input(const InputOptions& options, Progress& progress) {

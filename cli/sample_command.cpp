@@ -15,6 +15,7 @@
 #include "chronormal/io/sequence.h"
 #include "chronormal/workflow/sample_files.h"
 #include "cli/command.h"
+#include "cli/inputs.h"
 
 namespace chronormal::cli {
 namespace {
@@ -32,10 +33,6 @@ struct Options {
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
 };
-
-Error misuse(std::string place, std::string message) {
-  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
 
 std::string footer() {
   std::string text = "Weightings:\n";

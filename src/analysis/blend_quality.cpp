@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -21,19 +22,6 @@ std::vector<float> unit_normals(BlendNormals& normals, std::span<const double> w
   std::vector<float> result(3 * normals.size());
   (void)normals.unit_normals(weights, VectorView<float>::packed(result.data(), normals.size()));
   return result;
-}
-
-// N + sum_i w_i D_i of all elements.
-void add_up(const DeltaNormals& normals, std::span<const double> weights, std::vector<Vec3d>& result) {
-  for (std::size_t e = 0; e < result.size(); ++e) result[e] = at(normals.base, e);
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (weights[k] == 0) continue;
-    const BlendTarget& target = normals.deltas[k];
-    for (std::size_t n = 0; n < target.vertices.size(); ++n) {
-      Vec3d& sum = result[target.vertices[n]];
-      sum = sum + weights[k] * at(target.deltas, n);
-    }
-  }
 }
 
 // A positive definite system, by Cholesky's factors.
@@ -87,6 +75,19 @@ std::vector<std::vector<Entry>> entries_of_elements(const DeltaNormals& deltas) 
 
 }  // namespace
 
+void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept {
+  assert(weights.size() == deltas.deltas.size() && 3 * result.size() == deltas.base.size());
+  for (std::size_t e = 0; e < result.size(); ++e) result[e] = at(deltas.base, e);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0) continue;
+    const BlendTarget& target = deltas.deltas[k];
+    for (std::size_t n = 0; n < target.vertices.size(); ++n) {
+      Vec3d& sum = result[target.vertices[n]];
+      sum = sum + weights[k] * at(target.deltas, n);
+    }
+  }
+}
+
 DeltaNormals endpoint_deltas(BlendNormals& normals) {
   DeltaNormals result;
   std::vector<double> weights(normals.set().targets.size());
@@ -113,7 +114,7 @@ DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights)
   for (std::size_t row = 0; row < rows; ++row) {
     const std::span<const double> w = weights.subspan(row * targets, targets);
     const std::vector<float> exact = unit_normals(normals, w);
-    add_up(result, w, shown);
+    shown_normals(result, w, shown);
     for (std::size_t k = 0; k < targets; ++k) {
       if (w[k] == 0) continue;
       for (std::size_t j = 0; j < targets; ++j) matrix[k * targets + j] += w[k] * w[j];
@@ -123,6 +124,8 @@ DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights)
       }
     }
   }
+  std::optional<Factors> factors;  // of the last element: neighbours mostly have the same targets
+  std::vector<std::uint32_t> factored;
   for (const std::vector<Entry>& entries : entries_of_elements(result)) {
     if (entries.empty()) continue;
     std::vector<std::uint32_t> named;
@@ -131,7 +134,9 @@ DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights)
       named.push_back(entry.target);
       values.push_back(right[entry.target][entry.place]);
     }
-    Factors(matrix, targets, named).solve(values);
+    if (!factors || named != factored) factors.emplace(matrix, targets, named);
+    factored = std::move(named);
+    factors->solve(values);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       float* const d = result.deltas[entries[i].target].deltas.data() + 3 * entries[i].place;
       const Vec3f best = to_float(Vec3d{d[0], d[1], d[2]} + values[i]);
@@ -150,7 +155,7 @@ Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::sp
   for (std::size_t row = 0; row < rows; ++row) {
     const std::span<const double> w = weights.subspan(row * targets, targets);
     const std::vector<float> exact = unit_normals(normals, w);
-    add_up(deltas, w, shown);
+    shown_normals(deltas, w, shown);
     for (std::size_t e = 0; e < normals.size(); ++e) {
       const Vec3d u = at(exact, e);
       if (u == at(base, e) && shown[e] == at(deltas.base, e)) continue;

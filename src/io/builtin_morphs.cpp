@@ -22,6 +22,10 @@ constexpr std::array kMorphs = {
     BuiltinMorph{"soup", "independent random triangles at both ends, 5,000 faces"},
 };
 
+constexpr std::array kBlendShapes = {
+    BuiltinMorph{"bumps", "blend shapes: 12 overlapping targets on the front of a head, 6,144 faces"},
+};
+
 // A grid of (columns + 1) x (rows + 1) points, each quad two triangles; `closed` joins the last column to the first.
 struct Grid {
   std::size_t columns, rows;
@@ -148,7 +152,43 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
+// An egg with ripples, and targets that push parts of its front about: neighbours overlap, as those of a face do.
+Motion bumps() {
+  constexpr std::size_t kTargets = 12;
+  const Grid grid{64, 48, true};
+  const auto head = [&grid](std::size_t target) {
+    return grid.keyframe(target == 0 ? 0 : 1, [target](double u, double v) {
+      const double around = 2 * kPi * u, down = kPi * (0.03 + 0.94 * v);
+      const Vec3d out{std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), std::cos(down)};
+      const double radius = 1 + 0.03 * std::sin(5 * around) * std::sin(6 * down);
+      const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
+      if (target == 0) return base;
+      // Four rows of three on the front, which looks along x; every other one pushes out, the others along the skin.
+      const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
+      const double centre_around = 0.45 * (static_cast<double>(column) - 1);
+      const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);
+      const Vec3d centre{std::sin(centre_down) * std::cos(centre_around),
+                         std::sin(centre_down) * std::sin(centre_around), std::cos(centre_down)};
+      const Vec3d off = out - centre;
+      const double distance = std::sqrt(dot(off, off)) / (0.5 + 0.05 * static_cast<double>(column));
+      if (distance >= 1) return base;
+      const double size = 0.25 * (1 - distance * distance) * (1 - distance * distance);
+      const Vec3d along = row % 2 == 0 ? Vec3d{0, 0, 1} : Vec3d{0, column == 0 ? -1.0 : 1.0, 0};
+      return base + size * (target % 2 == 0 ? out : along);
+    });
+  };
+  Motion motion{grid.topology(), {}, {}};
+  for (std::size_t k = 0; k <= kTargets; ++k) {
+    motion.keyframes.push_back(head(k));
+    motion.keyframes.back().name = k == 0 ? "head" : std::string("bump_").append(std::to_string(k));
+    if (k > 0) motion.segments.push_back({0, k});
+  }
+  return motion;
+}
+
 }  // namespace
+
+std::span<const BuiltinMorph> builtin_blend_shapes() noexcept { return kBlendShapes; }
 
 std::span<const BuiltinMorph> builtin_morphs() noexcept { return kMorphs; }
 
@@ -158,12 +198,17 @@ Result<Motion> make_builtin_morph(std::string_view name) {
   if (name == "twist") return twist();
   if (name == "eversion") return eversion();
   if (name == "soup") return soup();
+  if (name == "bumps") return bumps();
   std::string message = "there is no built-in morph '" + std::string(name) + "'; there are";
   const char* separator = " ";
-  for (const BuiltinMorph& morph : kMorphs) {
-    message += separator + std::string(morph.name);
-    separator = ", ";
-  }
+  const auto list = [&](std::span<const BuiltinMorph> morphs) {
+    for (const BuiltinMorph& morph : morphs) {
+      message += separator + std::string(morph.name);
+      separator = ", ";
+    }
+  };
+  list(kMorphs);
+  list(kBlendShapes);
   return Error{ErrorCode::kUsage, "", std::move(message)};
 }
 

@@ -235,6 +235,10 @@ FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
   return *this;
 }
 
+void FileBytes::release() const noexcept {
+  if (mapping_ != nullptr) (void)::madvise(mapping_, mapping_size_, MADV_DONTNEED);
+}
+
 FileBytes::~FileBytes() {
   if (mapping_ != nullptr) ::munmap(mapping_, mapping_size_);
 }

@@ -57,6 +57,10 @@ double load_number(const char* at, Component component, bool normalized) noexcep
   return 0;
 }
 
+void Bytes::release() const noexcept {
+  for (const auto& [buffer, file] : files_) file.release();
+}
+
 std::string Bytes::place(std::string_view pointer) const {
   return std::string(origin_.name).append(", ").append(pointer);
 }

@@ -58,6 +58,9 @@ class Bytes {
   /// The same as indices, of which every one must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
+  /// Gives memory back that holds what was read of buffers in files of their own.
+  void release() const noexcept;
+
   [[nodiscard]] std::string place(std::string_view pointer) const;
   /// The place of an accessor: "NAME, /accessors/3".
   [[nodiscard]] std::string accessor_place(std::size_t index) const;

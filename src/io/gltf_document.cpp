@@ -78,9 +78,14 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
   std::optional<std::string> folder;
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
   const std::string name = path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
-  Result<GltfDocument> document = read(file.value().bytes(), name, folder, options);
+  return read(std::move(file).value(), name, folder, options);
+}
+
+Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
+                                        const std::optional<std::string>& folder, const GltfOptions& options) {
+  Result<GltfDocument> document = read(file.bytes(), name, folder, options);
   // The bytes stay where they are when the file moves: mapped, or in a string that is too long to lie in its object.
-  if (document) document.value().state_->file = std::move(file).value();
+  if (document) document.value().state_->file = std::move(file);
   return document;
 }
 
@@ -105,11 +110,7 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
   gltf::Bytes& bytes = state_->bytes;
   const std::string pointer = gltf::primitive_pointer(mesh, primitive);
   const std::size_t vertex_count = declared.vertex_count, targets = wanted.targets ? declared.targets.size() : 0;
-  const std::size_t per_vertex = wanted.shading ? 40 : 12;
-  if (vertex_count > state_->most_bytes / per_vertex / (targets + 1))
-    return invalid_input(bytes.place(pointer), "its " + std::to_string(vertex_count) + " vertices and " +
-                                                   std::to_string(targets) + " targets would take more than " +
-                                                   std::to_string(state_->most_bytes) + " bytes");
+  if (Status status = state_->check_size(mesh, primitive, targets, wanted.shading); !status) return status.error();
 
   GltfGeometry geometry;
   if (source.draco) {
@@ -133,31 +134,65 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     }
   }
 
-  // Reads an accessor where there is one that is not read yet.
-  const auto read = [&](const std::optional<std::size_t>& accessor, std::vector<float>& result) -> Status {
+  // A compressed mesh may hold all of the attributes or some.
+  if (Status status =
+          state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
+      !status)
+    return status.error();
+  geometry.targets.resize(targets);
+  for (std::size_t k = 0; k < targets; ++k) {
+    GltfGeometry::Target& target = geometry.targets[k];
+    if (Status status =
+            state_->read(source.targets[k], wanted.shading, target.positions, target.normals, target.tangents);
+        !status)
+      return status.error();
+  }
+  state_->release(vertex_count * (targets + 1));
+  return geometry;
+}
+
+Result<GltfGeometry::Target> GltfDocument::target(std::size_t mesh, std::size_t primitive, std::size_t index,
+                                                  bool shading) const {
+  const GltfPrimitive& declared = meshes()[mesh].primitives[primitive];
+  if (Status status = state_->check_size(mesh, primitive, declared.targets.size(), shading); !status)
+    return status.error();
+  GltfGeometry::Target target;
+  const gltf::Attributes& attributes = state_->model.sources[mesh][primitive].targets[index];
+  if (Status status = state_->read(attributes, shading, target.positions, target.normals, target.tangents); !status)
+    return status.error();
+  state_->release(declared.vertex_count);
+  return target;
+}
+
+Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, std::size_t targets,
+                                       bool shading) const {
+  const std::size_t vertices = model.meshes[mesh].primitives[primitive].vertex_count, per_vertex = shading ? 40 : 12;
+  if (vertices <= most_bytes / per_vertex / (targets + 1)) return Success{};
+  return invalid_input(bytes.place(gltf::primitive_pointer(mesh, primitive)),
+                       "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
+                           " targets would take more than " + std::to_string(most_bytes) + " bytes");
+}
+
+Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
+                                 std::vector<float>& normals, std::vector<float>& tangents) {
+  const auto read_one = [this](const std::optional<std::size_t>& accessor, std::vector<float>& result) -> Status {
     if (!accessor || !result.empty()) return Success{};
     Result<std::vector<float>> floats = bytes.floats(*accessor);
     if (!floats) return floats.error();
     result = std::move(floats).value();
     return Success{};
   };
-  const auto read_all = [&](const gltf::Attributes& attributes, std::vector<float>& positions,
-                            std::vector<float>& normals, std::vector<float>& tangents) -> Status {
-    if (Status status = read(attributes.position, positions); !status) return status;
-    if (!wanted.shading) return Success{};
-    if (Status status = read(attributes.normal, normals); !status) return status;
-    return read(attributes.tangent, tangents);
-  };
-  // A compressed mesh may hold all of the attributes or some.
-  if (Status status = read_all(source.base, geometry.positions, geometry.normals, geometry.tangents); !status)
-    return status.error();
-  geometry.targets.resize(targets);
-  for (std::size_t k = 0; k < targets; ++k) {
-    GltfGeometry::Target& target = geometry.targets[k];
-    if (Status status = read_all(source.targets[k], target.positions, target.normals, target.tangents); !status)
-      return status.error();
-  }
-  return geometry;
+  if (Status status = read_one(attributes.position, positions); !status) return status;
+  if (!shading) return Success{};
+  if (Status status = read_one(attributes.normal, normals); !status) return status;
+  return read_one(attributes.tangent, tangents);
+}
+
+void GltfDocument::State::release(std::size_t vertices) const noexcept {
+  constexpr std::size_t kMany = std::size_t{1} << 16;  // fewer are not worth the calls
+  if (vertices < kMany) return;
+  if (file) file->release();
+  bytes.release();
 }
 
 Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) const {

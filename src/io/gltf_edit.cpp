@@ -139,12 +139,13 @@ std::size_t GltfEdit::add_scalars(std::span<const float> scalars, const GltfVect
   return state_->document.model.accessors.size() + state_->arrays.add(scalars, 1, options);
 }
 
-std::vector<std::string> GltfEdit::pointers(const std::string& path) const {
+Result<std::vector<std::string>> GltfEdit::pointers(const std::string& path) const {
   Result<gltf::LayoutTarget> target = state_->target_of(path);
-  if (!target) return {};
+  if (!target) return target.error();
   target.value().with_bytes = false;
   const Result<gltf::EditLayout> layout = state_->lay_out(std::move(target).value());
-  return layout ? layout.value().json().pointers() : std::vector<std::string>();
+  if (!layout) return layout.error();
+  return layout.value().json().pointers();
 }
 
 std::vector<std::string> GltfEdit::warnings(const std::string& path) const {

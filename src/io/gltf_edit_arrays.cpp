@@ -93,6 +93,8 @@ NewArrays::Array NewArrays::encode(std::span<const float> values, std::size_t co
   if (used == 0) return array;
   array.sparse_count = used;
   array.index_type = index_size == 1 ? 5121 : index_size == 2 ? 5123 : 5125;
+  array.indices.reserve(used * index_size + 3);
+  array.values.reserve(used * components * sizeof(float));
   for (std::size_t i = 0; i < array.count; ++i) {
     if (is_zero(i)) continue;
     if (index_size == 1)

@@ -55,7 +55,9 @@ bool overflows(std::string_view number) {
   std::int64_t exponent = 0;
   if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
-  return exponent + (point - first) > 0;
+  // More than the text has digits decides alone.
+  constexpr std::int64_t kFar = std::int64_t{1} << 40;
+  return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
 // What a walk over text finds before anything is built from it.

@@ -2,106 +2,20 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
-#include "normals/noise.h"
+#include "chronormal/core/parallel.h"
+#include "normals/blend_sums.h"
 
 namespace chronormal {
 namespace {
 
-constexpr double kHalfEpsilon = 0x1p-53;
-
 using Indices = std::vector<std::uint32_t>;
 
-// What a target adds at the corners of a face, or where these are in the base.
-class CornerDeltas {
- public:
-  explicit CornerDeltas(const BlendTarget& target) : target_(target) {}
-
-  [[nodiscard]] std::span<const Vec3d> of(std::span<const std::uint32_t> face) {
-    deltas_.assign(face.size(), {});
-    for (std::size_t c = 0; c < face.size(); ++c) {
-      const auto found = std::lower_bound(target_.vertices.begin(), target_.vertices.end(), face[c]);
-      if (found == target_.vertices.end() || *found != face[c]) continue;
-      const float* const d = target_.deltas.data() + 3 * (found - target_.vertices.begin());
-      deltas_[c] = {d[0], d[1], d[2]};
-    }
-    return deltas_;
-  }
-
- private:
-  const BlendTarget& target_;
-  std::vector<Vec3d> deltas_;
-};
-
-class CornerPositions {
- public:
-  explicit CornerPositions(const BlendSet& set) : base_(set.base.data()) {}
-
-  [[nodiscard]] std::span<const Vec3d> of(std::span<const std::uint32_t> face) {
-    positions_.resize(face.size());
-    for (std::size_t c = 0; c < face.size(); ++c) {
-      const float* const p = base_ + 3 * std::size_t{face[c]};
-      positions_[c] = {p[0], p[1], p[2]};
-    }
-    return positions_;
-  }
-
- private:
-  const float* base_;
-  std::vector<Vec3d> positions_;
-};
-
-double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-
-// A vector and how far rounding may have taken it.
-struct Rounded {
-  Vec3d value;
-  double noise = 0;
-};
-
-// A sum of products of edges.
-class ProductSum {
- public:
-  // Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q. Edges
-  // and both products of a component are within 10 half eps of the absolute products, and each triangle adds a
-  // rounding.
-  void add(std::span<const Vec3d> p, std::span<const Vec3d> q) {
-    Vec3d e = p[1] - p[0];
-    for (std::size_t c = 2; c < p.size(); ++c) {
-      const Vec3d f = q[c] - q[0];
-      sum_.add(cross(e, f));
-      products_ += sum_abs(e) * sum_abs(f);
-      e = p[c] - p[0];
-    }
-    roundings_ += static_cast<double>(10 + p.size());
-  }
-
-  [[nodiscard]] Rounded result() const { return {sum_.without_noise(), kHalfEpsilon * roundings_ * products_}; }
-
- private:
-  VectorSum sum_;
-  double products_ = 0, roundings_ = 0;
-};
-
-// The sum of faces around an element.
-class ElementSum {
- public:
-  void add(const Rounded& face) {
-    sum_.add(face.value);
-    noise_ += face.noise;
-    size_ += sum_abs(face.value);
-    ++count_;
-  }
-
-  [[nodiscard]] Rounded result() const { return {sum_.without_noise(), noise_ + kHalfEpsilon * count_ * size_}; }
-
- private:
-  VectorSum sum_;
-  double noise_ = 0, size_ = 0, count_ = 0;
-};
+constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
+constexpr std::size_t kChunk = 1024;
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
   Indices result;
@@ -114,20 +28,25 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+// Calls body with ranges of [0, count), on all cores.
+template <class Body>
+void in_chunks(std::size_t count, const Body& body) {
+  if (count <= kChunk) return body(0, count);
+  parallel_for((count + kChunk - 1) / kChunk,
+               [&](std::size_t i) { body(i * kChunk, std::min(count, (i + 1) * kChunk)); });
+}
+
 // Which faces lie around each vertex.
 class FacesOfVertices {
  public:
-  explicit FacesOfVertices(const Topology& topology)
-      : offsets_(topology.vertex_count() + 1), faces_(topology.corner_count()) {
-    for (const std::uint32_t v : topology.corners()) ++offsets_[v + std::size_t{1}];
-    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    Indices next(offsets_.begin(), offsets_.end() - 1);
-    for (std::size_t f = 0; f < topology.face_count(); ++f)
-      for (const std::uint32_t v : topology.face(f)) faces_[next[v]++] = static_cast<std::uint32_t>(f);
-  }
+  explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
   // The faces around all of these vertices, ascending.
-  [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) const {
+  [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
+    // Where there are many of them the whole mesh is looked through: that takes less memory than sorting.
+    constexpr std::size_t kFew = 16;
+    if (vertices.size() > topology_.vertex_count() / kFew) return among_all(vertices);
+    if (offsets_.empty()) list();
     Indices result;
     std::size_t count = 0;
     for (const std::uint32_t v : vertices) count += offsets_[v + std::size_t{1}] - offsets_[v];
@@ -140,6 +59,34 @@ class FacesOfVertices {
   }
 
  private:
+  void list() {
+    const Topology& topology = topology_;
+    offsets_.resize(topology.vertex_count() + 1);
+    faces_.resize(topology.corner_count());
+    for (const std::uint32_t v : topology.corners()) ++offsets_[v + std::size_t{1}];
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    Indices next(offsets_.begin(), offsets_.end() - 1);
+    for (std::size_t f = 0; f < topology.face_count(); ++f)
+      for (const std::uint32_t v : topology.face(f)) faces_[next[v]++] = static_cast<std::uint32_t>(f);
+  }
+
+  [[nodiscard]] Indices among_all(std::span<const std::uint32_t> vertices) const {
+    std::vector<bool> is_one(topology_.vertex_count());
+    for (const std::uint32_t v : vertices) is_one[v] = true;
+    const auto has_one = [&](std::size_t f) {
+      const auto face = topology_.face(f);
+      return std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return is_one[v]; });
+    };
+    std::size_t count = 0;
+    for (std::size_t f = 0; f < topology_.face_count(); ++f) count += has_one(f) ? 1U : 0U;
+    Indices result;
+    result.reserve(count);
+    for (std::size_t f = 0; f < topology_.face_count(); ++f)
+      if (has_one(f)) result.push_back(static_cast<std::uint32_t>(f));
+    return result;
+  }
+
+  const Topology& topology_;
   Indices offsets_, faces_;
 };
 
@@ -196,8 +143,7 @@ class BlendTerms::PairCounter {
 };
 
 BlendTerms::BlendTerms(const BlendSet& set, const NormalGroups* groups) : set_(set), groups_(groups) {
-  assert(groups == nullptr || groups->element_of_corner().size() == set.topology.corner_count());
-  const FacesOfVertices faces(set.topology);
+  FacesOfVertices faces(set.topology);
   faces_of_target_.reserve(set.targets.size());
   for (const BlendTarget& target : set.targets) faces_of_target_.push_back(faces.around(target.vertices));
 }
@@ -218,6 +164,10 @@ template <class Body>
 void BlendTerms::for_elements_of(std::uint32_t face, const Body& body) const {
   if (groups_ == nullptr) return body(face);
   const auto corners = set_.topology.face(face);
+  if (groups_->outputs_are_vertices()) {
+    for (const std::uint32_t v : corners) body(groups_->element_of_output()[v]);
+    return;
+  }
   const std::uint32_t* const elements =
       groups_->element_of_corner().data() + (corners.data() - set_.topology.corners().data());
   for (std::size_t c = 0; c < corners.size(); ++c) body(elements[c]);
@@ -230,9 +180,24 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 }
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
+  Indices elements;
+  // Marks take a bit for each element, and sorting 32 for each corner.
+  if (faces.size() > size() / 64) {
+    std::vector<bool> is_one(size());
+    std::size_t count = 0;
+    for (const std::uint32_t f : faces) {
+      for_elements_of(f, [&](std::uint32_t e) {
+        if (!is_one[e]) ++count;
+        is_one[e] = true;
+      });
+    }
+    elements.reserve(count);
+    for (std::size_t e = 0; e < is_one.size(); ++e)
+      if (is_one[e]) elements.push_back(static_cast<std::uint32_t>(e));
+    return elements;
+  }
   std::size_t count = 0;
   for (const std::uint32_t f : faces) count += groups_ ? set_.topology.face(f).size() : 1;
-  Indices elements;
   elements.reserve(count);
   for (const std::uint32_t f : faces) for_elements_of(f, [&](std::uint32_t e) { elements.push_back(e); });
   make_set(elements);
@@ -241,80 +206,179 @@ Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
 
 Indices BlendTerms::elements(std::size_t i) const { return elements_of(faces(i)); }
 
-BlendTerm BlendTerms::base_term() const {
-  std::vector<Rounded> of_faces(set_.topology.face_count());
-  CornerPositions positions(set_);
-  for (std::size_t f = 0; f < of_faces.size(); ++f) {
-    const auto b = positions.of(set_.topology.face(f));
+Indices BlendTerms::elements(std::size_t i, std::size_t j) const {
+  return i == j ? elements(i) : elements_of(common_faces(i, j));
+}
+
+Indices BlendTerms::common_faces(std::size_t i, std::size_t j) const { return common(faces(i), faces(j)); }
+
+Vec3d BlendTerms::base_of(std::uint32_t element) const {
+  ElementSum sum;
+  for_faces_of(element, [&](std::uint32_t f) {
+    const CornerVectors b = positions_of(set_, set_.topology.face(f));
     ProductSum normal;
     normal.add(b, b);
-    of_faces[f] = normal.result();
-  }
+    sum.add(normal.value(), normal.noise());
+  });
+  return sum.value();
+}
+
+BlendTerm BlendTerms::base_term() const {
+  std::vector<Term::Rounded> of_faces(set_.topology.face_count());
+  in_chunks(of_faces.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t f = first; f < last; ++f) {
+      const CornerVectors b = positions_of(set_, set_.topology.face(f));
+      ProductSum normal;
+      normal.add(b, b);
+      of_faces[f] = {normal.value(), normal.noise()};
+    }
+  });
   BlendTerm result;
   result.values.resize(size());
   result.noise.resize(size());
-  for (std::size_t e = 0; e < size(); ++e) {
-    ElementSum sum;
-    for_faces_of(static_cast<std::uint32_t>(e), [&](std::uint32_t f) { sum.add(of_faces[f]); });
-    const Rounded normal = sum.result();
-    result.values[e] = normal.value;
-    result.noise[e] = normal.noise;
-  }
+  in_chunks(size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e) {
+      ElementSum sum;
+      for_faces_of(static_cast<std::uint32_t>(e),
+                   [&](std::uint32_t f) { sum.add(of_faces[f].value, of_faces[f].noise); });
+      result.values[e] = sum.value();
+      result.noise[e] = sum.noise();
+    }
+  });
   return result;
 }
 
-template <class OfFace>
-BlendTerm BlendTerms::sum(std::span<const std::uint32_t> faces, const OfFace& of_face) const {
-  BlendTerm term;
-  if (faces.empty()) return term;
-  std::vector<Rounded> values(faces.size());
-  const std::uint32_t first = faces.front(), last = faces.back();
-  Indices places(last - first + std::size_t{1}, static_cast<std::uint32_t>(faces.size()));
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    values[i] = of_face(set_.topology.face(faces[i]));
-    places[faces[i] - first] = static_cast<std::uint32_t>(i);
-  }
-  term.elements = elements_of(faces);
-  term.values.reserve(term.elements.size());
-  term.noise.reserve(term.elements.size());
-  for (const std::uint32_t e : term.elements) {
-    ElementSum total;
-    for_faces_of(e, [&](std::uint32_t f) {
-      const std::size_t place = f >= first && f <= last ? places[f - first] : faces.size();
-      if (place < faces.size()) total.add(values[place]);
-    });
-    const Rounded normal = total.result();
-    if (normal.value == Vec3d{}) continue;
-    term.elements[term.values.size()] = e;
-    term.values.push_back(normal.value);
-    term.noise.push_back(normal.noise);
-  }
-  term.elements.resize(term.values.size());
-  return term;
+BlendTerms::Term::Places::Places(const BlendTarget& listed) : target(&listed) {
+  constexpr std::size_t kFar = 16;
+  const Indices& vertices = listed.vertices;
+  if (vertices.empty()) return;
+  first = vertices.front();
+  const std::size_t range = vertices.back() - first + std::size_t{1};
+  if (range / kFar > vertices.size()) return;
+  of_vertices.assign(range, kNoPlace);
+  for (std::size_t n = 0; n < vertices.size(); ++n) of_vertices[vertices[n] - first] = static_cast<std::uint32_t>(n);
 }
 
-BlendTerm BlendTerms::linear(std::size_t i) const {
-  CornerPositions positions(set_);
-  CornerDeltas deltas(set_.targets[i]);
-  return sum(faces(i), [&](std::span<const std::uint32_t> face) {
-    const auto b = positions.of(face), d = deltas.of(face);
-    ProductSum normal;
-    normal.add(b, d);
-    normal.add(d, b);
-    return normal.result();
-  });
+const float* BlendTerms::Term::Places::find(std::uint32_t vertex) const noexcept {
+  if (!of_vertices.empty()) {
+    const std::size_t place = vertex - std::size_t{first};  // large where the vertex is before the first
+    const std::uint32_t n = place < of_vertices.size() ? of_vertices[place] : kNoPlace;
+    return n == kNoPlace ? nullptr : target->deltas.data() + 3 * std::size_t{n};
+  }
+  const auto found = std::lower_bound(target->vertices.begin(), target->vertices.end(), vertex);
+  if (found == target->vertices.end() || *found != vertex) return nullptr;
+  return target->deltas.data() + 3 * (found - target->vertices.begin());
 }
+
+BlendTerms::Term::Term(const BlendTerms& terms, std::size_t i)
+    : terms_(terms), first_(terms.set_.targets[i]), is_linear_(true) {
+  keep_large(terms.faces(i));
+}
+
+BlendTerms::Term::Term(const BlendTerms& terms, std::size_t i, std::size_t j, std::span<const std::uint32_t> faces)
+    : terms_(terms), first_(terms.set_.targets[i]), is_linear_(false) {
+  if (i != j) second_.emplace(terms.set_.targets[j]);
+  keep_large(faces);
+}
+
+void BlendTerms::Term::keep_large(std::span<const std::uint32_t> faces) {
+  if (terms_.set_.topology.all_triangles()) return;
+  for (const std::uint32_t f : faces)
+    if (terms_.set_.topology.face(f).size() > kSmallFace) large_faces_.push_back(f);
+  of_large_faces_.resize(large_faces_.size());
+  for (std::size_t n = 0; n < large_faces_.size(); ++n) (void)of_face(large_faces_[n], of_large_faces_[n]);
+}
+
+bool BlendTerms::Term::of_face(std::uint32_t face, Rounded& result) const {
+  const BlendSet& set = terms_.set_;
+  const auto corners = set.topology.face(face);
+  const auto deltas_of = [&](const Places& places, CornerVectors& deltas) {
+    bool any = false;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const float* const delta = places.find(corners[c]);
+      if (delta != nullptr) deltas[c] = vector_at(delta);
+      any = any || delta != nullptr;
+    }
+    return any;
+  };
+  ProductSum normal;
+  CornerVectors first(corners.size());
+  if (!deltas_of(first_, first)) return false;
+  if (is_linear_ || second_) {
+    CornerVectors second(corners.size());
+    if (is_linear_)
+      second = positions_of(set, corners);
+    else if (!deltas_of(*second_, second))
+      return false;
+    const CornerVectors &a = is_linear_ ? second : first, &b = is_linear_ ? first : second;
+    normal.add(a, b);
+    normal.add(b, a);
+  } else {
+    normal.add(first, first);
+  }
+  result = {normal.value(), normal.noise()};
+  return true;
+}
+
+bool BlendTerms::Term::find_face(std::uint32_t face, Rounded& result) const {
+  if (terms_.set_.topology.face(face).size() <= kSmallFace) return of_face(face, result);
+  const auto found = std::lower_bound(large_faces_.begin(), large_faces_.end(), face);
+  if (found == large_faces_.end() || *found != face) return false;
+  result = of_large_faces_[static_cast<std::size_t>(found - large_faces_.begin())];
+  return true;
+}
+
+BlendTerms::Term::Rounded BlendTerms::Term::at(std::uint32_t element) const {
+  ElementSum sum;
+  terms_.for_faces_of(element, [&](std::uint32_t f) {
+    Rounded face;
+    if (find_face(f, face)) sum.add(face.value, face.noise);
+  });
+  return {sum.value(), sum.noise()};
+}
+
+BlendTerm BlendTerms::listed(const Term& term, Indices elements) {
+  BlendTerm result;
+  result.elements = std::move(elements);
+  const std::size_t count = result.elements.size();
+  result.values.resize(count);
+  result.noise.resize(count);
+  in_chunks(count, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const Term::Rounded value = term.at(result.elements[n]);
+      result.values[n] = value.value;
+      result.noise[n] = value.noise;
+    }
+  });
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (result.values[n] == Vec3d{}) continue;
+    result.elements[kept] = result.elements[n];
+    result.values[kept] = result.values[n];
+    result.noise[kept++] = result.noise[n];
+  }
+  result.elements.resize(kept);
+  result.values.resize(kept);
+  result.noise.resize(kept);
+  return result;
+}
+
+BlendTerms::Term BlendTerms::linear_by_element(std::size_t i) const { return {*this, i}; }
+
+BlendTerms::Term BlendTerms::pair_by_element(std::size_t i, std::size_t j) const {
+  if (i == j) return {*this, i, i, faces(i)};
+  // Only to find the large ones among them.
+  const Indices shared = set_.topology.all_triangles() ? Indices() : common_faces(i, j);
+  return {*this, i, j, shared};
+}
+
+BlendTerm BlendTerms::linear(std::size_t i) const { return listed(linear_by_element(i), elements(i)); }
 
 BlendTerm BlendTerms::pair(std::size_t i, std::size_t j) const {
-  CornerDeltas first(set_.targets[i]), second(set_.targets[j]);
-  const Indices shared = i == j ? faces_of_target_[i] : common(faces(i), faces(j));
-  return sum(shared, [&](std::span<const std::uint32_t> face) {
-    const auto di = first.of(face), dj = second.of(face);
-    ProductSum normal;
-    normal.add(di, dj);
-    if (i != j) normal.add(dj, di);
-    return normal.result();
-  });
+  const Indices shared = i == j ? Indices() : common_faces(i, j);
+  const std::span<const std::uint32_t> faces = i == j ? this->faces(i) : std::span<const std::uint32_t>(shared);
+  if (faces.empty()) return {};
+  return listed(Term(*this, i, j, faces), elements_of(faces));
 }
 
 bool BlendTerms::overlap(std::size_t i, std::size_t j) const noexcept {
@@ -346,12 +410,12 @@ std::size_t BlendTerms::bytes() const noexcept {
 
 std::size_t BlendTerms::term_bytes(std::size_t faces, std::size_t corners) const noexcept {
   constexpr std::size_t kOfElement = sizeof(std::uint32_t) + sizeof(Vec3d) + sizeof(double);
-  const std::size_t of_faces = faces * (2 * sizeof(std::uint32_t) + sizeof(Rounded));
-  return of_faces + corners * kOfElement + set_.topology.face_count() * sizeof(std::uint32_t);
+  const std::size_t of_faces = faces * (2 * sizeof(std::uint32_t) + sizeof(Term::Rounded));
+  return of_faces + corners * kOfElement + size() / 8 + 2 * set_.topology.vertex_count() * sizeof(std::uint32_t);
 }
 
 std::size_t BlendTerms::base_bytes() const noexcept {
-  return set_.topology.face_count() * sizeof(Rounded) + size() * (sizeof(Vec3d) + sizeof(double));
+  return set_.topology.face_count() * sizeof(Term::Rounded) + size() * (sizeof(Vec3d) + sizeof(double));
 }
 
 std::size_t BlendTerms::counting_bytes(std::size_t pairs) const noexcept {

@@ -231,8 +231,13 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
 
 std::size_t NormalGroups::isolated_count() const noexcept {
   std::size_t count = 0;
-  for (std::size_t e = 0; e < size(); ++e) count += static_cast<std::size_t>(corners(e).empty());
+  for (std::size_t e = 0; e < size(); ++e) count += static_cast<std::size_t>(faces(e).empty());
   return count;
+}
+
+void NormalGroups::forget_corners() noexcept {
+  corners_ = std::vector<std::uint32_t>();  // {} would keep the memory
+  element_of_corner_ = std::vector<std::uint32_t>();
 }
 
 void NormalGroups::copy_to_outputs(VectorView<const float> of_elements, VectorView<float> of_outputs) const noexcept {

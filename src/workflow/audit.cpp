@@ -1,6 +1,7 @@
 // What audits of glTF files and of sequences share.
 #include "chronormal/workflow/audit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@ constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
 // Numbers those that are not kUnused in their order; returns them.
 std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
   std::vector<std::uint32_t> used;
+  used.reserve(marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), kUnused)));
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (marks[i] == kUnused) continue;
     marks[i] = static_cast<std::uint32_t>(used.size());
@@ -63,8 +65,8 @@ void MotionError::add(const MotionError& other) noexcept {
 }
 
 JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-                       std::vector<JudgedOutput> outputs)
-    : weighting_(weighting), outputs_(std::move(outputs)) {
+                       std::vector<JudgedOutput> outputs, bool needs_faces)
+    : weighting_(weighting), keeps_faces_(needs_faces || weighting != Weighting::kArea), outputs_(std::move(outputs)) {
   std::vector<std::uint32_t> element(groups.size(), kUnused), face(topology.face_count(), kUnused);
   std::vector<std::uint32_t> vertex(topology.vertex_count(), kUnused);
   for (const JudgedOutput& output : outputs_) element[output.element] = 0;
@@ -76,6 +78,19 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
     for (const std::uint32_t v : topology.face(f)) vertex[v] = 0;
   vertices_ = number_used(vertex);
 
+  constexpr std::size_t kSmallFace = 4;
+  std::size_t face_corners = 0, element_corners = 0;
+  for (const std::uint32_t f : faces) {
+    face_corners += topology.face(f).size();
+    keeps_faces_ = keeps_faces_ || topology.face(f).size() > kSmallFace;
+  }
+  for (const std::uint32_t e : elements_) element_corners += groups.faces(e).size();
+  const bool has_corners = weighting != Weighting::kArea;
+  face_vertices_.reserve(face_corners);
+  face_offsets_.reserve(faces.size() + 1);
+  faces_of_element_.reserve(element_corners);
+  element_offsets_.reserve(elements_.size() + 1);
+  if (has_corners) corners_of_element_.reserve(element_corners);
   for (const std::uint32_t f : faces) {
     for (const std::uint32_t v : topology.face(f)) face_vertices_.push_back(vertex[v]);
     face_offsets_.push_back(static_cast<std::uint32_t>(face_vertices_.size()));
@@ -85,7 +100,7 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
       const std::uint32_t f = groups.faces(e)[i];
       const auto first_corner = topology.face(f).data() - topology.corners().data();
       faces_of_element_.push_back(face[f]);
-      corners_of_element_.push_back(groups.corners(e)[i] - static_cast<std::uint32_t>(first_corner));
+      if (has_corners) corners_of_element_.push_back(groups.corners(e)[i] - static_cast<std::uint32_t>(first_corner));
     }
     element_offsets_.push_back(static_cast<std::uint32_t>(faces_of_element_.size()));
   }
@@ -96,41 +111,50 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
 }
 
 void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
-  result.faces.resize(face_offsets_.size() - 1);
+  result.faces.resize(keeps_faces_ ? face_offsets_.size() - 1 : 0);
   result.elements.resize(elements_.size());
   for_ranges(result.faces.size(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t f = first; f < last; ++f) {
-      const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[f] + c]]; };
-      const std::size_t corners = face_offsets_[f + 1] - face_offsets_[f];
-      Vec3d sum;  // over a fan
-      for (std::size_t c = 2; c < corners; ++c) sum = sum + cross(at(c - 1) - at(0), at(c) - at(0));
-      result.faces[f] = sum;
-    }
+    for (std::size_t f = first; f < last; ++f) result.faces[f] = face_normal(positions, f);
   });
   for_ranges(result.elements.size(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) {
       Vec3d sum;
-      for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i)
-        sum = sum + term(positions, faces_of_element_[i], corners_of_element_[i], result.faces[faces_of_element_[i]]);
-      result.elements[e] = sum;
+      double size = 0;  // of the terms
+      for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
+        const std::uint32_t f = faces_of_element_[i];
+        const Vec3d normal = keeps_faces_ ? result.faces[f] : face_normal(positions, f);
+        const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
+        sum = sum + added;
+        size += max_abs(added);
+      }
+      // What is left of terms that cancel is their rounding, and no direction.
+      constexpr double kRounding = 1e-13;
+      result.elements[e] = max_abs(sum) > kRounding * size ? sum : Vec3d{};
     }
   });
 }
 
+Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face) const {
+  const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[face] + c]]; };
+  const std::size_t corners = face_offsets_[face + 1] - face_offsets_[face];
+  Vec3d sum;  // over a fan
+  for (std::size_t c = 2; c < corners; ++c) sum = sum + cross(at(c - 1) - at(0), at(c) - at(0));
+  return sum;
+}
+
 Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
-                       const Vec3d& face_normal) const {
-  if (weighting_ == Weighting::kArea) return face_normal;
-  if (weighting_ == Weighting::kUniform || face_normal == Vec3d{}) return unit(face_normal);
+                       const Vec3d& normal) const {
+  if (weighting_ == Weighting::kUniform || normal == Vec3d{}) return unit(normal);
   const std::size_t first = face_offsets_[face], corners = face_offsets_[face + 1] - first;
   const auto at = [&](std::size_t c) { return positions[face_vertices_[first + c % corners]]; };
   const Vec3d e = at(corner + 1) - at(corner), f = at(corner + corners - 1) - at(corner);
   if (e == Vec3d{} || f == Vec3d{}) return {};
   if (weighting_ == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
-  return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(face_normal) : face_normal);
+  return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(normal) : normal);
 }
 
 Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept {
-  if (rule == AuditRule::kStep) return to_float(unit(from));
+  if (rule == AuditRule::kStep) return to_float(unit(t < 1 ? from : to));
   if (rule == AuditRule::kLerp) return to_float(unit(lerp(from, to, t)));
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));

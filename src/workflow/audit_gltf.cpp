@@ -41,11 +41,12 @@ class BlendSource {
         rule_(rule),
         weights_at_(std::move(weights)),
         moment_(std::move(moment)),
-        moved_(shading.set.targets.size()),
-        base_(part.vertices().size()) {
-    const auto vertices = part.vertices();
-    for (std::size_t i = 0; i < base_.size(); ++i) base_[i] = to_double(vector_at(shading.set.base, vertices[i]));
-    part.normals(base_, base_normals_);
+        moved_(shading.set.targets.size()) {
+    std::vector<Vec3d> positions(part.vertices().size());
+    place_base(positions);
+    PartNormals normals;
+    part.normals(positions, normals);
+    base_normals_ = std::move(normals.elements);
   }
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
@@ -59,10 +60,10 @@ class BlendSource {
     t_ = t;
     if (same) return false;
     now_ = std::move(now);
-    std::copy(base_.begin(), base_.end(), positions.begin());
+    place_base(positions);
     for (std::size_t k = 0; k < now_.size(); ++k) {
       if (now_[k] == 0) continue;
-      for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + now_[k] * delta;
+      for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + now_[k] * to_double(delta);
     }
     return true;
   }
@@ -74,7 +75,7 @@ class BlendSource {
   }
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
     const Vec3d stored = to_double(vector_at(shading_.normals, output.vertex));
-    return shown_direction(stored, base_normals_.elements[output.element], normal);
+    return shown_direction(stored, base_normals_[output.element], normal);
   }
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
     AuditPlace place = place_of(shading_, output.vertex);
@@ -84,12 +85,18 @@ class BlendSource {
   }
 
  private:
-  using Delta = std::pair<std::uint32_t, Vec3d>;
+  using Delta = std::pair<std::uint32_t, Vec3f>;
 
   [[nodiscard]] std::vector<double> weights(std::size_t segment, double t) const {
     std::vector<double> result(shading_.set.targets.size());
     weights_at_(segment, t, result);
     return result;
+  }
+
+  void place_base(std::span<Vec3d> positions) const {
+    const auto vertices = part_.vertices();
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
   }
 
   // The deltas of a target, with vertices as the part numbers them.
@@ -98,9 +105,10 @@ class BlendSource {
     std::vector<Delta>& result = moved_[k].emplace();
     const BlendTarget& target = shading_.set.targets[k];
     const auto vertices = part_.vertices();
+    result.reserve(std::min(vertices.size(), target.vertices.size()));
     for (std::size_t i = 0, n = 0; i < vertices.size() && n < target.vertices.size();) {
       if (vertices[i] == target.vertices[n])
-        result.emplace_back(static_cast<std::uint32_t>(i), to_double(vector_at(target.deltas, n)));
+        result.emplace_back(static_cast<std::uint32_t>(i), vector_at(target.deltas, n));
       if (vertices[i] <= target.vertices[n])
         ++i;
       else
@@ -125,8 +133,7 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   std::vector<std::optional<std::vector<Delta>>> moved_;
-  std::vector<Vec3d> base_;
-  PartNormals base_normals_;
+  std::vector<Vec3d> base_normals_;  // of elements
   bool known_ = false;
   double t_ = 0;
   std::vector<double> now_, start_, end_;
@@ -143,11 +150,11 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::
     for (const std::uint32_t v : shading.set.targets[k].vertices) moves[v] = true;
   }
   const auto corners = topology.corners();
-  const auto element_of_corner = shading.groups.element_of_corner();
+  const auto element_of_vertex = shading.groups.element_of_output();
   for (std::size_t c = 0; c < corners.size(); ++c) {
     if (!moves[corners[c]]) continue;
     const std::size_t first = c - c % 3;
-    for (std::size_t i = first; i < first + 3; ++i) element_moves[element_of_corner[i]] = true;
+    for (std::size_t i = first; i < first + 3; ++i) element_moves[element_of_vertex[corners[i]]] = true;
   }
   const auto is_judged = [&](std::uint32_t v) {
     const std::uint32_t e = shading.element_of_vertex[v];
@@ -162,9 +169,12 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::
   std::vector<JudgedOutput> outputs;
   if (rule == AuditRule::kFlat) {
     for (std::uint32_t c = 0; c < corners.size(); ++c)
-      if (is_judged(corners[c])) outputs.push_back({corners[c], element_of_corner[c], c / 3, c});
+      if (is_judged(corners[c])) outputs.push_back({corners[c], element_of_vertex[corners[c]], c / 3, c});
     return outputs;
   }
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) count += is_judged(v) ? 1U : 0U;
+  outputs.reserve(count);
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
     if (!is_judged(v)) continue;
     const std::uint32_t e = shading.element_of_vertex[v];
@@ -233,7 +243,7 @@ class MeshAudit {
       fill_extra_weights(shading_, result);
     };
     const JudgedPart part(shading_.set.topology, shading_.groups, result_.weighting,
-                          moving_outputs(shading_, involved, result_.rule));
+                          moving_outputs(shading_, involved, result_.rule), result_.rule == AuditRule::kFlat);
     if (!judge(
             part, weights, [](std::size_t, double t) { return t; }, subject))
       return;
@@ -283,7 +293,7 @@ class MeshAudit {
       curve.at(moment(segment, t), moves && t == 1, result);
     };
     const JudgedPart part(shading_.set.topology, shading_.groups, result_.weighting,
-                          moving_outputs(shading_, involved, result_.rule));
+                          moving_outputs(shading_, involved, result_.rule), result_.rule == AuditRule::kFlat);
     const bool judged = judge(part, weights, moment, subject);
     subject_of_curve_[{animation, track.same_keys_as}] = judged ? result_.subjects.size() - 1 : kNoSubject;
     if (judged) find_track_faults(result_.subjects.back());
@@ -447,10 +457,11 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
     const bool has_faces = std::any_of(meshes[m].primitives.begin(), meshes[m].primitives.end(),
                                        [](const GltfPrimitive& p) { return p.has_faces(); });
     if (meshes[m].target_count == 0 || !has_faces || (only && tracks.empty())) continue;
-    const Result<GltfShading> shading = read_gltf_shading(document, m);
+    Result<GltfShading> shading = read_gltf_shading(document, m);
     if (!shading) return shading.error();
     MeshAudit mesh(document, options, shading.value(), progress, result);
     mesh.add_offset();
+    if (result.weighting == Weighting::kArea) shading.value().groups.forget_corners();
     mesh.add_notes();
     const bool is_sequence = shading.value().mark && shading.value().mark->sequence;
     for (std::size_t k = 0; k < meshes[m].target_count && !only && !is_sequence; ++k) mesh.add_target(k);

@@ -39,8 +39,9 @@ struct PartNormals {
 class JudgedPart {
  public:
   /// Elements and faces of the outputs become those of this part; their vertices and corners stay those of the mesh.
+  /// Without needs_faces, normals() may leave out those of faces. groups need no corners where the weighting is area.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-             std::vector<JudgedOutput> outputs);
+             std::vector<JudgedOutput> outputs, bool needs_faces = true);
 
   /// Its vertices and its elements, as the mesh numbers them, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
@@ -52,15 +53,17 @@ class JudgedPart {
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
  private:
+  [[nodiscard]] Vec3d face_normal(std::span<const Vec3d> positions, std::size_t face) const;
   // What a corner of a face adds to the normal of its element.
   [[nodiscard]] Vec3d term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
-                           const Vec3d& face_normal) const;
+                           const Vec3d& normal) const;
 
   std::vector<std::uint32_t> vertices_, elements_;
   std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // of this part
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // of this part
-  std::vector<std::uint32_t> corners_of_element_;                        // 0, 1, 2 ... within these faces
+  std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty where faces count by area
   Weighting weighting_;
+  bool keeps_faces_;  // or each element computes the normals of its faces: no memory, and little time for small ones
   std::vector<JudgedOutput> outputs_;
 };
 

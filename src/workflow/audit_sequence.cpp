@@ -17,7 +17,7 @@ class SequenceSource {
  public:
   static constexpr bool kNeedsEnds = true;
 
-  SequenceSource(const Motion& motion, const SequenceNormals& normals, bool stored, const JudgedPart& part,
+  SequenceSource(const Motion& motion, const StoredNormals& normals, bool stored, const JudgedPart& part,
                  AuditRule rule, const PartNormals& first, std::span<const std::size_t> segments)
       : motion_(motion),
         normals_(normals),
@@ -92,7 +92,7 @@ class SequenceSource {
   }
 
   const Motion& motion_;
-  const SequenceNormals& normals_;
+  const StoredNormals& normals_;
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
@@ -104,7 +104,7 @@ class SequenceSource {
   std::vector<Vec3d> start_, end_;
 };
 
-Status check_normals(const Motion& motion, const SequenceNormals& normals) {
+Status check_normals(const Motion& motion, const StoredNormals& normals) {
   const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
   if (count > 1 && count != motion.keyframes.size())
     return invalid_input("", "there are normals of " + std::to_string(count) + " keyframes for " +
@@ -121,7 +121,7 @@ Status check_normals(const Motion& motion, const SequenceNormals& normals) {
 }
 
 // A vertex once for each normal that it shows: corners of one element with the same stored normals show the same.
-std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const SequenceNormals& normals,
+std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
                                        const std::vector<bool>& moves, AuditRule rule, bool stored) {
   const auto corners = motion.topology.corners();
   const auto same = [&](std::uint32_t a, std::uint32_t b) {
@@ -174,8 +174,7 @@ void find_faults(const AuditSubject& subject, Audit& result) {
 
 }  // namespace
 
-Result<Audit> audit(const Motion& motion, const SequenceNormals& normals, bool is_targets,
-                    const AuditOptions& options) {
+Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets, const AuditOptions& options) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting;

@@ -29,15 +29,11 @@ class Baker {
 
   Result<GltfBake> run() {
     const std::vector<std::size_t> moving = moving_meshes();
-    if (moving.empty()) {
-      return invalid_input(document_.name(), "nothing moves: no morph target moves a vertex of a primitive with faces");
-    }
     for (const std::size_t mesh : moving) total_ += document_.meshes()[mesh].target_count;
     bake_.meshes.reserve(moving.size());
     for (const std::size_t mesh : moving) {
       if (Status status = bake_mesh(mesh); !status) return status.error();
     }
-    if (bake_.meshes.empty()) return invalid_input(document_.name(), "nothing moves: all morph targets are zero");
     std::vector<BakedMesh*> reports;
     for (const std::size_t n : report_of_plan_) reports.push_back(&bake_.meshes[n]);
     if (Status status = write_tracks(document_, plans_, options_.tolerance, edit_, reports, bake_.converted_tracks);
@@ -73,8 +69,9 @@ class Baker {
       bake_.meshes.push_back(std::move(report));
       return Success{};
     }
-    const Result<GltfShading> read = read_gltf_shading(document_, index, {options_.smooth, options_.crease_angle});
+    Result<GltfShading> read = read_gltf_shading(document_, index, {options_.smooth, options_.crease_angle, false});
     if (!read) return read.error();
+    if (options_.weighting == Weighting::kArea) read.value().groups.forget_corners();
     const GltfShading& shading = read.value();
     bool any_moves = false;
     for (std::size_t i = 0; i < mesh.target_count; ++i) any_moves = any_moves || moves(shading, i);
@@ -113,7 +110,7 @@ class Baker {
     for (std::size_t i = 0; i < mesh.target_count; ++i) is_driven |= moves(shading, i) && use.together(i, i);
     add_poses(index, use);
     const NormalTerms terms(shading, options_.weighting);
-    const Result<MeshPlan> plan = plan_mesh(document_, shading, terms, use, is_driven, options_);
+    Result<MeshPlan> plan = plan_mesh(document_, shading, terms, use, is_driven, options_);
     if (!plan) return plan.error();
     const auto step = [this] {
       if (options_.progress) options_.progress(std::min(++done_, total_), total_);
@@ -128,7 +125,9 @@ class Baker {
       bake_.warnings.push_back(mesh_name(mesh, index) + ": " + std::to_string(shading.split_by_crease) +
                                " vertices lie on edges sharper than the crease angle and got one normal all the same");
     }
-    plans_.push_back(plan.value());
+    plan.value().is_shown = std::vector<bool>();
+    plan.value().largest = std::vector<double>();
+    plans_.push_back(std::move(plan).value());
     report_of_plan_.push_back(bake_.meshes.size());
     return Success{};
   }
@@ -170,6 +169,15 @@ class Baker {
                                (report.undriven == 1 ? " target is" : " targets are") +
                                " driven by no animation and got the best single delta");
     }
+    if (report.without_stored > 0) {
+      bake_.warnings.push_back(name + std::to_string(report.without_stored) +
+                               " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
+    }
+    constexpr std::size_t kMany = 64;
+    if (plan.extras.size() > kMany) {
+      bake_.warnings.push_back(name + std::to_string(plan.extras.size()) +
+                               " extra targets, for so many are active at once: --encode endpoint needs none");
+    }
     if (report.without_base > 0) {
       bake_.warnings.push_back(name + std::to_string(report.without_base) +
                                " vertices have no area around them in the base: their normals are right but for "
@@ -198,7 +206,9 @@ class Baker {
   }
 
   Result<GltfBake> finish() {
-    bake_.pointers = edit_.pointers();
+    Result<std::vector<std::string>> pointers = edit_.pointers();
+    if (!pointers) return pointers.error();
+    bake_.pointers = std::move(pointers).value();
     bake_.added_bytes = edit_.added_bytes();
     bake_.changed = !bake_.pointers.empty();
     for (const BakedMesh& mesh : bake_.meshes) bake_.added_targets += mesh.extras.size();

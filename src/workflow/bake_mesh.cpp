@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -15,10 +16,15 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kChunk = 1024;
+// Stored base normals must have length 1; hosts can show nothing right with those that are shorter than this.
+constexpr double kShortest = 1e-3;
 
+// As text; what is beyond float32, which JSON has no word for, becomes the largest float.
 std::string number(double value) {
+  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
   char text[32];
-  const auto [end, code] = std::to_chars(text, text + sizeof text, static_cast<float>(value));
+  const auto [end, code] =
+      std::to_chars(text, text + sizeof text, static_cast<float>(std::clamp(value, -kMost, kMost)));
   return code == std::errc{} ? std::string(text, end) : "0";
 }
 
@@ -30,6 +36,13 @@ std::string pointer_of(std::size_t mesh, std::size_t primitive) {
 struct Attributes {
   bool positions = false, normals = false, tangents = false;
 };
+
+// Calls body(chunk, first, last) with ranges of [0, count), on all cores.
+constexpr std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+template <class Body>
+void in_chunks(std::size_t count, const Body& body) {
+  parallel_for(chunk_count(count), [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
+}
 
 class MeshWriter {
  public:
@@ -95,7 +108,6 @@ class MeshWriter {
 
   // The base normals, and new ones where they are asked for.
   Status take_stored() {
-    stored_ = shading_.normals;
     for (const GltfPart& part : shading_.parts) {
       const GltfPrimitive& primitive = mesh_.primitives[part.primitive];
       if (!is_shaded(part.primitive) || (primitive.has_normals && !options_.recompute_base)) continue;
@@ -104,8 +116,9 @@ class MeshWriter {
         return invalid_input(std::string(document_.name()).append(", ").append(pointer),
                              "the base normals are compressed by Draco and cannot be replaced");
       }
+      if (replaced_.empty()) replaced_ = shading_.normals;
       for (std::size_t v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) replace_stored(v);
-      const std::span<const float> normals(stored_.data() + 3 * part.first_vertex, 3 * part.vertex_count);
+      const std::span<const float> normals(replaced_.data() + 3 * part.first_vertex, 3 * part.vertex_count);
       edit_.set(pointer + "/attributes/NORMAL", std::to_string(edit_.add_vectors(normals, {false, true})));
     }
     return Success{};
@@ -113,9 +126,9 @@ class MeshWriter {
 
   void replace_stored(std::size_t vertex) {
     const std::uint32_t element = shading_.element_of_vertex[vertex];
-    float* stored = stored_.data() + 3 * vertex;
+    float* stored = replaced_.data() + 3 * vertex;
     const bool has_stored = stored[0] != 0 || stored[1] != 0 || stored[2] != 0;
-    Vec3d normal = element == GltfShading::kNoElement ? Vec3d{} : unit(terms_.base()[element]);
+    Vec3d normal = element == GltfShading::kNoElement ? Vec3d{} : unit(terms_.base_of(element));
     if (max_abs(normal) == 0) {  // a file cannot say that there is none
       if (has_stored) return;
       normal = {0, 0, 1};
@@ -127,86 +140,92 @@ class MeshWriter {
 
   void count() {
     for (const bool shown : plan_.is_shown) report_.elements += shown ? 1 : 0;
-    for (const std::uint32_t e : shading_.element_of_vertex) {
-      if (e == GltfShading::kNoElement) continue;
-      if (!VertexTerms::has_base(terms_.base()[e], plan_.largest[e])) ++report_.without_base;
-    }
+    const std::vector<std::uint32_t>& elements = shading_.element_of_vertex;
+    std::vector<std::size_t> without(chunk_count(elements.size())), unstored(chunk_count(elements.size()));
+    in_chunks(elements.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+      for (std::size_t v = first; v < last; ++v) {
+        const std::uint32_t e = elements[v];
+        if (e == GltfShading::kNoElement) continue;
+        if (!VertexTerms::has_base(terms_.base_of(e), plan_.largest[e])) ++without[chunk];
+        if (length(stored(v)) < kShortest) ++unstored[chunk];
+      }
+    });
+    for (const std::size_t of_chunk : without) report_.without_base += of_chunk;
+    for (const std::size_t of_chunk : unstored) report_.without_stored += of_chunk;
     for (std::size_t i = 0; i < mesh_.target_count; ++i) {
       if (plan_.is_line[i] && plan_.encoding == BakeEncoding::kExact) ++report_.undriven;
     }
   }
 
-  // Sets the terms of a target, of all elements.
-  void take_line(std::size_t i) {
-    const BlendTerm linear = terms_.linear(i), square = terms_.pair(i, i);
-    std::vector<std::uint32_t> moved;
-    std::set_union(linear.elements.begin(), linear.elements.end(), square.elements.begin(), square.elements.end(),
-                   std::back_inserter(moved));
-    std::vector<Vec3d> squares(moved.size());
-    for (std::size_t n = 0, s = 0; n < moved.size() && s < square.elements.size(); ++n) {
-      if (moved[n] == square.elements[s]) squares[n] = square.values[s++];
-    }
-    clear();
-    lines_.resize(shading_.groups.size());
-    for (std::size_t n = 0; n < linear.elements.size(); ++n) values_[linear.elements[n]] = linear.values[n];
-    std::vector<double> errors(moved.size());
-    parallel_for((moved.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-      for (std::size_t n = chunk * kChunk; n < std::min(moved.size(), (chunk + 1) * kChunk); ++n) {
-        const std::uint32_t e = moved[n];
-        lines_[e] = control_normals_of(terms_.base()[e], values_[e], squares[n]);
-        if (!plan_.is_shown[e]) continue;
-        const EndDelta best = best_end_delta(lines_[e]);
-        values_[e] = best.delta;
-        errors[n] = best.error;
-      }
-    });
-    double error = 0;
-    for (const double of_element : errors) error = std::fmax(error, of_element);
-    report_.largest_error = std::fmax(report_.largest_error, (error + terms_.bound(i)) * kDegrees);
-    is_moved_.assign(shading_.groups.size(), false);
-    for (const std::uint32_t e : moved) is_moved_[e] = true;
-  }
-  void take_term(const BlendTerm& term) {
-    clear();
-    for (std::size_t n = 0; n < term.elements.size(); ++n) {
-      values_[term.elements[n]] = term.values[n];
-      is_moved_[term.elements[n]] = true;
-    }
-  }
-  void clear() {
-    values_.assign(shading_.groups.size(), {});
-    is_moved_.assign(shading_.groups.size(), false);
+  [[nodiscard]] Vec3d stored(std::size_t vertex) const {
+    const float* const n = (replaced_.empty() ? shading_.normals : replaced_).data() + 3 * vertex;
+    return to_double(Vec3f{n[0], n[1], n[2]});
   }
 
-  // An accessor with the deltas of a part.
-  std::size_t deltas_of(const GltfPart& part, bool is_line) {
+  // What find(element, vertex terms, delta) says of each vertex of a part that shows something, as an accessor; zeros
+  // where it says false of all of them.
+  template <class Find>
+  std::size_t deltas_of(const GltfPart& part, const Find& find) {
     std::vector<float> deltas(3 * part.vertex_count);
-    bool any = false;
-    for (std::size_t n = 0; n < part.vertex_count; ++n) {
-      const std::size_t v = part.first_vertex + n;
-      const std::uint32_t e = shading_.element_of_vertex[v];
-      if (e == GltfShading::kNoElement || !is_moved_[e]) continue;
-      const Vec3d stored = to_double(Vec3f{stored_[3 * v], stored_[3 * v + 1], stored_[3 * v + 2]});
-      const VertexTerms of_vertex(terms_.base()[e], plan_.largest[e], stored);
-      const Vec3d delta = is_line ? of_vertex.end_delta(values_[e], lines_[e]) : of_vertex(values_[e]);
-      deltas[3 * n] = static_cast<float>(delta.x);
-      deltas[3 * n + 1] = static_cast<float>(delta.y);
-      deltas[3 * n + 2] = static_cast<float>(delta.z);
-      any = true;
-    }
-    if (!any) return zeros_.of(part.vertex_count);
+    std::vector<char> any(chunk_count(part.vertex_count));
+    in_chunks(part.vertex_count, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        const std::size_t v = part.first_vertex + n;
+        const std::uint32_t e = shading_.element_of_vertex[v];
+        Vec3d delta;
+        if (e == GltfShading::kNoElement || !find(e, v, chunk, delta)) continue;
+        deltas[3 * n] = static_cast<float>(delta.x);
+        deltas[3 * n + 1] = static_cast<float>(delta.y);
+        deltas[3 * n + 2] = static_cast<float>(delta.z);
+        any[chunk] = 1;
+      }
+    });
+    if (std::find(any.begin(), any.end(), 1) == any.end()) return zeros_.of(part.vertex_count);
     return edit_.add_vectors(deltas, {false, options_.dense_zeros});
+  }
+
+  std::size_t deltas_of_term(const GltfPart& part, const NormalTerms::Term& term) {
+    return deltas_of(part, [&](std::uint32_t e, std::size_t v, std::size_t, Vec3d& delta) {
+      Vec3d value;
+      if (!term.find(e, value)) return false;
+      delta = VertexTerms(terms_.base_of(e), plan_.largest[e], stored(v))(value);
+      return true;
+    });
+  }
+
+  // The best single deltas of a target.
+  std::size_t deltas_of_line(const GltfPart& part, std::size_t target, const NormalTerms::Term& linear,
+                             const NormalTerms::Term& square) {
+    std::vector<double> errors(chunk_count(part.vertex_count));
+    const auto find = [&](std::uint32_t e, std::size_t v, std::size_t chunk, Vec3d& delta) {
+      Vec3d a, c;
+      const bool has_linear = linear.find(e, a), has_square = square.find(e, c);
+      if (!has_linear && !has_square) return false;
+      const Vec3d base = terms_.base_of(e);
+      const ControlNormals normals = of_powers(base, a, c);
+      const EndDelta best = best_end_delta(normals);
+      errors[chunk] = std::fmax(errors[chunk], best.error);
+      delta = VertexTerms(base, plan_.largest[e], stored(v)).end_delta(best.delta, normals);
+      return true;
+    };
+    const std::size_t accessor = deltas_of(part, find);
+    double error = 0;
+    for (const double of_chunk : errors) error = std::fmax(error, of_chunk);
+    report_.largest_error = std::fmax(report_.largest_error, (error + terms_.bound(target)) * kDegrees);
+    return accessor;
   }
 
   void write_target(std::size_t i) {
     const bool rewritten = moves(shading_, i);
+    std::optional<NormalTerms::Term> linear, square;
     if (rewritten) {
-      if (plan_.is_line[i])
-        take_line(i);
-      else
-        take_term(terms_.linear(i));
-      if (!plan_.is_line[i]) report_.largest_error = std::fmax(report_.largest_error, terms_.bound(i) * kDegrees);
+      linear.emplace(terms_.linear_by_element(i));
+      if (plan_.is_line[i]) square.emplace(terms_.pair_by_element(i, i));
+      report_.largest_error = std::fmax(report_.largest_error, terms_.bound(i) * kDegrees);
     }
+    const auto deltas = [&](const GltfPart& part) {
+      return square ? deltas_of_line(part, i, *linear, *square) : deltas_of_term(part, *linear);
+    };
     for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
       const GltfPrimitive& primitive = mesh_.primitives[p];
       if (i >= primitive.targets.size()) continue;
@@ -215,14 +234,14 @@ class MeshWriter {
       if (attributes_[p].positions && !has.positions)
         edit_.set(pointer + "/POSITION", std::to_string(zeros_.of(primitive.vertex_count)));
       if (rewritten && is_shaded(p))
-        edit_.set(pointer + "/NORMAL", std::to_string(deltas_of(*part_of(p), plan_.is_line[i])));
+        edit_.set(pointer + "/NORMAL", std::to_string(deltas(*part_of(p))));
       else if (attributes_[p].normals && !has.normals)
         edit_.set(pointer + "/NORMAL", std::to_string(zeros_.of(primitive.vertex_count)));
     }
   }
 
   void write_extra(const WeightProduct& extra) {
-    take_term(terms_.pair(extra.i, extra.j));
+    const NormalTerms::Term term = terms_.pair_by_element(extra.i, extra.j);
     for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
       const Attributes& attributes = attributes_[p];
       const std::size_t count = mesh_.primitives[p].vertex_count;
@@ -231,7 +250,7 @@ class MeshWriter {
         target.append(target.empty() ? "{\"" : ",\"").append(name).append("\":").append(std::to_string(accessor));
       };
       if (attributes.positions) add("POSITION", zeros_.of(count));
-      if (attributes.normals) add("NORMAL", is_shaded(p) ? deltas_of(*part_of(p), false) : zeros_.of(count));
+      if (attributes.normals) add("NORMAL", is_shaded(p) ? deltas_of_term(*part_of(p), term) : zeros_.of(count));
       if (attributes.tangents) add("TANGENT", zeros_.of(count));
       edit_.append(pointer_of(plan_.mesh, p) + "/targets", target.empty() ? "{}" : target + "}");
     }
@@ -276,11 +295,8 @@ class MeshWriter {
   ZeroVectors& zeros_;
   GltfEdit& edit_;
   BakedMesh& report_;
-  std::vector<float> stored_;           // (V, 3), base normals as they will be
+  std::vector<float> replaced_;         // (V, 3), base normals as they will be, where some are replaced
   std::vector<Attributes> attributes_;  // of each primitive
-  std::vector<Vec3d> values_;           // of each element: the term or line at hand
-  std::vector<bool> is_moved_;          // of each element: it has one
-  std::vector<ControlNormals> lines_;   // of each element, for lines
 };
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "chronormal/core/parallel.h"
+
 namespace chronormal {
 namespace {
 
@@ -30,6 +32,23 @@ struct Candidate {
   double size = 0;   // the largest of all of it
   double turn = 0;   // radians: what its lack turns
 };
+
+// The largest of some elements.
+struct Worst {
+  double aside = 0, size = 0, tangent = 0;
+};
+
+// Calls body(chunk, first, last) with ranges of [0, count), on all cores.
+constexpr std::size_t kChunk = 1024;
+constexpr std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+template <class Body>
+void in_chunks(std::size_t count, const Body& body) {
+  if (count <= kChunk) {
+    if (count > 0) body(0, 0, count);
+    return;
+  }
+  parallel_for(chunk_count(count), [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
+}
 
 // The tangent of the angle between a unit vector and another one; infinity from a right angle on.
 double tangent_between(const Vec3d& unit, const Vec3d& other) {
@@ -56,11 +75,13 @@ class Planner {
     for (std::size_t i = 0; i < targets; ++i) {
       if (!moves(shading_, i)) continue;
       plan_.is_line[i] = plan_.encoding == BakeEncoding::kEndpoint || !together(i, i);
-      note_lengths(terms_.linear(i));
-      if (plan_.is_line[i]) note_lengths(terms_.pair(i, i));
+      const std::vector<std::uint32_t> elements = terms_.elements(i);
+      note_lengths(elements, terms_.linear_by_element(i));
+      if (plan_.is_line[i]) note_lengths(elements, terms_.pair_by_element(i, i));
     }
     if (plan_.encoding == BakeEncoding::kEndpoint) return Success{};
     if (Status status = find_pairs(); !status) return status;
+    if (!pairs_.empty()) find_longest_base();
     take_poses();
     std::size_t held = 0, first = 0;
     for (const auto& [i, j] : pairs_) {
@@ -82,11 +103,17 @@ class Planner {
     return plan_.is_driven ? use_.largest(i) : std::fmax(1, use_.largest(i));
   }
 
-  void note_lengths(const BlendTerm& term) {
-    for (std::size_t n = 0; n < term.elements.size(); ++n) {
-      double& largest = plan_.largest[term.elements[n]];
-      largest = std::fmax(largest, length(term.values[n]));
-    }
+  void note_length(std::uint32_t element, const Vec3d& value) {
+    double& largest = plan_.largest[element];
+    largest = std::fmax(largest, length(value));
+  }
+  void note_lengths(const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
+    in_chunks(elements.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        Vec3d value;
+        if (term.find(elements[n], value)) note_length(elements[n], value);
+      }
+    });
   }
 
   Status find_pairs() {
@@ -127,47 +154,93 @@ class Planner {
 
   // Keeps the term of a pair if it is not zero; returns its size.
   std::size_t take_pair(std::size_t i, std::size_t j) {
-    const BlendTerm term = terms_.pair(i, j);
     Candidate candidate;
     candidate.product.i = i;
     candidate.product.j = j;
+    candidate.term = terms_.pair(i, j);
+    BlendTerm& term = candidate.term;
+    std::size_t kept = 0;
     for (std::size_t n = 0; n < term.elements.size(); ++n) {
       if (!plan_.is_shown[term.elements[n]] || max_abs(term.values[n]) == 0) continue;
-      candidate.term.elements.push_back(term.elements[n]);
-      candidate.term.values.push_back(term.values[n]);
+      term.elements[kept] = term.elements[n];
+      term.values[kept++] = term.values[n];
     }
-    if (candidate.term.elements.empty()) return 0;
-    note_lengths(candidate.term);
+    if (kept == 0) return 0;
+    term.elements.resize(kept);
+    term.values.resize(kept);
+    term.elements.shrink_to_fit();
+    term.values.shrink_to_fit();
+    for (std::size_t n = 0; n < kept; ++n) note_length(term.elements[n], term.values[n]);
     candidates_.push_back(std::move(candidate));
     return candidates_.back().term.elements.size();
   }
 
-  // Calls a function with n of an element, scaled to length 1, and that length, where its direction is judged.
-  template <class Visit>
-  void for_each_normal(const std::vector<Vec3d>& normals, const BlendTerm& term, const Visit& visit) const {
-    for (std::size_t n = 0; n < term.elements.size(); ++n) {
-      const std::uint32_t e = term.elements[n];
-      const double size = length(normals[e]);
-      if (size > kLeastLength * std::fmax(length(terms_.base()[e]), plan_.largest[e]))
-        visit(n, (1 / size) * normals[e], size);
+  // Whether the direction of a normal of this length is judged. Most are longer than any base asks for.
+  [[nodiscard]] bool is_judged(std::uint32_t element, double size) const {
+    if (size > kLeastLength * std::fmax(longest_base_, plan_.largest[element])) return true;
+    return size > kLeastLength * std::fmax(length(terms_.base_of(element)), plan_.largest[element]);
+  }
+
+  void find_longest_base() {
+    std::vector<double> longest(chunk_count(shading_.groups.size()));
+    in_chunks(shading_.groups.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+      for (std::size_t e = first; e < last; ++e)
+        longest[chunk] = std::fmax(longest[chunk], length(terms_.base_of(static_cast<std::uint32_t>(e))));
+    });
+    for (const double of_chunk : longest) longest_base_ = std::fmax(longest_base_, of_chunk);
+  }
+
+  // The largest of what visit(n, unit, size, worst) finds for n of each element, scaled to length 1, and that length,
+  // where its direction is judged.
+  template <class Normal, class Visit>
+  [[nodiscard]] Worst worst_of(const BlendTerm& term, const Normal& normal_of, const Visit& visit) const {
+    std::vector<Worst> of_chunks(chunk_count(term.elements.size()));
+    in_chunks(term.elements.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        const Vec3d normal = normal_of(term.elements[n]);
+        const double size = length(normal);
+        if (is_judged(term.elements[n], size)) visit(n, (1 / size) * normal, size, of_chunks[chunk]);
+      }
+    });
+    Worst all;
+    for (const Worst& each : of_chunks) {
+      all.size = std::fmax(all.size, each.size);
+      all.aside = std::fmax(all.aside, each.aside);
+      all.tangent = std::fmax(all.tangent, each.tangent);
     }
+    return all;
   }
 
   // Holds terms, from the first of them on, against the normals on the way.
   void measure(std::size_t first) {
     if (first == candidates_.size()) return;
     std::vector<double> tangents(candidates_.size(), 0.0);
+    std::size_t entries = 0;
+    for (std::size_t c = first; c < candidates_.size(); ++c) {
+      entries += candidates_[c].term.elements.size();
+    }
+    // Where each element is asked for about once, its normal needs no place.
+    const bool keep = terms_.is_fitted() || entries > 2 * shading_.groups.size();
     for (const std::vector<double>& pose : poses_) {
-      const std::vector<Vec3d> normals = terms_.at(pose);
+      const std::vector<Vec3d> normals = keep ? terms_.at(pose) : std::vector<Vec3d>();
+      std::vector<double> positions(keep ? 0 : shading_.set.base.size());
+      if (!keep) blend_positions(shading_.set, pose, positions);
+      const auto normal_of = [&](std::uint32_t e) {
+        return keep ? normals[e] : normal_from_positions(shading_, positions, e);
+      };
       for (std::size_t c = first; c < candidates_.size(); ++c) {
         Candidate& candidate = candidates_[c];
         const double weight = pose[candidate.product.i] * pose[candidate.product.j];
-        for_each_normal(normals, candidate.term, [&](std::size_t n, const Vec3d& unit, double size) {
+        const auto look = [&](std::size_t n, const Vec3d& unit, double size, Worst& worst) {
           const Vec3d part = (1 / size) * candidate.term.values[n];
-          candidate.size = std::fmax(candidate.size, length(part));
-          candidate.aside = std::fmax(candidate.aside, length(cross(unit, part)));
-          tangents[c] = std::fmax(tangents[c], tangent_between(unit, unit - weight * part));
-        });
+          worst.size = std::fmax(worst.size, length(part));
+          worst.aside = std::fmax(worst.aside, length(cross(unit, part)));
+          worst.tangent = std::fmax(worst.tangent, tangent_between(unit, unit - weight * part));
+        };
+        const Worst worst = worst_of(candidate.term, normal_of, look);
+        candidate.size = std::fmax(candidate.size, worst.size);
+        candidate.aside = std::fmax(candidate.aside, worst.aside);
+        tangents[c] = std::fmax(tangents[c], worst.tangent);
       }
     }
     for (std::size_t c = first; c < candidates_.size(); ++c) {
@@ -212,7 +285,9 @@ class Planner {
   [[nodiscard]] double turn_without(const std::vector<std::size_t>& pairs) const {
     double tangent = 0;
     std::vector<BlendTerm> terms;
-    for (const std::size_t n : pairs) terms.push_back(terms_.pair(candidates_[n].product.i, candidates_[n].product.j));
+    for (const std::size_t n : pairs) {
+      terms.push_back(terms_.pair(candidates_[n].product.i, candidates_[n].product.j));
+    }
     for (const std::vector<double>& pose : poses_) {
       const std::vector<Vec3d> normals = terms_.at(pose);
       std::vector<Vec3d> without = normals;
@@ -224,11 +299,14 @@ class Planner {
           normal = normal - weight * terms[t].values[n];
         }
       }
-      for (const BlendTerm& term : terms) {
-        for_each_normal(normals, term, [&](std::size_t n, const Vec3d& unit, double size) {
+      for (std::size_t t = 0; t < terms.size(); ++t) {
+        const BlendTerm& term = terms[t];
+        const auto look = [&](std::size_t n, const Vec3d& unit, double size, Worst& worst) {
           if (plan_.is_shown[term.elements[n]])
-            tangent = std::fmax(tangent, tangent_between(unit, (1 / size) * without[term.elements[n]]));
-        });
+            worst.tangent = std::fmax(worst.tangent, tangent_between(unit, (1 / size) * without[term.elements[n]]));
+        };
+        const auto normal_of = [&](std::uint32_t e) { return normals[e]; };
+        tangent = std::fmax(tangent, worst_of(term, normal_of, look).tangent);
       }
     }
     return angle_of_tangent(tangent);
@@ -243,6 +321,7 @@ class Planner {
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;
   std::vector<Candidate> candidates_;
   std::vector<std::vector<double>> poses_;  // to measure at
+  double longest_base_ = 0;                 // of all elements
   bool sees_all_ = false;                   // these are all that the weights pass through
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -67,8 +68,8 @@ class TrackWriter {
   }
 
   Status run() {
-    if (plan_of_mesh_.empty()) return Success{};
     if (Status status = check_pointers(); !status) return status;
+    if (plan_of_mesh_.empty()) return Success{};
     for (std::size_t a = 0; a < document_.animations().size(); ++a) {
       if (Status status = write_animation(a); !status) return status;
     }
@@ -110,11 +111,12 @@ class TrackWriter {
       const std::string channel = item(pointer + "/channels", animation.tracks[t].channel);
       tracks_of_sampler[index_at(edit_, channel + "/sampler")].push_back(t);
     }
+    const std::set<std::size_t> of_others = samplers_of_others(a);
     std::size_t appended = 0;
     for (const auto& [sampler, tracks] : tracks_of_sampler) {
-      // The sampler stays as it is where a track needs that; else the first mesh takes it over.
+      // The sampler stays as it is where another channel needs that; else the first mesh takes it over.
       std::map<std::size_t, std::vector<std::size_t>> tracks_of_plan;
-      bool is_needed = false;
+      bool is_needed = of_others.count(sampler) > 0;
       for (const std::size_t t : tracks) {
         const std::size_t* plan = plan_of(animation.tracks[t]);
         if (plan == nullptr)
@@ -139,6 +141,18 @@ class TrackWriter {
       }
     }
     return Success{};
+  }
+
+  // The samplers of channels that drive something else than weights of nodes.
+  [[nodiscard]] std::set<std::size_t> samplers_of_others(std::size_t a) const {
+    const GltfAnimation& animation = document_.animations()[a];
+    std::set<std::size_t> of_weights, samplers;
+    for (const GltfTrack& track : animation.tracks) of_weights.insert(track.channel);
+    for (std::size_t c = 0; c < animation.channel_count; ++c) {
+      const std::string sampler = item(item("/animations", a) + "/channels", c) + "/sampler";
+      if (of_weights.count(c) == 0 && edit_.has(sampler)) samplers.insert(index_at(edit_, sampler));
+    }
+    return samplers;
   }
 
   Result<Sampler> extended_sampler(std::size_t a, std::size_t t, std::size_t sampler, std::size_t plan) {

@@ -77,6 +77,27 @@ std::vector<std::uint32_t> make_triangles(const Topology& topology,
   return triangles;
 }
 
+// How many polygons a fan does not fit: one of its triangles looks the other way.
+std::size_t count_not_convex(const Topology& topology, const std::vector<float>& positions) {
+  const auto at = [&](std::uint32_t v) {
+    return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
+  };
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < topology.face_count() && !topology.all_triangles(); ++f) {
+    const auto face = topology.face(f);
+    std::vector<Vec3d> triangles;
+    Vec3d normal;
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      triangles.push_back(cross(at(face[c - 1]) - at(face[0]), at(face[c]) - at(face[0])));
+      normal = normal + triangles.back();
+    }
+    const bool turns =
+        std::any_of(triangles.begin(), triangles.end(), [&](const Vec3d& n) { return dot(n, normal) < 0; });
+    count += turns ? 1 : 0;
+  }
+  return count;
+}
+
 // What the whole sequence says about one element.
 struct Element {
   Vec3d normal;             // N: unit, float32
@@ -108,7 +129,7 @@ std::vector<Element> examine(const SequenceNormals& normals) {
     to = normals.at_key(s + 1);
     const std::vector<Vec3d> bends = normals.bends(s);
     over_elements(elements.size(), [&](std::size_t e) {
-      const ControlNormals n = control_normals_of(from[e], to[e], bends[e]);
+      const ControlNormals n = with_bend(from[e], to[e], bends[e]);
       if (elements[e].has_none) {
         elements[e].normal = rounded(unit_normal_at(n, 0).vector);
         elements[e].has_none = elements[e].normal == Vec3d{};
@@ -215,6 +236,8 @@ class SequenceWriter {
   }
 
   void write_base() {
+    if (const std::size_t bent = count_not_convex(motion_.topology, motion_.keyframes[0].positions); bent > 0)
+      bake_.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
     triangles_ = builder_.set_triangles(make_triangles(motion_.topology, outputs_.of_corner), outputs_.vertex.size());
     std::vector<Vec3d> base(elements_.size());
     for (std::size_t e = 0; e < base.size(); ++e) base[e] = elements_[e].normal;
@@ -296,7 +319,7 @@ class SequenceWriter {
       to = normals_.at_key(s + 1);
       const std::vector<Vec3d> bends = normals_.bends(s);
       over_elements(elements_.size(), [&](std::size_t e) {
-        const ControlNormals n = control_normals_of(from[e], to[e], bends[e]);
+        const ControlNormals n = with_bend(from[e], to[e], bends[e]);
         const Vec3d direction = unit_normal_at(n, 1).vector;
         const Vec3d start = ends[e];
         if (direction != Vec3d{}) {
@@ -397,9 +420,11 @@ class SequenceWriter {
 
 Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
   const Points points = weld_coincident(motion);
-  const Result<NormalGroups> groups = options.crease_angle == 180
-                                          ? NormalGroups::of_vertices(motion.topology, points)
-                                          : NormalGroups::by_crease_angle(motion, points, options.crease_angle);
+  const Result<NormalGroups> groups =
+      options.normal_of_corner.count > 0
+          ? NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner)
+      : options.crease_angle == 180 ? NormalGroups::of_vertices(motion.topology, points)
+                                    : NormalGroups::by_crease_angle(motion, points, options.crease_angle);
   if (!groups) return groups.error();
   const Result<SequenceNormals> normals = SequenceNormals::make(motion, groups.value(), options.weighting);
   if (!normals) return normals.error();

@@ -24,10 +24,7 @@ std::vector<float> moved_positions(const BlendSet& set, std::size_t target) {
 
 NormalTerms::NormalTerms(const GltfShading& shading, Weighting weighting)
     : shading_(shading), weighting_(weighting), by_area_(shading.set, shading.groups) {
-  if (is_fitted())
-    fit_targets();
-  else
-    base_ = by_area_.base();
+  if (is_fitted()) fit_targets();
 }
 
 void NormalTerms::fit_targets() {
@@ -66,12 +63,38 @@ void NormalTerms::fit_targets() {
 }
 
 BlendTerm NormalTerms::linear(std::size_t i) const {
-  return is_fitted() ? BlendTerm{fits_[i].elements, fits_[i].linear, {}} : by_area_.linear(i);
+  if (is_fitted()) return {fits_[i].elements, fits_[i].linear, {}};
+  BlendTerm term = by_area_.linear(i);
+  term.noise = std::vector<double>();
+  return term;
 }
 
 BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
   assert(i == j || !is_fitted());
-  return is_fitted() ? BlendTerm{fits_[i].elements, fits_[i].square, {}} : by_area_.pair(i, j);
+  if (is_fitted()) return {fits_[i].elements, fits_[i].square, {}};
+  BlendTerm term = by_area_.pair(i, j);
+  term.noise = std::vector<double>();
+  return term;
+}
+
+NormalTerms::Term NormalTerms::linear_by_element(std::size_t i) const {
+  return is_fitted() ? Term(fits_[i].elements, fits_[i].linear) : Term(by_area_.linear_by_element(i));
+}
+
+NormalTerms::Term NormalTerms::pair_by_element(std::size_t i, std::size_t j) const {
+  assert(i == j || !is_fitted());
+  return is_fitted() ? Term(fits_[i].elements, fits_[i].square) : Term(by_area_.pair_by_element(i, j));
+}
+
+bool NormalTerms::Term::find(std::uint32_t element, Vec3d& value) const {
+  if (by_area_) {
+    value = (*by_area_)(element);
+    return value != Vec3d{};
+  }
+  const auto found = std::lower_bound(elements_->begin(), elements_->end(), element);
+  if (found == elements_->end() || *found != element) return false;
+  value = (*values_)[static_cast<std::size_t>(found - elements_->begin())];
+  return true;
 }
 
 bool NormalTerms::overlap(std::size_t i, std::size_t j) const {
@@ -95,7 +118,7 @@ std::vector<Vec3d> NormalTerms::at(std::span<const double> weights) const {
   return normals;
 }
 
-ControlNormals control_normals_of(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {
+ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {
   return {base, base + 0.5 * linear, base + linear + square};
 }
 
@@ -105,15 +128,21 @@ VertexTerms::VertexTerms(const Vec3d& base, double largest, const Vec3d& stored)
   length_ = std::clamp(length(stored), 1e-20, 1e20);
   if (max_abs(stored) == 0) length_ = 1;
   const double of_base = length(base);
-  if (has_base(base, largest))
+  if (has_base(base, largest)) {
     scale_ = of_base > 0 ? length_ / of_base : 0;
-  else
+    // An author who shows the other side means the other normal.
+    if (dot(base_, stored_) < 0) {
+      base_ = -base_;
+      side_ = -1;
+    }
+  } else {
     scale_ = kLongest * length_ / largest;
+  }
 }
 
 Vec3d VertexTerms::turn(const Vec3d& v) const noexcept {
   if (max_abs(base_) == 0 || max_abs(stored_) == 0) return v;
-  return turned(base_, stored_, v);
+  return turned(base_, stored_, side_ * v);
 }
 
 Vec3d VertexTerms::end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept {

@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/normals/blend_terms.h"
@@ -22,11 +24,21 @@ class NormalTerms {
   /// The shading must outlive this. Fits all targets where the weighting is not area.
   NormalTerms(const GltfShading& shading, Weighting weighting);
 
-  /// n(0).
-  [[nodiscard]] const std::vector<Vec3d>& base() const noexcept { return base_; }
-  /// A_i and C_ij. i = j where the weighting is fitted
+  /// n(0) of an element.
+  [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
+    return is_fitted() ? base_[element] : by_area_.base_of(element);
+  }
+  /// A_i and C_ij, without their noise. i = j where the weighting is fitted
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
+  /// The same, element by element.
+  class Term;
+  [[nodiscard]] Term linear_by_element(std::size_t i) const;
+  [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
+  /// All elements where a target may have terms, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const {
+    return is_fitted() ? fits_[i].elements : by_area_.elements(i);
+  }
   /// Whether there is something between two targets: a face that both move, or for fitted weightings an element.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
   /// n(w) at some weights.
@@ -47,12 +59,29 @@ class NormalTerms {
   const GltfShading& shading_;
   Weighting weighting_;
   BlendTerms by_area_;
-  std::vector<Vec3d> base_;
+  std::vector<Vec3d> base_;  // where it is fitted
   std::vector<Fit> fits_;
 };
 
+/// A term whose values are computed or found where they are asked for. Threads: const functions may run at once.
+class NormalTerms::Term {
+ public:
+  /// Whether an element has the term; then its value.
+  [[nodiscard]] bool find(std::uint32_t element, Vec3d& value) const;
+
+ private:
+  friend class NormalTerms;
+  explicit Term(BlendTerms::Term by_area) : by_area_(std::move(by_area)) {}
+  Term(const std::vector<std::uint32_t>& elements, const std::vector<Vec3d>& values)
+      : elements_(&elements), values_(&values) {}
+
+  std::optional<BlendTerms::Term> by_area_;
+  const std::vector<std::uint32_t>* elements_ = nullptr;  // of a fit
+  const std::vector<Vec3d>* values_ = nullptr;
+};
+
 /// The control normals of a target alone, from weight 0 to 1.
-[[nodiscard]] ControlNormals control_normals_of(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
+[[nodiscard]] ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
 
 /// What turns and scales the terms of an element into those of a vertex that shows it: divided by |n(0)|, times the
 /// length of the stored normal N, by the smallest rotation from n(0) to N. Where n(0) is zero or next to it, the terms
@@ -77,7 +106,7 @@ class VertexTerms {
   [[nodiscard]] Vec3d turn(const Vec3d& v) const noexcept;
 
   Vec3d base_, stored_;  // unit vectors, or zero
-  double length_ = 1, scale_ = 0;
+  double length_ = 1, scale_ = 0, side_ = 1;
 };
 
 }  // namespace chronormal

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "chronormal/core/polynomial.h"
 
@@ -25,6 +26,13 @@ constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 // The slope of a piece shorter than any frame may be beyond float32: nobody sees it.
 float to_slope(double slope) { return std::fabs(slope) <= kMost ? static_cast<float>(slope) : 0.0F; }
 float to_weight(double weight) { return static_cast<float>(std::clamp(weight, -kMost, kMost)); }
+
+// What had to be clamped is no product any more: nothing is known of the normal.
+double error_of_clamping(const std::vector<float>& values) {
+  for (const float value : values)
+    if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
+  return 0;
+}
 
 // The slopes of a cubic at its ends, per second.
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
@@ -109,7 +117,7 @@ class TrackExtender {
     }
     std::move(spline_).write(result);
     if (result.times.size() == track_.size()) result.times.clear();
-    result.error = error_;
+    result.error = std::fmax(error_, error_of_clamping(result.values));
     return result;
   }
 
@@ -185,6 +193,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightPro
   result.interpolation = track.interpolation;
   if (track.interpolation != GltfInterpolation::kCubicSpline) {
     append_values(track, products, result.values);
+    result.error = error_of_clamping(result.values);
     return result;
   }
   // A spline of one key: only its value counts.

@@ -51,10 +51,18 @@ std::array<double, 4> WeightTrack::piece(std::size_t key, std::size_t target) co
 
 void WeightUse::add_active(std::vector<std::size_t> active) {
   if (active == last_) return;
-  for (const std::size_t i : active) {
-    for (const std::size_t j : active) together_[i * targets() + j] = true;
-  }
+  for (const std::size_t i : active) moments_[i].push_back(moment_count_);
+  ++moment_count_;
   last_ = std::move(active);
+}
+
+bool WeightUse::together(std::size_t i, std::size_t j) const noexcept {
+  const std::vector<std::size_t>&a = moments_[i], &b = moments_[j];
+  for (std::size_t x = 0, y = 0; x < a.size() && y < b.size();) {
+    if (a[x] == b[y]) return true;
+    ++(a[x] < b[y] ? x : y);
+  }
+  return false;
 }
 
 void WeightUse::add_track(const WeightTrack& track) {

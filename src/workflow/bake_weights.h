@@ -30,15 +30,15 @@ struct WeightTrack {
 /// Gathers the weights that one mesh is given: tracks, and poses that stand still.
 class WeightUse {
  public:
-  explicit WeightUse(std::size_t targets) : largest_(targets, 0.0), together_(targets * targets, false) {}
+  explicit WeightUse(std::size_t targets) : largest_(targets, 0.0), moments_(targets) {}
 
   /// The track must have this many targets, and outlive this.
   void add_track(const WeightTrack& track);
   void add_pose(std::vector<double> weights);
 
   /// Whether both weights are other than zero at some instant. (Between keys of a cubic spline a weight counts as other
-  /// than zero where any of the four numbers that shape it is.)
-  [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return together_[i * largest_.size() + j]; }
+  /// than zero where any of the four numbers that shape it is.) O(moments).
+  [[nodiscard]] bool together(std::size_t i, std::size_t j) const noexcept;
   /// A bound of |w_i|.
   [[nodiscard]] double largest(std::size_t i) const { return largest_[i]; }
   [[nodiscard]] std::size_t targets() const noexcept { return largest_.size(); }
@@ -53,7 +53,8 @@ class WeightUse {
   void add_active(std::vector<std::size_t> active);
 
   std::vector<double> largest_;
-  std::vector<bool> together_;     // (targets, targets), symmetric
+  std::vector<std::vector<std::size_t>> moments_;  // of each target, ascending: when it is active
+  std::size_t moment_count_ = 0;
   std::vector<std::size_t> last_;  // what add_active() was given last
   std::vector<std::vector<double>> poses_;
   std::vector<const WeightTrack*> tracks_;

@@ -23,10 +23,14 @@ std::string mesh_place(const GltfDocument& document, std::size_t mesh) {
 }
 
 // Appends count vertices of `width` numbers each, zeros where values has none, at the end of all vertices before.
-void append(const std::vector<float>& values, std::size_t first_vertex, std::size_t count, std::size_t width,
+void append(std::vector<float> values, std::size_t first_vertex, std::size_t count, std::size_t width,
             std::vector<float>& all) {
   if (values.empty()) {
     if (!all.empty()) all.resize(width * (first_vertex + count));
+    return;
+  }
+  if (first_vertex == 0) {
+    all = std::move(values);
     return;
   }
   all.resize(width * first_vertex);
@@ -35,13 +39,22 @@ void append(const std::vector<float>& values, std::size_t first_vertex, std::siz
 
 // Adds deltas of some vertices to a target, without those that are zero.
 void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, BlendTarget& target) {
-  const BlendTarget moved = BlendTarget::from_dense(deltas);
-  for (const std::uint32_t v : moved.vertices) target.vertices.push_back(static_cast<std::uint32_t>(first_vertex) + v);
-  target.deltas.insert(target.deltas.end(), moved.deltas.begin(), moved.deltas.end());
+  const auto is_moved = [&](std::size_t v) { return deltas[v] != 0 || deltas[v + 1] != 0 || deltas[v + 2] != 0; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < deltas.size(); i += 3) count += is_moved(i) ? 1U : 0U;
+  if (target.vertices.empty()) {
+    target.vertices.reserve(count);
+    target.deltas.reserve(3 * count);
+  }
+  for (std::size_t i = 0; i < deltas.size(); i += 3) {
+    if (!is_moved(i)) continue;
+    target.vertices.push_back(static_cast<std::uint32_t>(first_vertex + i / 3));
+    target.deltas.insert(target.deltas.end(), {deltas[i], deltas[i + 1], deltas[i + 2]});
+  }
 }
 
-// The arrays of all primitives with faces, one after the other.
-Status read_parts(const GltfDocument& document, GltfShading& shading) {
+// The arrays of all primitives with faces, one after the other; of targets one at a time.
+Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& shading) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   std::vector<std::uint32_t> corners;
   std::size_t vertices = 0;
@@ -53,24 +66,34 @@ Status read_parts(const GltfDocument& document, GltfShading& shading) {
     shading.set.targets[k].name = mesh.target_names.empty() ? std::to_string(k) : mesh.target_names[k];
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     if (!mesh.primitives[p].has_faces()) continue;
-    const Result<GltfGeometry> read = document.geometry(shading.mesh, p, {.shading = true, .targets = true});
+    Result<GltfGeometry> read = document.geometry(shading.mesh, p, {.shading = true, .targets = false});
     if (!read) return read.error();
-    const GltfGeometry& geometry = read.value();
+    GltfGeometry& geometry = read.value();
     const std::size_t count = geometry.positions.size() / 3;
     if (vertices + count >= std::numeric_limits<std::uint32_t>::max() / 3)
       return invalid_input(mesh_place(document, shading.mesh), "indices of 32 bits cannot name so many vertices");
     shading.parts.push_back(
         {std::nullopt, shading.mesh, p, vertices, count, corners.size() / 3, geometry.corners.size() / 3});
-    for (const std::uint32_t v : geometry.corners) corners.push_back(static_cast<std::uint32_t>(vertices) + v);
-    append(geometry.positions, vertices, count, 3, shading.set.base);
+    if (vertices == 0) {
+      corners = std::move(geometry.corners);
+    } else {
+      for (const std::uint32_t v : geometry.corners) corners.push_back(static_cast<std::uint32_t>(vertices) + v);
+    }
+    append(std::move(geometry.positions), vertices, count, 3, shading.set.base);
     shading.normals.resize(3 * vertices);
-    append(geometry.normals, vertices, count, 3, shading.normals);
-    append(geometry.tangents, vertices, count, 4, shading.tangents);
-    has_tangents = has_tangents || !geometry.tangents.empty();
-    for (std::size_t k = 0; k < geometry.targets.size(); ++k) {
-      append_deltas(geometry.targets[k].positions, vertices, shading.set.targets[k]);
-      append(geometry.targets[k].normals, vertices, count, 3, shading.normal_deltas[k]);
-      append(geometry.targets[k].tangents, vertices, count, 3, shading.tangent_deltas[k]);
+    append(std::move(geometry.normals), vertices, count, 3, shading.normals);
+    if (keep_deltas) {
+      has_tangents = has_tangents || !geometry.tangents.empty();
+      append(std::move(geometry.tangents), vertices, count, 4, shading.tangents);
+    }
+    geometry = {};
+    for (std::size_t k = 0; k < mesh.primitives[p].targets.size(); ++k) {
+      Result<GltfGeometry::Target> target = document.target(shading.mesh, p, k, true);
+      if (!target) return target.error();
+      append_deltas(target.value().positions, vertices, shading.set.targets[k]);
+      if (!keep_deltas) continue;
+      append(std::move(target.value().normals), vertices, count, 3, shading.normal_deltas[k]);
+      append(std::move(target.value().tangents), vertices, count, 3, shading.tangent_deltas[k]);
     }
     vertices += count;
   }
@@ -176,43 +199,100 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
   return to_points(classes, stored.count + smooth.count);
 }
 
-Status find_elements(const GltfDocument& document, const GltfShadingOptions& options, GltfShading& shading) {
-  const auto& primitives = document.meshes()[shading.mesh].primitives;
-  const std::size_t vertices = shading.set.topology.vertex_count();
-  std::vector<bool> has_normal(vertices), has_none(vertices, true);
-  for (const GltfPart& part : shading.parts) {
-    if (!primitives[part.primitive].has_normals) continue;
-    for (std::size_t v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) {
-      has_normal[v] = true;
-      has_none[v] = false;
-    }
-  }
+// Points of vertices whose stored normals may be joined.
+Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
+                              GltfShading& shading) {
   Motion base;  // borrows the arrays for a while
   base.topology = std::move(shading.set.topology);
   base.keyframes.push_back({std::move(shading.set.base), 0, ""});
-  const Points points = weld(base, shading.set.targets);
-  Result<Points> smooth = set_apart(points, has_none);
-  if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
+  Points points = weld(base, shading.set.targets);
+  Result<Points> all = Points{};
+  if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) {
+    all = std::move(points);
+  } else {
+    std::vector<bool> has_none = has_normal;
+    has_none.flip();
+    Result<Points> smooth = set_apart(points, has_none);
+    if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
+    // Apart from each other where both kinds are at one place.
+    if (smooth)
+      all = joined(set_apart(points, has_none), smooth.value(), has_normal);
+    else
+      all = smooth.error();
+  }
   shading.set.base = std::move(base.keyframes[0].positions);
   shading.set.topology = std::move(base.topology);
-  if (!smooth) return smooth.error();
-  // Apart from each other where both kinds are at one place.
-  const Points all = joined(set_apart(points, has_none), smooth.value(), has_normal);
+  return all;
+}
 
-  const auto corners = shading.set.topology.corners();
-  std::vector<float> normal_of_corner(3 * corners.size());
-  for (std::size_t c = 0; c < corners.size(); ++c)
-    std::copy_n(shading.normals.begin() + 3 * static_cast<std::ptrdiff_t>(corners[c]), 3,
-                normal_of_corner.begin() + 3 * static_cast<std::ptrdiff_t>(c));
-  Result<NormalGroups> groups = NormalGroups::by_split_normals(
-      shading.set.topology, all, VectorView<const float>::packed(normal_of_corner.data(), corners.size()));
-  if (!groups) return invalid_input(mesh_place(document, shading.mesh), groups.error().text());
-  shading.groups = std::move(groups).value();
-  shading.element_of_vertex.assign(vertices, GltfShading::kNoElement);
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    if (has_normal[corners[c]] || options.smooth)
-      shading.element_of_vertex[corners[c]] = shading.groups.element_of_corner()[c];
+// Splits points by the stored normals of their vertices, which NormalGroups does for corners of faces: so each vertex
+// that shares its point, and has a face, gets one corner of a face that is made up.
+Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
+  std::vector<bool> has_face(points.point_of_vertex.size()), is_shared(points.count), is_taken(points.count);
+  for (const std::uint32_t v : topology.corners()) has_face[v] = true;
+  for (std::size_t v = 0; v < has_face.size(); ++v) {
+    if (!has_face[v]) continue;
+    const std::uint32_t p = points.point_of_vertex[v];
+    if (is_taken[p]) is_shared[p] = true;
+    is_taken[p] = true;
   }
+  std::vector<std::uint32_t> sharing;
+  for (std::uint32_t v = 0; v < has_face.size(); ++v)
+    if (has_face[v] && is_shared[points.point_of_vertex[v]]) sharing.push_back(v);
+  if (sharing.empty()) return points;
+  const std::size_t count = sharing.size();
+  while (sharing.size() % 3 != 0) sharing.push_back(sharing.back());
+  std::vector<float> of_corner;
+  of_corner.reserve(3 * sharing.size());
+  for (const std::uint32_t v : sharing) {
+    const float* const normal = normals.data() + 3 * std::size_t{v};
+    of_corner.insert(of_corner.end(), normal, normal + 3);
+  }
+  const Result<Topology> faces = Topology::triangles(topology.vertex_count(), sharing);
+  if (!faces) return faces.error();
+  const Result<NormalGroups> groups = NormalGroups::by_split_normals(
+      faces.value(), points, VectorView<const float>::packed(of_corner.data(), sharing.size()));
+  if (!groups) return groups.error();
+  for (std::size_t n = 0; n < count; ++n) {
+    points.point_of_vertex[sharing[n]] =
+        static_cast<std::uint32_t>(points.count) + groups.value().element_of_corner()[n];
+  }
+  points.count += groups.value().size();
+  return points;
+}
+
+// Numbers points in the order of their first corners; those of vertices without faces come last.
+void number_by_corners(const Topology& topology, Points& points) {
+  constexpr std::uint32_t kNone = GltfShading::kNoElement;
+  std::vector<std::uint32_t> number(points.count, kNone);
+  std::uint32_t count = 0;
+  const auto take = [&](std::uint32_t vertex) {
+    std::uint32_t& mine = number[points.point_of_vertex[vertex]];
+    if (mine == kNone) mine = count++;
+  };
+  for (const std::uint32_t v : topology.corners()) take(v);
+  for (std::uint32_t v = 0; v < points.point_of_vertex.size(); ++v) take(v);
+  for (std::uint32_t& point : points.point_of_vertex) point = number[point];
+  points.count = count;
+}
+
+Status find_elements(const GltfDocument& document, const GltfShadingOptions& options, GltfShading& shading) {
+  const auto& primitives = document.meshes()[shading.mesh].primitives;
+  const std::size_t vertices = shading.set.topology.vertex_count();
+  std::vector<bool> has_normal(vertices);
+  for (const GltfPart& part : shading.parts) {
+    if (!primitives[part.primitive].has_normals) continue;
+    for (std::size_t v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) has_normal[v] = true;
+  }
+  Result<Points> points = shading_points(options, has_normal, shading);
+  if (!points) return points.error();
+  points = split_by_normals(shading.set.topology, std::move(points).value(), shading.normals);
+  if (!points) return invalid_input(mesh_place(document, shading.mesh), points.error().text());
+  number_by_corners(shading.set.topology, points.value());
+  shading.groups = NormalGroups::of_vertices(shading.set.topology, points.value());
+  shading.element_of_vertex.assign(vertices, GltfShading::kNoElement);
+  for (const std::uint32_t v : shading.set.topology.corners())
+    if (has_normal[v] || options.smooth) shading.element_of_vertex[v] = points.value().point_of_vertex[v];
   return Success{};
 }
 
@@ -243,30 +323,32 @@ Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t 
   GltfShading shading;
   shading.mesh = mesh;
   shading.mark = document.meshes()[mesh].mark;
-  if (Status status = read_parts(document, shading); !status) return status.error();
+  if (Status status = read_parts(document, options.keep_deltas, shading); !status) return status.error();
   if (Status status = check_mark(document, shading); !status) return status.error();
   if (Status status = find_elements(document, options, shading); !status) return status.error();
   return shading;
 }
 
-std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights) {
+Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
+                            std::size_t element) noexcept {
   const Topology& topology = shading.set.topology;
+  Vec3d result;
+  for (const std::uint32_t f : shading.groups.faces(element)) {
+    const auto at = [&](std::size_t c) {
+      const double* p = positions.data() + 3 * std::size_t{topology.face(f)[c]};
+      return Vec3d{p[0], p[1], p[2]};
+    };
+    result = result + cross(at(1) - at(0), at(2) - at(0));
+  }
+  return result;
+}
+
+std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights) {
   std::vector<double> positions(shading.set.base.size());
   blend_positions(shading.set, weights, positions);
-  std::vector<Vec3d> of_faces(topology.face_count());
-  in_chunks(of_faces.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t f = first; f < last; ++f) {
-      const auto at = [&](std::size_t c) {
-        const double* p = positions.data() + 3 * std::size_t{topology.face(f)[c]};
-        return Vec3d{p[0], p[1], p[2]};
-      };
-      of_faces[f] = cross(at(1) - at(0), at(2) - at(0));
-    }
-  });
   std::vector<Vec3d> result(shading.groups.size());
   in_chunks(result.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t e = first; e < last; ++e)
-      for (const std::uint32_t f : shading.groups.faces(e)) result[e] = result[e] + of_faces[f];
+    for (std::size_t e = first; e < last; ++e) result[e] = normal_from_positions(shading, positions, e);
   });
   return result;
 }
@@ -274,7 +356,7 @@ std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<
 Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept {
   const Vec3d from = unit(base_normal), to = unit(stored), now = unit(normal);
   if (from == Vec3d{} || to == Vec3d{}) return now;
-  return turned(from, to, now);
+  return dot(from, to) < 0 ? turned(-from, to, -now) : turned(from, to, now);
 }
 
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept {

@@ -53,7 +53,7 @@ class SequenceNormals {
 };
 
 /// The control normals of one element in one segment, from both of its keys and its bend (eq. 5).
-[[nodiscard]] inline ControlNormals control_normals_of(const Vec3d& n0, const Vec3d& n1, const Vec3d& bend) noexcept {
+[[nodiscard]] inline ControlNormals with_bend(const Vec3d& n0, const Vec3d& n1, const Vec3d& bend) noexcept {
   return {n0, 0.5 * (n0 + n1 - bend), n1};
 }
 

@@ -57,6 +57,34 @@ TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   EXPECT_TRUE(bytes_of("out.glb").starts_with("glTF"));
 }
 
+TEST_F(BakeCli, what_was_baked_before_takes_its_images_along) {
+  test::GltfBuilder builder = test::hills_document(2);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  builder.json["images"] = {{{"uri", "image.png"}}};
+  folder_.write("image.png", "\x89PNG\r\n\x1A\n and so on");
+  folder_.write("painted.glb", builder.glb());
+  ASSERT_EQ(run("painted.glb -o once.glb").exit_code, 0);
+  ASSERT_EQ(run_shell("mkdir folder", folder_.path()).exit_code, 0);
+  const ProcessResult result = run("once.glb -o folder/twice.glb");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(bytes_of("folder/twice.glb").find("image.png"), std::string::npos);
+  EXPECT_NE(bytes_of("folder/twice.glb").find(" and so on"), std::string::npos);
+  // In its folder it stays byte for byte.
+  EXPECT_EQ(run("once.glb -o again.glb").exit_code, 0);
+  EXPECT_TRUE(bytes_of("again.glb") == bytes_of("once.glb"));
+}
+
+TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
+  // A roof whose ridge, vertices 1 and 2, has a normal for each side.
+  const std::string faces = "vn -1 0 1\nvn 1 0 1\nf 1//1 2//1 3//1\nf 3//2 2//2 4//2\n";
+  folder_.write("roof_0.obj", "v -1 0 0\nv 0 0 1\nv 0 1 1\nv 1 0 0\n" + faces);
+  folder_.write("roof_1.obj", "v -1 0 0\nv 0 0 2\nv 0 1 2\nv 1 0 0\n" + faces);
+  const ProcessResult hard = run("roof_0.obj roof_1.obj -o hard.glb");
+  EXPECT_EQ(hard.exit_code, 0) << hard.err;
+  expect_words(hard.out, {" 6 vertices"});
+  EXPECT_EQ(run_shell(CHRONORMAL_PROGRAM " audit hard.glb --tolerance 0.01", folder_.path()).exit_code, 0);
+}
+
 TEST_F(BakeCli, json_is_one_object_with_schema_1) {
   const ProcessResult result = run("moving.glb -o out.glb --json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -91,7 +119,7 @@ TEST_F(BakeCli, a_baked_file_is_copied_as_it_is) {
     ASSERT_EQ(run("moving" + extension + " -o once" + extension).exit_code, 0);
     const ProcessResult again = run("once" + extension + " -o twice" + extension);
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    expect_words(again.out, {"nothing to bake: it was baked before; the output is as the input\n"});
+    expect_words(again.out, {"nothing to bake: it was baked before; the output is as the input. "});
     EXPECT_EQ(bytes_of("twice" + extension), bytes_of("once" + extension));
     EXPECT_NE(bytes_of("once" + extension), bytes_of("moving" + extension));
   }
@@ -150,8 +178,14 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("none.glb -o out.glb", 1, "none.glb");
   folder_.write("bad.glb", "glTF");
   expect_error("bad.glb -o out.glb", 3, "bad.glb");
+}
+
+TEST_F(BakeCli, file_in_which_nothing_moves_is_copied) {
   folder_.write("mesh.glb", test::still_hills_document(0).glb());
-  expect_error("mesh.glb -o out.glb", 3, "nothing moves");
+  const ProcessResult result = run("mesh.glb -o out.glb");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_words(result.out, {"nothing to bake: no morph target moves a vertex"});
+  EXPECT_TRUE(bytes_of("out.glb") == bytes_of("mesh.glb"));
 }
 
 TEST_F(BakeCli, a_full_device_is_an_error) { EXPECT_EQ(run("moving.glb -o /dev/full").exit_code, 1); }

@@ -257,7 +257,7 @@ describe("other people's files", { skip: NO_DATA }, () => {
   for (const input of files) {
     test(`${basename(input)} is valid, and exact at 101 times`, async (context) => {
       if (!(await read(input)).meshes.some(moves)) {
-        assert.throws(() => bake(input), /nothing moves/);
+        assert.deepEqual(await newComplaints(bake(input), input), []);
         return;
       }
       const output = bake(input, '--encode', 'exact');

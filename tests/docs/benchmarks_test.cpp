@@ -101,6 +101,60 @@ TEST(Benchmarks, results_without_a_size_a_scheme_or_an_accuracy_make_no_page) {
   EXPECT_NE(refusal(planted).find("missing: accuracy, grid, faces: recompute"), std::string::npos);
 }
 
+// As a run has them, whatever the results have: a nanosecond for each way and number of active targets, and 8 for
+// recompute.
+Json with_blend_rows(Json results) {
+  Json rows = Json::array();
+  Json like;
+  for (const Json& row : results["rows"]) {
+    if (row["group"] == "blend") continue;
+    rows.push_back(row);
+    like = row;
+  }
+  for (const char* const size : {"15k", "45k"}) {
+    for (const char* const active : {"1", "2", "4", "8", "16", "100"}) {
+      for (const char* const way : {"chosen", "terms", "touched part", "recompute", "plain C++ loop", "linear sum"}) {
+        like["group"] = "blend";
+        like["size"] = size;
+        like["order"] = "grid";
+        like["name"] = std::string(active).append(" of 100: ").append(way);
+        like["median_ns"] = std::string(way) == "recompute" ? 8.0 : 1.0;
+        like["spread"] = 0.02;
+        like["threads"] = 1;
+        rows.push_back(like);
+      }
+    }
+  }
+  results["rows"] = rows;
+  return results;
+}
+
+TEST(Benchmarks, blend_shapes_are_a_section_where_a_run_measured_them_and_then_whole) {
+  const Json whole = some_results();
+  ASSERT_FALSE(whole.is_null());
+  const auto page_of = [](const Json& results) {
+    const test::TemporaryFolder from, to;
+    from.write("planted.json", results.dump());
+    const ProcessResult result = generate(from.path(), to.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return test::read_whole(to / "benchmarks.md");
+  };
+  const Json with = with_blend_rows(whole);
+  const std::string page = page_of(with);
+  EXPECT_NE(page.find("### Blend shapes\n"), std::string::npos);
+  EXPECT_NE(page.find("| active, 15 k vertices | "), std::string::npos);
+  EXPECT_NE(page.find("| active, 45 k vertices | "), std::string::npos);
+  EXPECT_NE(page.find(" 8.00 ±2 |"), std::string::npos);
+  EXPECT_NE(page.find(" 8.0 |\n"), std::string::npos);
+  Json without = with;
+  erase_rows(without, "rows", [](const Json& row) { return row["group"] == "blend"; });
+  EXPECT_EQ(page_of(without).find("Blend shapes"), std::string::npos);
+  Json planted = with;
+  erase_rows(planted, "rows",
+             [](const Json& row) { return row["size"] == "45k" && row["name"] == "4 of 100: linear sum"; });
+  EXPECT_NE(refusal(planted).find("missing: blend, 45k, grid: 4 of 100: linear sum"), std::string::npos);
+}
+
 TEST(Benchmarks, results_that_were_wrong_or_cannot_be_read_make_no_page) {
   Json planted = some_results();
   ASSERT_FALSE(planted.is_null());

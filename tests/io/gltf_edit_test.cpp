@@ -33,7 +33,7 @@ void expect_the_rest_unchanged(const std::string& before, const GltfEdit& edit) 
   const GlbParts source = take_apart(before), result = take_apart(bytes_or_error(edit));
   EXPECT_EQ(fuzz::difference_beside(fuzz::JsonTokens(source.json.substr(0, source.json.find_last_of('}') + 1)),
                                     fuzz::JsonTokens(result.json.substr(0, result.json.find_last_of('}') + 1)),
-                                    edit.pointers()),
+                                    edit.pointers().value()),
             "");
   EXPECT_TRUE(result.bin.starts_with(source.bin));
   EXPECT_EQ(result.rest, source.rest);
@@ -61,7 +61,7 @@ TEST(GltfEdit, without_changes_writes_the_same_bytes) {
     ASSERT_TRUE(fixture.ok()) << fixture.error();
     const GltfEdit edit(*fixture);
     EXPECT_TRUE(bytes_or_error(edit) == source);
-    EXPECT_TRUE(edit.pointers().empty());
+    EXPECT_TRUE(edit.pointers().value().empty());
     EXPECT_EQ(edit.added_bytes(), 0U);
     const std::string path = folder / (source.starts_with("glTF") ? "out.glb" : "out.gltf");
     EXPECT_TRUE(edit.write(path, true).ok());
@@ -74,7 +74,7 @@ const char* const kNastyJson =
     "{\r\n"
     R"(  "asset" : {"version" : "2.0", "generator" : "caf\u00e9 \ud834\udd1e \"{[,]}\" é", "extras" : 1e400},
 	"extras": {"int": 9223372036854775807, "uint": 18446744073709551615, "exact": 9007199254740993, "zero": -0.0,
-    "null": null, "array": [], "object": {}, "blank": [ ], "huge": [1e400, -1E+999, 1.0e-999], "one": 1.0,
+    "null": null, "array": [], "object": {}, "blank": [ ], "huge": [1e400, -1E+999, 1.0e-999, 123e9223372036854775807, 1e-9223372036854775808], "one": 1.0,
     "digits": 0.1000000000000000055511151231257827, "e": 1E3, "text": "\/\b\u0000\\\" ~ / 
 é"},
   "extensionsUsed": ["VENDOR_unknown"], "extensions": {"VENDOR_unknown": {"accessors": [1e400, {"": {}}]}},
@@ -96,7 +96,7 @@ TEST(GltfEdit, keeps_every_token_and_the_bin_chunk) {
   ASSERT_TRUE(fixture.ok()) << fixture.error();
   GltfEdit edit(*fixture);
   EXPECT_TRUE(edit.has("/extras/huge/2"));
-  EXPECT_FALSE(edit.has("/extras/huge/3"));
+  EXPECT_FALSE(edit.has("/extras/huge/5"));
   EXPECT_EQ(edit.text("/extensions/VENDOR_unknown/accessors/0"), "1e400");
   EXPECT_EQ(edit.text("/meshes/0/weights"), "[0.50, 1e0]");
   EXPECT_EQ(edit.text("/nodes"), "");
@@ -116,11 +116,12 @@ TEST(GltfEdit, keeps_every_token_and_the_bin_chunk) {
   edit.append("/meshes/0/extras/targetNames", "\"c\"");
   edit.set("/extras/int", "1e400");
   expect_the_rest_unchanged(source, edit);
-  EXPECT_EQ(edit.pointers(), (std::vector<std::string>{
-                                 "/accessors/1", "/accessors/2", "/bufferViews/1", "/buffers/0/byteLength",
-                                 "/extras/int", "/meshes/0/extras", "/meshes/0/primitives/0/attributes/NORMAL",
-                                 "/meshes/0/primitives/0/targets/0/NORMAL", "/meshes/0/primitives/0/targets/1/NORMAL",
-                                 "/meshes/0/primitives/0/targets/2", "/meshes/0/weights/2"}));
+  EXPECT_EQ(
+      edit.pointers().value(),
+      (std::vector<std::string>{"/accessors/1", "/accessors/2", "/bufferViews/1", "/buffers/0/byteLength",
+                                "/extras/int", "/meshes/0/extras", "/meshes/0/primitives/0/attributes/NORMAL",
+                                "/meshes/0/primitives/0/targets/0/NORMAL", "/meshes/0/primitives/0/targets/1/NORMAL",
+                                "/meshes/0/primitives/0/targets/2", "/meshes/0/weights/2"}));
   const std::string result = bytes_or_error(edit);
   EXPECT_NE(result.find("\"weights\": [9], \"\\u0077eights\": [0.50, 1e0, 0]"), std::string::npos);
   EXPECT_NE(result.find("{\"targetNames\":[\"a\",\"b\",\"c\"]}"), std::string::npos);
@@ -263,7 +264,7 @@ TEST(GltfEdit, first_arrays_of_a_file_make_its_buffer) {
     ASSERT_TRUE(read.ok()) << read.error();
     EXPECT_EQ(read->geometry(0, 0, {}).value().positions, kQuad);
     EXPECT_EQ(edit.added_bytes(), 48U);
-    EXPECT_EQ(edit.pointers(), (std::vector<std::string>{"/accessors", "/bufferViews", "/buffers", "/meshes"}));
+    EXPECT_EQ(edit.pointers().value(), (std::vector<std::string>{"/accessors", "/bufferViews", "/buffers", "/meshes"}));
     if (glb) {
       EXPECT_EQ(take_apart(bytes).rest, kUnknownChunk);
     }
@@ -280,7 +281,7 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
     if (bytes.ok()) return std::string();
     EXPECT_EQ(bytes.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(bytes.error().place, "a.gltf, " + pointer);
-    EXPECT_TRUE(edit.pointers().empty());
+    EXPECT_FALSE(edit.pointers().ok());
     return bytes.error().message;
   };
   EXPECT_EQ(error_of("/meshes/0/name/x", "1", false), "there is neither an object nor an array to take 'x' from");

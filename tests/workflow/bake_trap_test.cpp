@@ -332,6 +332,55 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
+// A triangle that falls over to one side, with a base normal of the other side: what hosts that show both sides do.
+TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
+  for (const float tilt : {0.0F, 1e-3F}) {
+    GltfBuilder builder;
+    const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const std::size_t fall = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 1});
+    Json primitive =
+        GltfBuilder::primitive(base, builder.add_indices(std::vector<std::uint8_t>{0, 1, 2}), {{{"POSITION", fall}}});
+    primitive["attributes"]["NORMAL"] = builder.add_positions({tilt, 0, -1, tilt, 0, -1, tilt, 0, -1});
+    builder.add_node(builder.add_mesh(primitive));
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+    const Baked result = baked(builder);
+    const std::vector<float> delta = result.numbers(result.mesh()["primitives"][0]["targets"][0]["NORMAL"]);
+    // n(1) = (0, -1, 1), so that of the other side is (0, 1, -1).
+    EXPECT_NEAR(delta[0], 0, 2e-3) << tilt;
+    EXPECT_NEAR(delta[1], 1, 2e-3) << tilt;
+    EXPECT_NEAR(delta[2], 0, 2e-3) << tilt;
+  }
+}
+
+TEST(BakeTraps, a_sampler_that_also_drives_something_else_stays_as_it_is) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0.25F});
+  builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
+  builder.json["materials"] = {Json::object()};
+  builder.json["animations"][0]["channels"].push_back(
+      {{"sampler", 0},
+       {"target",
+        {{"path", "pointer"},
+         {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}}}}}});
+  const Baked result = baked(builder);
+  EXPECT_EQ(sampler_of(result, 0, 1), builder.json["animations"][0]["samplers"][0]);
+  EXPECT_EQ(sampler_of(result)["interpolation"], "CUBICSPLINE");
+  test::expect_exact(test::track_error(result));
+}
+
+TEST(BakeTraps, weights_whose_products_no_float_can_hold_are_no_exact_bake) {
+  GltfBuilder builder = test::hills_document(2);
+  builder.json["meshes"][0]["weights"] = {1e30, 1e30};
+  const Baked poses = test::bake_document(builder);
+  if (poses.ok()) {
+    EXPECT_TRUE(poses.report.changed);
+    for (const Json& weight : poses.mesh()["weights"]) EXPECT_TRUE(weight.is_number());
+  }
+  GltfBuilder animated = test::hills_document(1);
+  animated.add_track(0, 0, kTimes, std::vector<float>{0, 3e38F, 0});
+  EXPECT_GE(baked(animated).report.meshes[0].resampling_error, 180);
+}
+
 TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {
   const auto warns = [](const Baked& result) {
     for (const std::string& warning : result.report.warnings) {

@@ -301,5 +301,14 @@ TEST(GltfShading, mesh_without_faces_is_refused) {
   EXPECT_EQ(error_of(builder), "a.gltf, /meshes/0: the mesh has no primitive with faces");
 }
 
+TEST(ShownDirection, is_turned_as_the_base_is_and_stays_on_the_side_that_the_author_shows) {
+  const Vec3d n0{0, 0, 2}, n{0, -3, 3};
+  const auto expect_near = [](const Vec3d& a, const Vec3d& b) { EXPECT_LT(length(a - b), 1e-12); };
+  expect_near(shown_direction({0, 0, 1}, n0, n), unit({0, -1, 1}));
+  expect_near(shown_direction({0, 0, -1}, n0, n), unit({0, 1, -1}));
+  expect_near(shown_direction({1, 0, 0}, n0, n), unit({1, -1, 0}));
+  expect_near(shown_direction({0, 0, 0}, n0, n), unit({0, -1, 1}));
+}
+
 }  // namespace
 }  // namespace chronormal

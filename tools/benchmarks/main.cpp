@@ -99,6 +99,7 @@ void write_page(const fs::path& results, const std::string& folder) {
     write_aims(page, machine);
     write_memory(page, machine);
     write_schemes(page, machine);
+    write_blend(page, machine);
     write_accuracy(page, machine);
   }
   std::string markdown = page.markdown();

@@ -102,6 +102,40 @@ const std::vector<std::string>& schemes() {
   return all;
 }
 
+const std::vector<std::string>& blend_actives() {
+  static const std::vector<std::string> all = {"1", "2", "4", "8", "16", "100"};
+  return all;
+}
+
+const std::vector<std::string>& blend_ways() {
+  static const std::vector<std::string> all = {"chosen",    "terms",          "touched part",
+                                               "recompute", "plain C++ loop", "linear sum"};
+  return all;
+}
+
+std::string blend_row(const std::string& active, const std::string& way) {
+  return fmt::format("{} of 100: {}", active, way);
+}
+
+std::vector<std::string> blend_sizes(const Results& results) {
+  std::vector<std::string> sizes;
+  for (const Column& column : columns()) {
+    if (column.order != kGrid) continue;
+    if (std::any_of(results.rows.begin(), results.rows.end(), [&](const Row& row) {
+          return row.group == "blend" && row.size == column.size && row.order == kGrid;
+        }))
+      sizes.push_back(column.size);
+  }
+  return sizes;
+}
+
+std::string spelt(const std::string& size) {
+  for (const Column& column : columns()) {
+    if (column.size == size && column.order == kGrid) return column.title;
+  }
+  return size;
+}
+
 const std::vector<std::string>& accuracy_paths() {
   static const std::vector<std::string> all = {"exact to float3",
                                                "compact 0.0001 to float3",
@@ -178,6 +212,11 @@ std::vector<std::string> missing_rows(const Results& results) {
     if (std::none_of(results.qualities.begin(), results.qualities.end(),
                      [&](const SchemeQuality& one) { return one.scheme == scheme && one.mesh == "twist"; }))
       missing.push_back(fmt::format("quality of {}", scheme));
+  }
+  for (const std::string& size : blend_sizes(results)) {
+    for (const std::string& active : blend_actives()) {
+      for (const std::string& way : blend_ways()) need("blend", {size, kGrid, ""}, blend_row(active, way), false);
+    }
   }
   for (const std::string of : {"faces", "vertices"}) {
     for (const std::string& mesh : accuracy_meshes()) {

@@ -62,6 +62,15 @@ inline const std::string kGrid = "grid", kShuffled = "shuffled";
 [[nodiscard]] const std::vector<std::string>& ours();
 [[nodiscard]] const std::vector<std::string>& threaded();  ///< those of ours that also run on many threads
 [[nodiscard]] const std::vector<std::string>& schemes();
+[[nodiscard]] const std::vector<std::string>& blend_actives();  ///< numbers of active targets, as rows name them
+[[nodiscard]] const std::vector<std::string>& blend_ways();
+/// The name of the row of one way.
+[[nodiscard]] std::string blend_row(const std::string& active, const std::string& way);
+/// The sizes of the columns for which there are rows of blend shapes: at each of them all are needed. Results from
+/// before there were such rows have none.
+[[nodiscard]] std::vector<std::string> blend_sizes(const Results& results);
+/// 15k as "15 k".
+[[nodiscard]] std::string spelt(const std::string& size);
 [[nodiscard]] const std::vector<std::string>& accuracy_paths();
 [[nodiscard]] const std::vector<std::string>& accuracy_meshes();
 /// Rows that are not measured at that size, and need not be there.

@@ -14,6 +14,7 @@ void write_costs(Page& page, const Results& results);     ///< nanoseconds of ev
 void write_aims(Page& page, const Results& results);      ///< ratios within the run beside what was aimed at
 void write_memory(Page& page, const Results& results);    ///< bandwidths
 void write_schemes(Page& page, const Results& results);   ///< quality against cost
+void write_blend(Page& page, const Results& results);     ///< of blend shapes; nothing where no run measured them
 void write_accuracy(Page& page, const Results& results);  ///< every path against double
 
 [[nodiscard]] std::string nanoseconds(double ns);

@@ -15,10 +15,13 @@ struct BuiltinMorph {
   std::string_view summary;  ///< one line
 };
 
-/// The morphs there are, from mild to dramatic.
+/// The morphs there are that are sequences, from mild to dramatic.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_morphs() noexcept;
 
-/// Makes one by name: the same positions on every call. Errors: kUsage with the names that there are.
+/// Blend shapes, which have targets in place of keyframes in a sequence (is_blend_shapes() in workflow/sample.h).
+[[nodiscard]] std::span<const BuiltinMorph> builtin_blend_shapes() noexcept;
+
+/// Makes one of either by name: the same positions on every call. Errors: kUsage with the names that there are.
 [[nodiscard]] Result<Motion> make_builtin_morph(std::string_view name);
 
 }  // namespace chronormal

@@ -27,6 +27,10 @@ class FileBytes {
   FileBytes& operator=(const FileBytes&) = delete;
   ~FileBytes();
 
+  /// Gives memory back that holds what was read of a mapped file. Its bytes stay valid: who looks at them again makes
+  /// the system read them again.
+  void release() const noexcept;
+
   /// All bytes; valid until the object is destroyed or moved from.
   [[nodiscard]] std::string_view bytes() const noexcept {
     return mapping_ != nullptr ? std::string_view(static_cast<const char*>(mapping_), mapping_size_) : owned_;

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/file.h"
 #include "chronormal/normals/transform.h"
 
 namespace chronormal {
@@ -135,6 +136,10 @@ class GltfDocument {
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
+  /// The same of an open file, which the document keeps.
+  [[nodiscard]] static Result<GltfDocument> read(FileBytes file, const std::string& name,
+                                                 const std::optional<std::string>& folder = std::nullopt,
+                                                 const GltfOptions& options = {});
 
   /// Whether bytes look like a glTF file: GLB, or JSON with an object.
   [[nodiscard]] static bool recognises(std::string_view first_bytes) noexcept;
@@ -163,6 +168,9 @@ class GltfDocument {
   /// Reads a primitive. Memory: that of the result; compressed pieces are kept decompressed as long as the document.
   /// Precondition: the primitive has_faces()
   [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
+  /// Reads one target of a primitive, as geometry() reads all of them.
+  [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,
+                                                    bool shading) const;
 
   /// Reads the keys of a track.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;

@@ -70,8 +70,8 @@ class GltfEdit {
 
   /// What a file at this path has otherwise than the source: pointers that are replaced or added, as they are in the
   /// result, sorted; /accessors/N, /buffers/N and so on of what is new among them. Of what was added together, the
-  /// outermost. Without a path: in the container and the folder of the source. Empty where write() would fail.
-  [[nodiscard]] std::vector<std::string> pointers(const std::string& path = "") const;
+  /// outermost. Without a path: in the container and the folder of the source. Errors: as of write(), but for the file.
+  [[nodiscard]] Result<std::vector<std::string>> pointers(const std::string& path = "") const;
   /// What a file at this path can not take along: images that are not there. A sentence each.
   [[nodiscard]] std::vector<std::string> warnings(const std::string& path) const;
   /// How many bytes of arrays were added.

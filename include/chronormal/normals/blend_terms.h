@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,15 +46,25 @@ class BlendTerms {
   [[nodiscard]] BlendTerm base_term() const;
   /// The same, values only.
   [[nodiscard]] std::vector<Vec3d> base() const { return base_term().values; }
-  /// A_i. O(faces that target i moves, log).
+  /// n_b of one element. O(corners of its faces): all of them need no memory, but more time than base().
+  [[nodiscard]] Vec3d base_of(std::uint32_t element) const;
+  /// A_i. O(faces that target i moves, log); on all cores.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
-  /// C_ij, or C_ii where i = j. O(faces that both move, log, and the shorter list).
+  /// C_ij, or C_ii where i = j. O(faces that both move, log, and the shorter list); on all cores.
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
+
+  /// The same, element by element, so that nobody has to hold all of it. It holds at most 4 bytes for each vertex of
+  /// the mesh and target (and the faces of more than 4 corners). O(faces that target i moves) to make.
+  class Term;
+  [[nodiscard]] Term linear_by_element(std::size_t i) const;
+  [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
 
   /// The faces that a target moves, ascending.
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t i) const noexcept { return faces_of_target_[i]; }
   /// The elements of these faces, ascending: all others have A_i = C_ii = 0.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const;
+  /// The elements of the faces that both targets move, ascending: all others have C_ij = 0.
+  [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i, std::size_t j) const;
   /// Whether two targets move a face in common.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const noexcept;
 
@@ -86,9 +97,8 @@ class BlendTerms {
 
   BlendTerms(const BlendSet& set, const NormalGroups* groups);
 
-  // Sums what of_face(face) says over the elements of some faces.
-  template <class OfFace>
-  [[nodiscard]] BlendTerm sum(std::span<const std::uint32_t> faces, const OfFace& of_face) const;
+  [[nodiscard]] static BlendTerm listed(const Term& term, std::vector<std::uint32_t> elements);
+  [[nodiscard]] std::vector<std::uint32_t> common_faces(std::size_t i, std::size_t j) const;
   [[nodiscard]] std::vector<std::uint32_t> elements_of(std::span<const std::uint32_t> faces) const;
   template <class Body>
   void for_elements_of(std::uint32_t face, const Body& body) const;
@@ -98,6 +108,47 @@ class BlendTerms {
   const BlendSet& set_;
   const NormalGroups* groups_;                               // nothing: faces
   std::vector<std::vector<std::uint32_t>> faces_of_target_;  // ascending
+};
+
+class BlendTerms::Term {
+ public:
+  /// The value of an element; zero where it has none.
+  [[nodiscard]] Vec3d operator()(std::uint32_t element) const { return at(element).value; }
+
+ private:
+  friend class BlendTerms;
+
+  // A vector and how far rounding may have taken it.
+  struct Rounded {
+    Vec3d value;
+    double noise = 0;
+  };
+  // Where a target has the deltas of its vertices.
+  struct Places {
+    explicit Places(const BlendTarget& listed);
+    [[nodiscard]] const float* find(std::uint32_t vertex) const noexcept;
+
+    const BlendTarget* target;
+    std::uint32_t first = 0;
+    std::vector<std::uint32_t> of_vertices;  // from the first on that the target moves; empty where they lie far apart
+  };
+
+  // Of one target, or of two.
+  Term(const BlendTerms& terms, std::size_t i);
+  Term(const BlendTerms& terms, std::size_t i, std::size_t j, std::span<const std::uint32_t> faces);
+
+  void keep_large(std::span<const std::uint32_t> faces);
+  [[nodiscard]] Rounded at(std::uint32_t element) const;
+  // What a face adds; false where it is not moved.
+  [[nodiscard]] bool of_face(std::uint32_t face, Rounded& result) const;
+  [[nodiscard]] bool find_face(std::uint32_t face, Rounded& result) const;
+
+  const BlendTerms& terms_;
+  Places first_;
+  std::optional<Places> second_;
+  bool is_linear_;
+  std::vector<std::uint32_t> large_faces_;  // ascending: those that would take too long for each of their elements
+  std::vector<Rounded> of_large_faces_;
 };
 
 }  // namespace chronormal

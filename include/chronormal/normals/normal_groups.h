@@ -91,6 +91,10 @@ class NormalGroups {
   /// How many elements have no corner: isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
+  /// Frees what only sums by angle need: corners(e), element_of_corner() and, where outputs are corners, those must not
+  /// be asked for from then on.
+  void forget_corners() noexcept;
+
   /// Copies the normal of each element to every output that shows it.
   /// of_elements must have size() elements, of_outputs as many as element_of_output()
   void copy_to_outputs(VectorView<const float> of_elements, VectorView<float> of_outputs) const noexcept;

@@ -163,7 +163,7 @@ struct Audit {
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Normals that files store beside a motion, (corners, 3) each, of any length.
-struct SequenceNormals {
+struct StoredNormals {
   /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
   std::vector<std::vector<float>> of_keyframes;
 };
@@ -172,7 +172,7 @@ struct SequenceNormals {
 /// normals, a player computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
 /// between. Errors: kUsage for the rule gltf, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
-[[nodiscard]] Result<Audit> audit(const Motion& motion, const SequenceNormals& normals, bool is_targets,
+[[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets,
                                   const AuditOptions& options);
 
 }  // namespace chronormal

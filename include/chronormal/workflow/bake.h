@@ -31,8 +31,11 @@ struct BakeOptions {
   Weighting weighting = Weighting::kArea;     ///< others than area are fitted, with a stated error
   bool smooth = false;                        ///< primitives without NORMAL get normals, instead of staying flat
   double crease_angle = 180;                  ///< degrees: hard edges of those, and of sequences
-  bool recompute_base = false;                ///< replace the base normals by those of the geometry; hard edges stay
-  bool dense_zeros = false;  ///< write zeros as bytes: for readers that need every accessor to have some
+  /// Of sequences: normals of keyframe 0, one for each corner, which say which edges are hard in place of the crease
+  /// angle; or empty.
+  VectorView<const float> normal_of_corner = {};
+  bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
+  bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
   std::optional<std::size_t> most_bytes = {};  ///< refuse to add more than this
   /// Degrees: pairs whose lack, all together, turns no normal by more are left out; cubic splines are cut to this.
   double tolerance = 0.001;
@@ -49,10 +52,11 @@ struct BakedMesh {
   std::size_t bytes = 0;                ///< of new arrays, without those that an earlier mesh has too, and tracks
   std::size_t undriven = 0;             ///< of exact: moving targets that no animation drives, baked as endpoint
   std::size_t left_flat = 0;            ///< primitives without NORMAL that stay flat
-  std::size_t without_base = 0;         ///< vertices whose faces have no area in the base: see docs/cli.md
-  double largest_error = 0;             ///< degrees, of endpoint targets and fits: each alone, over w in [0, 1]
-  double resampling_error = 0;          ///< degrees, of cubic splines and left-out pairs, along the animations
-  bool already_baked = false;           ///< nothing was changed
+  std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
+  std::size_t without_base = 0;    ///< vertices whose faces have no area in the base: see docs/cli.md
+  double largest_error = 0;        ///< degrees, of endpoint targets and fits: each alone, over w in [0, 1]
+  double resampling_error = 0;     ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool already_baked = false;      ///< nothing was changed
 };
 
 struct GltfBake {
@@ -88,8 +92,9 @@ struct SequenceBake {
 /// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
 /// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Vertices of hard edges
 /// (crease angle) are doubled. glb gets the bytes of the file.
-/// Errors: kInvalidInput for more than most_bytes or 4 GiB, and for polygons that cannot be cut into triangles.
-/// Precondition: the motion is valid and a sequence (segments k -> k + 1)
+/// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
+/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB. Precondition: the motion is valid and a
+/// sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 }  // namespace chronormal

@@ -34,6 +34,8 @@ namespace chronormal {
 struct GltfShadingOptions {
   bool smooth = false;        ///< primitives without NORMAL get vertex normals, instead of being flat
   double crease_angle = 180;  ///< degrees, for those: edges sharper than this in the base are hard
+  /// Whether normal_deltas, tangents and tangent_deltas are kept; otherwise they are checked only.
+  bool keep_deltas = true;
 };
 
 struct GltfShading {
@@ -42,7 +44,7 @@ struct GltfShading {
   std::size_t mesh = 0;
   std::vector<GltfPart> parts;  ///< node is empty
   BlendSet set;                 ///< of all parts together; targets as the file has them, extra ones too
-  NormalGroups groups;          ///< of its topology; outputs are corners
+  NormalGroups groups;          ///< of its topology; outputs are vertices, of flat primitives too
   /// (V), the element of each vertex; kNoElement where it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) where a primitive has none
@@ -70,13 +72,18 @@ struct GltfShading {
 [[nodiscard]] Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
                                                     const GltfShadingOptions& options = {});
 
+/// n(w) of one element, from the positions of all vertices, (V, 3).
+[[nodiscard]] Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
+                                          std::size_t element) noexcept;
+
 /// Computes n(w) of all elements from the blended positions, in double, by the cross product: nothing but eq. 1, and
 /// no look at what is rounding. weights must have one for each target. O(corners); on all cores.
 [[nodiscard]] std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights);
 
 /// The direction that a vertex should show: n(w) of its element, turned as the author turned the base. base_normal and
 /// normal are n(0) and n(w) of the element, of any length; zero where n(w) is. Where n(0) or N is zero nothing is
-/// turned.
+/// turned. Where N
+/// looks to the other side than n(0), both are those of the other side: -n(0) and -n(w).
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
 /// The weight of every target where those of the mesh's own targets are given: extra ones get their products.
