@@ -52,8 +52,8 @@ class CornerVectors {
 class ProductSum {
  public:
   /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
-  /// Edges and both products of a component are within 10 half eps of the absolute products, and each triangle adds a
-  /// rounding.
+  /// Edges and both products of a component are within 10 half eps of the absolute products; each triangle adds a
+  /// rounding, and four for what counts as noise.
   void add(std::span<const Vec3d> p, std::span<const Vec3d> q) {
     Vec3d e = p[1] - p[0];
     for (std::size_t c = 2; c < p.size(); ++c) {
@@ -62,7 +62,7 @@ class ProductSum {
       products_ += sum_abs(e) * sum_abs(f);
       e = p[c] - p[0];
     }
-    roundings_ += static_cast<double>(10 + p.size());
+    roundings_ += static_cast<double>(10 + 5 * p.size());
   }
 
   [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
@@ -73,7 +73,7 @@ class ProductSum {
   double products_ = 0, roundings_ = 0;
 };
 
-/// The sum of faces around an element.
+/// The sum of faces around an element: each adds a rounding, and four for what counts as noise.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {
@@ -84,7 +84,7 @@ class ElementSum {
   }
 
   [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
-  [[nodiscard]] double noise() const { return noise_ + kHalfEpsilon * count_ * size_; }
+  [[nodiscard]] double noise() const { return noise_ + 5 * kHalfEpsilon * count_ * size_; }
 
  private:
   VectorSum sum_;

@@ -108,7 +108,8 @@ class BlendNormals {
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);
   /// The same of many weight vectors, an animation: weights is (n, targets), results[k] is for row k. On all threads
-  /// they are divided among them, with scratch for each.
+  /// they are divided among them; each beyond the first takes scratch of its own meanwhile, which cost() does not
+  /// count.
   std::vector<BlendEvaluation> unit_normals(std::span<const double> weights, std::span<const VectorView<float>> results,
                                             Threads threads = Threads::kOne);
   /// Which path these weights take.
