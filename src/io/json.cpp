@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "io/binary.h"
+#include "io/json_text.h"
 
 namespace chronormal {
 namespace {
@@ -231,19 +232,7 @@ const nlohmann::json* JsonView::find(const char* key) const {
   return found == value_->end() ? nullptr : &*found;
 }
 
-std::string JsonView::pointer(std::string_view key) const {
-  std::string result = pointer_;
-  result += '/';
-  for (const char c : key) {
-    if (c == '~')
-      result += "~0";
-    else if (c == '/')
-      result += "~1";
-    else
-      result += c;
-  }
-  return result;
-}
+std::string JsonView::pointer(std::string_view key) const { return with_json_token(pointer_, key); }
 
 std::string JsonView::pointer(std::size_t index) const { return pointer(std::to_string(index)); }
 
