@@ -74,7 +74,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 // Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", CHRONORMAL_BUILD_DIR);
-  command = replaced(command, "./run ", std::string(CHRONORMAL_PROGRAM) + " ");
+  command = replaced(command, "./run ", CHRONORMAL_PROGRAM " ");
   return run_shell("{ " + command + "\n} 2>&1", folder.string());
 }
 

@@ -154,7 +154,7 @@ TEST(ReadObj, file_without_vertices_or_faces_is_an_error) {
 
 TEST(ReadObj, strange_bytes_do_not_reach_the_message) {
   EXPECT_EQ(error_of(std::string("v \x1b[31m\xff 0 0\n")), "walk.obj, line 1: x of vertex 0: '?[31m?' is not a number");
-  EXPECT_LT(error_of("v " + std::string(100000, 'a')).size(), 120U);
+  EXPECT_LT(error_of(std::string("v ").append(100000, 'a')).size(), 120U);
 }
 
 RC_GTEST_PROP(WriteObj, what_was_written_reads_back_bit_for_bit, ()) {
