@@ -225,8 +225,8 @@ void add_bake_command(CLI::App& program, int& exit_code) {
   command
       ->add_option("--encode", options->encode,
                    "exact: extra targets for the quadratic terms, driven by the animations;\n"
-                   "endpoint: the best single delta per target. Default: exact where an\n"
-                   "animation drives the weights")
+                   "endpoint: the best single delta per target, by least squares where several are\n"
+                   "active at once. Default: exact where an animation drives the weights")
       ->type_name("HOW");
   command
       ->add_option("--weighting", options->weighting,

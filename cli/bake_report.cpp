@@ -74,6 +74,7 @@ Json mesh_json(const BakedMesh& mesh) {
           {"flat_primitives", mesh.left_flat},
           {"vertices_without_base", mesh.without_base},
           {"vertices_without_stored_normal", mesh.without_stored},
+          {"fitted_normals", mesh.fitted_elements},
           {"target_error_degrees", mesh.largest_error},
           {"track_error_degrees", mesh.resampling_error}};
 }
@@ -111,7 +112,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   table.add_column("normals", "", Table::Align::kRight);
   table.add_column("extra targets", "", Table::Align::kRight);
   table.add_column("deltas", "bytes", Table::Align::kRight);
-  table.add_column("error alone", "degrees", Table::Align::kRight);
+  table.add_column("error", "degrees", Table::Align::kRight);
   for (const BakedMesh& mesh : bake.meshes) add_row(mesh, table);
   text.append("\n").append(table.text()).append("\n");
   text += fmt::format("{} and {} were added", counted(bake.added_targets, "target", "targets"),
@@ -119,7 +120,14 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   if (bake.converted_tracks > 0)
     text += fmt::format("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
                                             "weight tracks are cubic splines"));
-  return text + "\n" + lines_after(report);
+  text += '\n';
+  std::size_t fitted = 0;
+  for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
+  if (fitted > 0)
+    text += counted(fitted, "normal that several targets move at once has deltas",
+                    "normals that several targets move at once have deltas") +
+            " fitted to the weights of the file\n";
+  return text + lines_after(report);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

@@ -37,6 +37,7 @@
 
 #include "chronormal/analysis/blend_quality.h"      // hosts that add one delta per target, at any weights
 #include "chronormal/analysis/collapse.h"           // when a normal vanishes inside a segment
+#include "chronormal/analysis/delta_fit.h"          // the deltas that a host should add up, by least squares
 #include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
 #include "chronormal/analysis/surface.h"            // doubled vertices, edges, pieces, faces on each other

@@ -127,6 +127,7 @@ class Baker {
     }
     plan.value().is_shown = std::vector<bool>();
     plan.value().largest = std::vector<double>();
+    plan.value().lines = FittedLines();
     plans_.push_back(std::move(plan).value());
     report_of_plan_.push_back(bake_.meshes.size());
     return Success{};

@@ -44,6 +44,15 @@ void in_chunks(std::size_t count, const Body& body) {
   parallel_for(chunk_count(count), [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
 }
 
+// The largest angle of the best single delta, over the weights of a file.
+double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
+  if (range.low == 0 && range.high == 1) return best.error;
+  const Vec3d base = unit_normal_at(normals, 0).vector;
+  const Vec3d from = base + range.low * best.delta, to = base + range.high * best.delta;
+  if (max_abs(from) == 0 || max_abs(to) == 0) return std::numbers::pi;
+  return largest_line_error(normals_between(normals, range.low, range.high), from, to);
+}
+
 class MeshWriter {
  public:
   MeshWriter(const GltfDocument& document, const GltfShading& shading, const NormalTerms& terms, const MeshPlan& plan,
@@ -62,6 +71,8 @@ class MeshWriter {
     for (std::size_t n = 0; n < plan_.extras.size(); ++n)
       report_.extras.push_back({mesh_.target_count + n, plan_.extras[n].i, plan_.extras[n].j});
     report_.encoding = plan_.encoding;
+    report_.largest_error = plan_.lines.largest_error() * kDegrees;
+    report_.fitted_elements = plan_.lines.elements();
     report_.resampling_error = plan_.left_out;
     if (Status status = take_stored(); !status) return status;
     count();
@@ -202,10 +213,15 @@ class MeshWriter {
       const bool has_linear = linear.find(e, a), has_square = square.find(e, c);
       if (!has_linear && !has_square) return false;
       const Vec3d base = terms_.base_of(e);
+      const VertexTerms vertex(base, plan_.largest[e], stored(v));
+      if (plan_.lines.find(target, e, delta)) {
+        delta = vertex.fitted_delta(delta);
+        return true;
+      }
       const ControlNormals normals = of_powers(base, a, c);
       const EndDelta best = best_end_delta(normals);
-      errors[chunk] = std::fmax(errors[chunk], best.error);
-      delta = VertexTerms(base, plan_.largest[e], stored(v)).end_delta(best.delta, normals);
+      errors[chunk] = std::fmax(errors[chunk], error_within(plan_.ranges[target], normals, best));
+      delta = vertex.end_delta(best.delta, normals);
       return true;
     };
     const std::size_t accessor = deltas_of(part, find);

@@ -67,6 +67,7 @@ class Planner {
   Status run() {
     const std::size_t targets = shading_.set.targets.size();
     plan_.is_line.assign(targets, false);
+    for (std::size_t i = 0; i < targets; ++i) plan_.ranges.push_back({use_.lowest(i), std::fmax(1, use_.highest(i))});
     plan_.is_shown.assign(shading_.groups.size(), false);
     for (const std::uint32_t e : shading_.element_of_vertex) {
       if (e != GltfShading::kNoElement) plan_.is_shown[e] = true;
@@ -79,7 +80,11 @@ class Planner {
       note_lengths(elements, terms_.linear_by_element(i));
       if (plan_.is_line[i]) note_lengths(elements, terms_.pair_by_element(i, i));
     }
-    if (plan_.encoding == BakeEncoding::kEndpoint) return Success{};
+    if (plan_.encoding == BakeEncoding::kEndpoint) {
+      take_poses();
+      plan_.lines = FittedLines(shading_, terms_, use_, poses_, plan_.is_shown, plan_.largest);
+      return Success{};
+    }
     if (Status status = find_pairs(); !status) return status;
     if (!pairs_.empty()) find_longest_base();
     take_poses();

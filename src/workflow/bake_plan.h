@@ -6,17 +6,25 @@
 #include <vector>
 
 #include "chronormal/workflow/bake.h"
+#include "workflow/bake_lines.h"
 #include "workflow/bake_terms.h"
 #include "workflow/bake_tracks.h"
 #include "workflow/bake_weights.h"
 
 namespace chronormal {
 
+/// 0 and 1, and what lies beyond them of the weights of a file.
+struct WeightRange {
+  double low = 0, high = 1;
+};
+
 struct MeshPlan {
   std::size_t mesh = 0;
   BakeEncoding encoding = BakeEncoding::kExact;
   bool is_driven = false;             ///< an animation gives some moving target a weight
   std::vector<bool> is_line;          ///< of each target: it gets the best single delta
+  std::vector<WeightRange> ranges;    ///< of each target: what its error is stated for
+  FittedLines lines;                  ///< those of targets that are active together, of endpoint
   std::vector<WeightProduct> extras;  ///< ascending (i, j)
   std::vector<bool> is_shown;         ///< of each element: some vertex shows it
   std::vector<double> largest;        ///< of each element: the length of its largest term

@@ -118,8 +118,28 @@ std::vector<Vec3d> NormalTerms::at(std::span<const double> weights) const {
   return normals;
 }
 
+std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const {
+  if (!is_fitted()) return normals_from_positions(shading_, weights);
+  const BlendSet& set = shading_.set;
+  std::vector<double> blended(set.base.size());
+  blend_positions(set, weights, blended);
+  const std::vector<float> to(blended.begin(), blended.end());
+  const std::size_t vertices = set.base.size() / 3;
+  const Segment segment{&set.topology, VectorView<const float>::packed(set.base.data(), vertices),
+                        VectorView<const float>::packed(to.data(), vertices)};
+  return all_weighted_normals_at(segment, shading_.groups, weighting_, 1);
+}
+
 ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {
   return {base, base + 0.5 * linear, base + linear + square};
+}
+
+ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept {
+  // The polar form of the quadratic.
+  const auto at = [&normals](double s, double t) {
+    return ((1 - s) * (1 - t)) * normals.n0 + ((1 - s) * t + s * (1 - t)) * normals.m + (s * t) * normals.n1;
+  };
+  return {at(from, from), at(from, to), at(to, to)};
 }
 
 VertexTerms::VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept
@@ -149,6 +169,10 @@ Vec3d VertexTerms::end_delta(const Vec3d& delta, const ControlNormals& normals) 
   if (max_abs(base_) > 0) return length_ * turn(delta);
   // The line begins at the limit of the directions, but the file's at N.
   return length_ * (unit_normal_at(normals, 0).vector + delta - stored_);
+}
+
+Vec3d VertexTerms::fitted_delta(const Vec3d& delta) const noexcept {
+  return (max_abs(base_) > 0 ? length_ : kLongest * length_) * turn(delta);
 }
 
 }  // namespace chronormal

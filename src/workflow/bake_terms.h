@@ -43,6 +43,8 @@ class NormalTerms {
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
   /// n(w) at some weights.
   [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const;
+  /// The right normals at some weights, of any length, from the blended positions: for fitted weightings too.
+  [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
   /// A bound in radians of the fits of a target; 0 by area.
   [[nodiscard]] double bound(std::size_t i) const { return is_fitted() ? fits_[i].bound : 0; }
@@ -83,6 +85,9 @@ class NormalTerms::Term {
 /// The control normals of a target alone, from weight 0 to 1.
 [[nodiscard]] ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
 
+/// Those from one weight to another, where these from 0 to 1 are given.
+[[nodiscard]] ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept;
+
 /// What turns and scales the terms of an element into those of a vertex that shows it: divided by |n(0)|, times the
 /// length of the stored normal N, by the smallest rotation from n(0) to N. Where n(0) is zero or next to it, the terms
 /// cannot be divided by it: they are made so long that N does not count beside them.
@@ -99,6 +104,8 @@ class VertexTerms {
   [[nodiscard]] Vec3d operator()(const Vec3d& term) const noexcept { return scale_ * turn(term); }
   /// Of the best single delta, for which |n(0)| is 1.
   [[nodiscard]] Vec3d end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept;
+  /// Of a fitted one (bake_lines.h), likewise.
+  [[nodiscard]] Vec3d fitted_delta(const Vec3d& delta) const noexcept;
 
  private:
   static constexpr double kLongest = 1e6;

@@ -65,13 +65,15 @@ bool WeightUse::together(std::size_t i, std::size_t j) const noexcept {
   return false;
 }
 
+void WeightUse::note(std::size_t target, double weight, std::vector<std::size_t>& active) {
+  if (weight == 0) return;
+  lowest_[target] = std::fmin(lowest_[target], weight);
+  highest_[target] = std::fmax(highest_[target], weight);
+  if (active.empty() || active.back() != target) active.push_back(target);
+}
+
 void WeightUse::add_track(const WeightTrack& track) {
   assert(track.targets == targets());
-  const auto note = [this](std::size_t target, double weight, std::vector<std::size_t>& active) {
-    if (weight == 0) return;
-    largest_[target] = std::fmax(largest_[target], std::fabs(weight));
-    if (active.empty() || active.back() != target) active.push_back(target);
-  };
   const bool holds = track.interpolation == GltfInterpolation::kStep || track.size() < 2;
   for (std::size_t key = 0; key + (holds ? 0 : 1) < track.size(); ++key) {
     std::vector<std::size_t> active;
@@ -90,11 +92,7 @@ void WeightUse::add_track(const WeightTrack& track) {
 void WeightUse::add_pose(std::vector<double> weights) {
   assert(weights.size() == targets());
   std::vector<std::size_t> active;
-  for (std::size_t i = 0; i < targets(); ++i) {
-    if (weights[i] == 0) continue;
-    largest_[i] = std::fmax(largest_[i], std::fabs(weights[i]));
-    active.push_back(i);
-  }
+  for (std::size_t i = 0; i < targets(); ++i) note(i, weights[i], active);
   add_active(std::move(active));
   poses_.push_back(std::move(weights));
 }

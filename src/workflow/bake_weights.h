@@ -3,6 +3,7 @@
 #define CHRONORMAL_WORKFLOW_BAKE_WEIGHTS_H_
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -30,7 +31,7 @@ struct WeightTrack {
 /// Gathers the weights that one mesh is given: tracks, and poses that stand still.
 class WeightUse {
  public:
-  explicit WeightUse(std::size_t targets) : largest_(targets, 0.0), moments_(targets) {}
+  explicit WeightUse(std::size_t targets) : lowest_(targets, 0.0), highest_(targets, 0.0), moments_(targets) {}
 
   /// The track must have this many targets, and outlive this.
   void add_track(const WeightTrack& track);
@@ -40,8 +41,11 @@ class WeightUse {
   /// than zero where any of the four numbers that shape it is.) O(moments).
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const noexcept;
   /// A bound of |w_i|.
-  [[nodiscard]] double largest(std::size_t i) const { return largest_[i]; }
-  [[nodiscard]] std::size_t targets() const noexcept { return largest_.size(); }
+  [[nodiscard]] double largest(std::size_t i) const { return std::fmax(-lowest_[i], highest_[i]); }
+  /// Bounds of w_i, from 0 or less to 0 or more.
+  [[nodiscard]] double lowest(std::size_t i) const { return lowest_[i]; }
+  [[nodiscard]] double highest(std::size_t i) const { return highest_[i]; }
+  [[nodiscard]] std::size_t targets() const noexcept { return moments_.size(); }
 
   /// How many poses samples() has at most.
   [[nodiscard]] std::size_t sample_count() const noexcept;
@@ -51,8 +55,9 @@ class WeightUse {
 
  private:
   void add_active(std::vector<std::size_t> active);
+  void note(std::size_t target, double weight, std::vector<std::size_t>& active);
 
-  std::vector<double> largest_;
+  std::vector<double> lowest_, highest_;
   std::vector<std::vector<std::size_t>> moments_;  // of each target, ascending: when it is active
   std::size_t moment_count_ = 0;
   std::vector<std::size_t> last_;  // what add_active() was given last

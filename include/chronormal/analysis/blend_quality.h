@@ -19,22 +19,12 @@
 #include <span>
 #include <vector>
 
+#include "chronormal/analysis/delta_fit.h"
 #include "chronormal/analysis/quality.h"
-#include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
 
 namespace chronormal {
-
-/// What a host adds up.
-struct DeltaNormals {
-  std::vector<float> base;          ///< N, (elements, 3)
-  std::vector<BlendTarget> deltas;  ///< D_i, of elements in place of vertices
-};
-
-/// Writes N + sum_i w_i D_i of all elements: what a host shows, of any length.
-/// weights must have one for each delta, result one for each element
-void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 
 /// Exact base normals, and what is missing to the exact ones of each target alone at weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);

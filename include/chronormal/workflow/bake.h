@@ -3,7 +3,8 @@
 ///     exact      extra morph targets that carry the quadratic terms of eq. 30, driven by products of weights: exact at
 ///                every instant in every host that adds up targets
 ///     endpoint   the best single delta per target (normals/end_delta.h): right at the ends, with a stated error
-///     between
+///                between; where the file has several targets active at once, deltas fitted to its weights by least
+///                squares (analysis/delta_fit.h)
 ///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_H_
@@ -54,9 +55,12 @@ struct BakedMesh {
   std::size_t left_flat = 0;            ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t without_base = 0;    ///< vertices whose faces have no area in the base: see docs/cli.md
-  double largest_error = 0;        ///< degrees, of endpoint targets and fits: each alone, over w in [0, 1]
-  double resampling_error = 0;     ///< degrees, of cubic splines and left-out pairs, along the animations
-  bool already_baked = false;      ///< nothing was changed
+  /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
+  /// active together are held against the weights of the file, at keys and fifteen instants between any two.
+  double largest_error = 0;
+  std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
+  double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool already_baked = false;       ///< nothing was changed
 };
 
 struct GltfBake {

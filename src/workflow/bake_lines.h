@@ -1,0 +1,44 @@
+/// The best single deltas of targets that move a normal together. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_LINES_H_
+#define CHRONORMAL_WORKFLOW_BAKE_LINES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/blend_set.h"
+#include "workflow/bake_terms.h"
+#include "workflow/bake_weights.h"
+
+namespace chronormal {
+
+/// Deltas of elements for which |n(0)| is 1: where two targets move an element and are active at once somewhere in the
+/// file, those of all targets that move it, fitted together by least squares to the weights of the file. A target alone
+/// has a better way (normals/end_delta.h).
+class FittedLines {
+ public:
+  /// None.
+  FittedLines() = default;
+  /// Of the elements that are shown, of which `largest` are the lengths of the largest terms. poses are the weights to
+  /// fit to. Cost: some ten times the normals of all elements at each of them.
+  FittedLines(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use,
+              const std::vector<std::vector<double>>& poses, const std::vector<bool>& is_shown,
+              const std::vector<double>& largest);
+
+  /// Whether a target has a fitted delta for an element; then that.
+  [[nodiscard]] bool find(std::size_t target, std::uint32_t element, Vec3d& delta) const;
+  /// The largest angle between what is shown and the right normals at these poses, radians.
+  [[nodiscard]] double largest_error() const noexcept { return largest_error_; }
+  /// How many elements have fitted deltas.
+  [[nodiscard]] std::size_t elements() const noexcept { return elements_; }
+
+ private:
+  std::vector<BlendTarget> deltas_;  // of elements in place of vertices
+  double largest_error_ = 0;
+  std::size_t elements_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_LINES_H_

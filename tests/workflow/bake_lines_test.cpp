@@ -1,0 +1,175 @@
+// Endpoint deltas of targets that are active together.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+
+namespace chronormal {
+namespace {
+
+using test::Baked;
+using test::GltfBuilder;
+using test::ShownError;
+
+BakeOptions endpoint(Weighting weighting = Weighting::kArea) {
+  BakeOptions options;
+  options.encoding = BakeEncoding::kEndpoint;
+  options.weighting = weighting;
+  return options;
+}
+
+// Three targets, one after the other, then together.
+void add_dance(GltfBuilder& builder) {
+  builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3, 4},
+                    std::vector<float>{0, 0, 0, 1, 0, 0.5F, 1, 1, 0, 0.3F, 1, 1, 0, 0, 0.7F});
+}
+
+// The error of deltas over the track of a file that has the same targets.
+ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform = false) {
+  test::GltfTruth truth(*track.before, 0);
+  truth.uniform = uniform;
+  return test::shown_error(truth, *deltas.after, 0, test::poses_of(*track.before, *track.after, 0, 0));
+}
+
+TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alone) {
+  double fitted_mean = 0, alone_mean = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const Baked alone = test::bake_document(test::still_hills_document(3, seed), endpoint());
+    GltfBuilder builder = test::hills_document(3, seed);
+    add_dance(builder);
+    const Baked fitted = test::bake_document(builder, endpoint());
+    ASSERT_EQ(fitted.error, "");
+    EXPECT_EQ(fitted.report.added_targets, 0U);
+    EXPECT_EQ(fitted.report.meshes[0].fitted_elements, 25U);
+    EXPECT_EQ(alone.report.meshes[0].fitted_elements, 0U);
+    const ShownError error = error_on_track(fitted, fitted), of_alone = error_on_track(fitted, alone);
+    EXPECT_LT(error.mean(), of_alone.mean());
+    // It is stated at more instants than these.
+    EXPECT_LE(error.worst, 1.02 * fitted.report.meshes[0].largest_error);
+    EXPECT_GE(error.worst, 0.9 * fitted.report.meshes[0].largest_error);
+    fitted_mean += error.mean();
+    alone_mean += of_alone.mean();
+  }
+  RecordProperty("fitted", std::to_string(fitted_mean / 10));
+  RecordProperty("alone", std::to_string(alone_mean / 10));
+  EXPECT_LT(fitted_mean, 0.6 * alone_mean);
+}
+
+TEST(BakeLines, no_small_change_of_a_delta_is_better) {
+  GltfBuilder builder = test::hills_document(3, 4);
+  add_dance(builder);
+  const Baked baked = test::bake_document(builder, endpoint());
+  ASSERT_EQ(baked.error, "");
+  const auto poses = test::poses_of(*baked.before, *baked.after, 0, 0);
+  const test::GltfTruth truth(*baked.before, 0);
+  std::vector<std::vector<float>> deltas;
+  for (const auto& target : baked.mesh()["primitives"][0]["targets"]) deltas.push_back(baked.numbers(target["NORMAL"]));
+  // What is made small: parts across the right normal, of what is shown.
+  const auto across = [&](std::size_t vertex) {
+    double sum = 0;
+    for (const test::Pose& pose : poses) {
+      const auto base = truth.normals_at({0, 0, 0})[vertex], at = truth.normals_at(pose.before)[vertex];
+      const test::LongVector right = test::GltfTruth::turn(base, truth.vertices[vertex].stored, at);
+      test::LongVector shown = truth.vertices[vertex].stored;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t c = 0; c < 3; ++c)
+          shown[c] += static_cast<test::Long>(pose.after[k]) * static_cast<test::Long>(deltas[k][3 * vertex + c]);
+      }
+      const test::LongVector side = test::cross_of(shown, right);
+      sum += static_cast<double>(test::dot_of(side, side) / test::dot_of(right, right));
+    }
+    return sum;
+  };
+  for (const std::size_t vertex : {std::size_t{6}, std::size_t{12}, std::size_t{18}}) {
+    const double best = across(vertex);
+    EXPECT_GT(best, 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (const float change : {-0.03F, 0.03F}) {
+          float& number = deltas[k][3 * vertex + c];
+          const float kept = number;
+          number += change;
+          // Samples are not where these poses are: a little may be gained.
+          EXPECT_GT(across(vertex), 0.99 * best);
+          number = kept;
+        }
+      }
+    }
+  }
+}
+
+TEST(BakeLines, of_targets_that_are_never_active_together_are_those_of_each_alone) {
+  const Baked alone = test::bake_document(test::still_hills_document(3), endpoint());
+  GltfBuilder builder = test::hills_document(3);
+  builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3, 4, 5, 6},
+                    std::vector<float>{0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
+  const Baked after = test::bake_document(builder, endpoint());
+  ASSERT_EQ(after.error, "");
+  EXPECT_EQ(after.report.meshes[0].fitted_elements, 0U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(after.numbers(after.mesh()["primitives"][0]["targets"][k]["NORMAL"]),
+              alone.numbers(alone.mesh()["primitives"][0]["targets"][k]["NORMAL"]));
+  }
+}
+
+TEST(BakeLines, the_error_of_weights_beyond_0_and_1_is_stated) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    GltfBuilder builder = test::hills_document(1, seed);
+    builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{-0.5F, 1, 1.5F});
+    const Baked baked = test::bake_document(builder, endpoint());
+    ASSERT_EQ(baked.error, "");
+    const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
+    EXPECT_LE(worst, stated + 1e-3);
+    EXPECT_GE(worst, 0.9 * stated);
+    const Baked still = test::bake_document(test::still_hills_document(1, seed), endpoint());
+    EXPECT_GT(worst, 1.1 * still.report.meshes[0].largest_error);
+  }
+}
+
+TEST(BakeLines, without_area_in_the_base_are_right_where_targets_are_active) {
+  test::Hills hills(5);
+  const std::vector<float> field = hills.positions, bumps = hills.deltas();
+  std::fill(hills.positions.begin(), hills.positions.end(), 0.0F);
+  GltfBuilder builder;
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {field, bumps})));
+  builder.add_animation("rise");
+  builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{1, 0, 1, 1, 0.5F, 0.25F});
+  const Baked baked = test::bake_document(builder, endpoint());
+  ASSERT_EQ(baked.error, "");
+  EXPECT_EQ(baked.report.meshes[0].fitted_elements, 25U);
+  EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
+  const ShownError error = error_on_track(baked, baked);
+  EXPECT_GT(error.judged, 2000U);
+  EXPECT_LE(error.worst, 1.02 * baked.report.meshes[0].largest_error);
+  EXPECT_LT(error.mean(), 2);
+}
+
+TEST(BakeLines, other_weightings_are_fitted_to_their_own_normals) {
+  GltfBuilder builder = test::hills_document(3, 2);
+  add_dance(builder);
+  const Baked uniform = test::bake_document(builder, endpoint(Weighting::kUniform));
+  const Baked area = test::bake_document(builder, endpoint());
+  ASSERT_EQ(uniform.error, "");
+  EXPECT_LT(error_on_track(uniform, uniform, true).mean(), 0.9 * error_on_track(area, area, true).mean());
+}
+
+TEST(BakeLines, poses_that_stand_still_count) {
+  GltfBuilder builder = test::still_hills_document(2, 3);
+  builder.json["nodes"][0]["weights"] = {0.75, 1.0};
+  const Baked posed = test::bake_document(builder, endpoint());
+  ASSERT_EQ(posed.error, "");
+  EXPECT_EQ(posed.report.meshes[0].fitted_elements, 25U);
+  const std::vector<test::Pose> pose = {{{0.75, 1.0}, {0.75F, 1.0F}}};
+  const test::GltfTruth truth(*posed.before, 0);
+  const Baked alone = test::bake_document(test::still_hills_document(2, 3), endpoint());
+  EXPECT_LT(test::shown_error(truth, *posed.after, 0, pose).mean(),
+            0.7 * test::shown_error(truth, *alone.after, 0, pose).mean());
+}
+
+}  // namespace
+}  // namespace chronormal
