@@ -11,7 +11,7 @@
 namespace chronormal {
 namespace {
 
-// Of the mean of the diagonal: pulls what the rows leave open to the end-point deltas.
+// Of the mean of the diagonal: pulls what the rows leave open to the deltas at the start.
 constexpr double kRidge = 1e-9;
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {

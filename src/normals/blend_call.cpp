@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "normals/blocks.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {

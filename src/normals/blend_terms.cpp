@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
+#include "core/blocks.h"
 #include "normals/blend_sums.h"
 
 namespace chronormal {
@@ -26,14 +26,6 @@ Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> 
 void make_set(Indices& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
-// Calls body with ranges of [0, count), on all cores.
-template <class Body>
-void in_chunks(std::size_t count, const Body& body) {
-  if (count <= kChunk) return body(0, count);
-  parallel_for((count + kChunk - 1) / kChunk,
-               [&](std::size_t i) { body(i * kChunk, std::min(count, (i + 1) * kChunk)); });
 }
 
 // Which faces lie around each vertex.
@@ -225,7 +217,7 @@ Vec3d BlendTerms::base_of(std::uint32_t element) const {
 
 BlendTerm BlendTerms::base_term() const {
   std::vector<Term::Rounded> of_faces(set_.topology.face_count());
-  in_chunks(of_faces.size(), [&](std::size_t first, std::size_t last) {
+  numbered_blocks(of_faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f) {
       const CornerVectors b = positions_of(set_, set_.topology.face(f));
       ProductSum normal;
@@ -236,7 +228,7 @@ BlendTerm BlendTerms::base_term() const {
   BlendTerm result;
   result.values.resize(size());
   result.noise.resize(size());
-  in_chunks(size(), [&](std::size_t first, std::size_t last) {
+  numbered_blocks(size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) {
       ElementSum sum;
       for_faces_of(static_cast<std::uint32_t>(e),
@@ -343,7 +335,7 @@ BlendTerm BlendTerms::listed(const Term& term, Indices elements) {
   const std::size_t count = result.elements.size();
   result.values.resize(count);
   result.noise.resize(count);
-  in_chunks(count, [&](std::size_t first, std::size_t last) {
+  numbered_blocks(count, kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const Term::Rounded value = term.at(result.elements[n]);
       result.values[n] = value.value;

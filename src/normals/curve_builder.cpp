@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "chronormal/core/polynomial.h"
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/certificate.h"
 #include "normals/coherence.h"
 #include "normals/group_sum.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/curve_builder.h"
 #include "normals/kernels/curve_blocks.h"
 #include "normals/kernels/exact_normals.h"

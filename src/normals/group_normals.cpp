@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cstddef>
 
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/noise.h"
 
 namespace chronormal {

@@ -13,7 +13,7 @@
 #include <span>
 
 #include "chronormal/normals/control_normals.h"
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/coherence.h"
 #include "normals/curve_elements.h"
 #include "normals/group_sum.h"

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <string>
 
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/corner_terms.h"
 
 namespace chronormal {

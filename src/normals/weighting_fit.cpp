@@ -8,7 +8,7 @@
 #include <span>
 
 #include "chronormal/normals/group_normals.h"
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/corner_terms.h"
 #include "normals/taylor.h"
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "chronormal/normals/weighting.h"
+#include "core/blocks.h"
 #include "workflow/audit_judge.h"
 
 namespace chronormal {
@@ -113,10 +114,10 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
 void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
   result.faces.resize(keeps_faces_ ? face_offsets_.size() - 1 : 0);
   result.elements.resize(elements_.size());
-  for_ranges(result.faces.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(result.faces.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f) result.faces[f] = face_normal(positions, f);
   });
-  for_ranges(result.elements.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) {
       Vec3d sum;
       double size = 0;  // of the terms

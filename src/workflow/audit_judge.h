@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
-#include "chronormal/core/parallel.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/topology.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/audit.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 
@@ -86,14 +86,8 @@ class JudgedPart {
 /// Sums over the subjects, finds the worst of them, and puts faults before notes.
 void finish(Audit& result);
 
-/// Calls body(i, first, last) for ranges i of [0, count), the same ones on any number of threads.
+/// What one task takes.
 inline constexpr std::size_t kRange = 4096;
-[[nodiscard]] constexpr std::size_t range_count(std::size_t count) noexcept { return (count + kRange - 1) / kRange; }
-
-template <class Body>
-void for_ranges(std::size_t count, const Body& body) {
-  parallel_for(range_count(count), [&](std::size_t i) { body(i, i * kRange, std::min(count, (i + 1) * kRange)); });
-}
 
 /// Judges all samples of all segments of a source:
 ///     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
@@ -141,7 +135,7 @@ class Judge {
     for (std::size_t s = 0; s < segments; ++s) {
       const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
       const std::vector<Vec3d>& end = normals_at(s, 1);
-      for_ranges(scales_.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+      numbered_blocks(scales_.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t e = first; e < last; ++e) {
           const Vec3d m = 2.0 * middle[e] - 0.5 * (start[e] + end[e]);
           scales_[e] = std::max({scales_[e], length(start[e]), length(m), length(end[e])});
@@ -164,8 +158,8 @@ class Judge {
 
   [[nodiscard]] MotionError judge(std::size_t segment, double t) const {
     const std::span<const JudgedOutput> outputs = part_.outputs();
-    std::vector<MotionError> of_ranges(range_count(outputs.size()));
-    for_ranges(outputs.size(), [&](std::size_t range, std::size_t first, std::size_t last) {
+    std::vector<MotionError> of_ranges(block_count(outputs.size(), kRange));
+    numbered_blocks(outputs.size(), kRange, [&](std::size_t range, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) judge(outputs[i], segment, t, of_ranges[range]);
     });
     MotionError all;

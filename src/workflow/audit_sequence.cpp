@@ -8,6 +8,7 @@
 #include "chronormal/normals/transform.h"
 #include "chronormal/normals/weld.h"
 #include "chronormal/workflow/audit.h"
+#include "core/blocks.h"
 #include "workflow/audit_judge.h"
 
 namespace chronormal {
@@ -34,7 +35,7 @@ class SequenceSource {
     t_ = t;
     const Segment s = motion_.segment(segments_[segment]);
     const auto vertices = part_.vertices();
-    for_ranges(vertices.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    numbered_blocks(vertices.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
     });

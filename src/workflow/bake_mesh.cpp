@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/normals/end_delta.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {
@@ -36,13 +36,6 @@ std::string pointer_of(std::size_t mesh, std::size_t primitive) {
 struct Attributes {
   bool positions = false, normals = false, tangents = false;
 };
-
-// Calls body(chunk, first, last) with ranges of [0, count), on all cores.
-constexpr std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-template <class Body>
-void in_chunks(std::size_t count, const Body& body) {
-  parallel_for(chunk_count(count), [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
-}
 
 // The largest angle of the best single delta, over the weights of a file.
 double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
@@ -152,8 +145,9 @@ class MeshWriter {
   void count() {
     for (const bool shown : plan_.is_shown) report_.elements += shown ? 1 : 0;
     const std::vector<std::uint32_t>& elements = shading_.element_of_vertex;
-    std::vector<std::size_t> without(chunk_count(elements.size())), unstored(chunk_count(elements.size()));
-    in_chunks(elements.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    std::vector<std::size_t> without(block_count(elements.size(), kChunk)),
+        unstored(block_count(elements.size(), kChunk));
+    numbered_blocks(elements.size(), kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
       for (std::size_t v = first; v < last; ++v) {
         const std::uint32_t e = elements[v];
         if (e == GltfShading::kNoElement) continue;
@@ -178,8 +172,8 @@ class MeshWriter {
   template <class Find>
   std::size_t deltas_of(const GltfPart& part, const Find& find) {
     std::vector<float> deltas(3 * part.vertex_count);
-    std::vector<char> any(chunk_count(part.vertex_count));
-    in_chunks(part.vertex_count, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    std::vector<char> any(block_count(part.vertex_count, kChunk));
+    numbered_blocks(part.vertex_count, kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) {
         const std::size_t v = part.first_vertex + n;
         const std::uint32_t e = shading_.element_of_vertex[v];
@@ -207,7 +201,7 @@ class MeshWriter {
   // The best single deltas of a target.
   std::size_t deltas_of_line(const GltfPart& part, std::size_t target, const NormalTerms::Term& linear,
                              const NormalTerms::Term& square) {
-    std::vector<double> errors(chunk_count(part.vertex_count));
+    std::vector<double> errors(block_count(part.vertex_count, kChunk));
     const auto find = [&](std::uint32_t e, std::size_t v, std::size_t chunk, Vec3d& delta) {
       Vec3d a, c;
       const bool has_linear = linear.find(e, a), has_square = square.find(e, c);

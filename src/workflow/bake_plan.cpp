@@ -6,12 +6,13 @@
 #include <numbers>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr std::size_t kChunk = 1024;
 constexpr std::size_t kMostExtras = 10000;
 // Poses to measure at: all of them on small meshes.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
@@ -37,18 +38,6 @@ struct Candidate {
 struct Worst {
   double aside = 0, size = 0, tangent = 0;
 };
-
-// Calls body(chunk, first, last) with ranges of [0, count), on all cores.
-constexpr std::size_t kChunk = 1024;
-constexpr std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-template <class Body>
-void in_chunks(std::size_t count, const Body& body) {
-  if (count <= kChunk) {
-    if (count > 0) body(0, 0, count);
-    return;
-  }
-  parallel_for(chunk_count(count), [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
-}
 
 // The tangent of the angle between a unit vector and another one; infinity from a right angle on.
 double tangent_between(const Vec3d& unit, const Vec3d& other) {
@@ -81,8 +70,7 @@ class Planner {
       if (plan_.is_line[i]) note_lengths(elements, terms_.pair_by_element(i, i));
     }
     if (plan_.encoding == BakeEncoding::kEndpoint) {
-      take_poses();
-      plan_.lines = FittedLines(shading_, terms_, use_, poses_, plan_.is_shown, plan_.largest);
+      if (plan_.is_driven) plan_.lines = FittedLines(shading_, terms_, use_, plan_.is_shown, plan_.largest);
       return Success{};
     }
     if (Status status = find_pairs(); !status) return status;
@@ -113,7 +101,7 @@ class Planner {
     largest = std::fmax(largest, length(value));
   }
   void note_lengths(const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
-    in_chunks(elements.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    numbered_blocks(elements.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) {
         Vec3d value;
         if (term.find(elements[n], value)) note_length(elements[n], value);
@@ -187,8 +175,8 @@ class Planner {
   }
 
   void find_longest_base() {
-    std::vector<double> longest(chunk_count(shading_.groups.size()));
-    in_chunks(shading_.groups.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    std::vector<double> longest(block_count(shading_.groups.size(), kChunk));
+    numbered_blocks(shading_.groups.size(), kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
       for (std::size_t e = first; e < last; ++e)
         longest[chunk] = std::fmax(longest[chunk], length(terms_.base_of(static_cast<std::uint32_t>(e))));
     });
@@ -199,8 +187,8 @@ class Planner {
   // where its direction is judged.
   template <class Normal, class Visit>
   [[nodiscard]] Worst worst_of(const BlendTerm& term, const Normal& normal_of, const Visit& visit) const {
-    std::vector<Worst> of_chunks(chunk_count(term.elements.size()));
-    in_chunks(term.elements.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    std::vector<Worst> of_chunks(block_count(term.elements.size(), kChunk));
+    numbered_blocks(term.elements.size(), kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) {
         const Vec3d normal = normal_of(term.elements[n]);
         const double size = length(normal);

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/normals/end_delta.h"
 #include "chronormal/normals/weld.h"
 #include "chronormal/workflow/bake.h"
+#include "core/blocks.h"
 #include "io/glb_builder.h"
 #include "workflow/sequence_normals.h"
 
@@ -110,8 +110,8 @@ Vec3d rounded(const Vec3d& v) { return to_double(to_float(v)); }
 
 void over_elements(std::size_t count, const std::function<void(std::size_t)>& body) {
   constexpr std::size_t kBlock = 256;
-  parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
-    for (std::size_t e = block * kBlock; e < std::min(count, (block + 1) * kBlock); ++e) body(e);
+  numbered_blocks(count, kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e) body(e);
   });
 }
 

@@ -119,7 +119,7 @@ std::vector<Vec3d> NormalTerms::at(std::span<const double> weights) const {
 }
 
 std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const {
-  if (!is_fitted()) return normals_from_positions(shading_, weights);
+  if (!is_fitted()) return by_area_at(weights);
   const BlendSet& set = shading_.set;
   std::vector<double> blended(set.base.size());
   blend_positions(set, weights, blended);

@@ -43,8 +43,12 @@ class NormalTerms {
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
   /// n(w) at some weights.
   [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const;
-  /// The right normals at some weights, of any length, from the blended positions: for fitted weightings too.
+  /// The right normals at some weights from the blended positions, of any length, for fitted weightings too; and
+  /// those by area whatever the weighting.
   [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
+  [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
+    return normals_from_positions(shading_, weights);
+  }
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
   /// A bound in radians of the fits of a target; 0 by area.
   [[nodiscard]] double bound(std::size_t i) const { return is_fitted() ? fits_[i].bound : 0; }

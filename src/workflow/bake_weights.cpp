@@ -11,19 +11,20 @@ namespace {
 
 constexpr std::size_t kSamplesPerPiece = 16;
 
-// How many samples a track has: its keys, and where weights move, some between them.
-std::size_t count_samples(const WeightTrack& track) {
+// How many samples a track has: its keys, and where weights move, every `step`th of those between them.
+std::size_t count_samples(const WeightTrack& track, std::size_t step) {
   if (track.interpolation == GltfInterpolation::kStep || track.size() < 2) return track.size();
-  return kSamplesPerPiece * (track.size() - 1) + 1;
+  return kSamplesPerPiece / step * (track.size() - 1) + 1;
 }
 
-std::vector<double> sample(const WeightTrack& track, std::size_t index) {
+std::vector<double> sample(const WeightTrack& track, std::size_t step, std::size_t index) {
   std::vector<double> weights(track.targets);
   const bool holds = track.interpolation == GltfInterpolation::kStep || track.size() < 2;
-  const std::size_t key = holds ? index : index / kSamplesPerPiece, step = holds ? 0 : index % kSamplesPerPiece;
-  const double t = static_cast<double>(step) / static_cast<double>(kSamplesPerPiece);
+  const std::size_t in_piece = kSamplesPerPiece / step;
+  const std::size_t key = holds ? index : index / in_piece, part = holds ? 0 : index % in_piece;
+  const double t = static_cast<double>(part) / static_cast<double>(in_piece);
   for (std::size_t i = 0; i < track.targets; ++i)
-    weights[i] = step == 0 ? track.value(key, i) : evaluate(track.piece(key, i), t);
+    weights[i] = part == 0 ? track.value(key, i) : evaluate(track.piece(key, i), t);
   return weights;
 }
 
@@ -97,14 +98,22 @@ void WeightUse::add_pose(std::vector<double> weights) {
   poses_.push_back(std::move(weights));
 }
 
-std::size_t WeightUse::sample_count() const noexcept {
+std::size_t WeightUse::sample_count() const noexcept { return sample_count(1); }
+
+std::size_t WeightUse::sample_count(std::size_t step) const noexcept {
   std::size_t total = poses_.size();
-  for (const WeightTrack* track : tracks_) total += count_samples(*track);
+  for (const WeightTrack* track : tracks_) total += count_samples(*track, step);
   return total;
 }
 
-std::vector<std::vector<double>> WeightUse::samples(std::size_t most) const {
-  const std::size_t total = sample_count();
+std::vector<std::vector<double>> WeightUse::samples_with_keys(std::size_t most) const {
+  std::size_t step = 1;
+  while (step < kSamplesPerPiece && sample_count(step) > most) step *= 2;
+  return samples(most, step);
+}
+
+std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_t step) const {
+  const std::size_t total = sample_count(step);
   std::vector<std::vector<double>> result;
   const std::size_t count = std::min(total, most);
   std::size_t track = 0, first = poses_.size();  // of the samples of that track
@@ -118,8 +127,8 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most) const {
       result.push_back(poses_[index]);
       continue;
     }
-    while (index - first >= count_samples(*tracks_[track])) first += count_samples(*tracks_[track++]);
-    result.push_back(sample(*tracks_[track], index - first));
+    while (index - first >= count_samples(*tracks_[track], step)) first += count_samples(*tracks_[track++], step);
+    result.push_back(sample(*tracks_[track], step, index - first));
   }
   return result;
 }

@@ -49,11 +49,15 @@ class WeightUse {
 
   /// How many poses samples() has at most.
   [[nodiscard]] std::size_t sample_count() const noexcept;
-  /// Poses that the weights pass through: keys, and fifteen between any two; where these are more than `most`, some of
-  /// them, evenly.
-  [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const;
+  /// Poses that the weights pass through: keys, and fifteen between any two; where these are more than `most`, as many
+  /// of them, evenly.
+  [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
+  /// The same with all keys as long as that goes: with seven, three, one, or none between any two.
+  [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:
+  [[nodiscard]] std::size_t sample_count(std::size_t step) const noexcept;
+  [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most, std::size_t step) const;
   void add_active(std::vector<std::size_t> active);
   void note(std::size_t target, double weight, std::vector<std::size_t>& active);
 

@@ -13,6 +13,7 @@
 #include "chronormal/normals/blend_normals.h"
 #include "chronormal/workflow/gltf_shading.h"
 #include "chronormal/workflow/sample.h"
+#include "core/blocks.h"
 #include "workflow/bake_weights.h"
 
 namespace chronormal {
@@ -31,13 +32,6 @@ Error misuse(std::string place, std::string message) {
 
 Vec3d vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
-
-// Calls body with ranges of [0, count), numbered, on all cores.
-template <class Body>
-void in_chunks(std::size_t count, const Body& body) {
-  parallel_for((count + kChunk - 1) / kChunk,
-               [&](std::size_t i) { body(i, i * kChunk, std::min(count, (i + 1) * kChunk)); });
 }
 
 // What shows a normal, and what a person calls it.
@@ -61,7 +55,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
   std::vector<double> positions(subject.set->base.size());
   blend_positions(*subject.set, weights, positions);
   std::vector<Vec3d> faces(topology.face_count());
-  in_chunks(faces.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f) {
       const auto face = topology.face(f);
       const auto at = [&](std::size_t c) {
@@ -73,7 +67,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
   });
   if (subject.groups == nullptr) return faces;
   std::vector<Vec3d> result(subject.groups->size());
-  in_chunks(result.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(result.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e)
       for (const std::uint32_t f : subject.groups->faces(e)) result[e] = result[e] + faces[f];
   });
@@ -185,7 +179,7 @@ class Judge {
     const std::vector<std::uint32_t> moved = moved_by(weights);
     const std::size_t methods = errors.deltas.size();
     std::vector<Quality> parts((moved.size() + kChunk - 1) / kChunk * methods);
-    in_chunks(moved.size(), [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    numbered_blocks(moved.size(), kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const Output& output = subject_.outputs[moved[i]];
         const std::size_t e = output.element;

@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/normals/transform.h"
 #include "chronormal/normals/weld.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {
@@ -307,13 +307,6 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
   return Success{};
 }
 
-// Calls body with ranges of [0, count), on all cores.
-template <class Body>
-void in_chunks(std::size_t count, const Body& body) {
-  parallel_for((count + kChunk - 1) / kChunk,
-               [&](std::size_t i) { body(i * kChunk, std::min(count, (i + 1) * kChunk)); });
-}
-
 }  // namespace
 
 Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
@@ -347,7 +340,7 @@ std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<
   std::vector<double> positions(shading.set.base.size());
   blend_positions(shading.set, weights, positions);
   std::vector<Vec3d> result(shading.groups.size());
-  in_chunks(result.size(), [&](std::size_t first, std::size_t last) {
+  numbered_blocks(result.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) result[e] = normal_from_positions(shading, positions, e);
   });
   return result;

@@ -10,6 +10,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/group_normals.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {
@@ -63,8 +64,7 @@ struct DoublePositions {
 
 std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
   std::vector<Vec3d> normals(segment.topology->face_count());
-  parallel_for((normals.size() + kBlock - 1) / kBlock, [&](std::size_t i) {
-    const IndexRange faces{i * kBlock, std::min(kBlock, normals.size() - i * kBlock)};
+  parallel_blocks(normals.size(), kBlock, [&](IndexRange faces) {
     face_normals_at(segment, t, faces, std::span(normals).subspan(faces.first, faces.count));
   });
   return normals;

@@ -9,19 +9,14 @@
 #include <string>
 #include <utility>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/normals/weighting_fit.h"
+#include "core/blocks.h"
 #include "normals/noise.h"
 
 namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // faces or elements that one task takes
-
-void in_blocks(std::size_t count, const std::function<void(std::size_t first, std::size_t end)>& body) {
-  parallel_for((count + kBlock - 1) / kBlock,
-               [&](std::size_t i) { body(i * kBlock, std::min(count, (i + 1) * kBlock)); });
-}
 
 // Twice the vector area of a polygon, with components that are nothing but the rounding of its products set to zero.
 Vec3d vector_area(std::span<const std::uint32_t> face, const std::vector<Vec3d>& positions) {
@@ -100,10 +95,10 @@ std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
 std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
   const Topology& topology = motion_->topology;
   std::vector<Vec3d> faces(topology.face_count()), result(elements());
-  in_blocks(faces.size(), [&](std::size_t first, std::size_t end) {
+  numbered_blocks(faces.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t f = first; f < end; ++f) faces[f] = vector_area(topology.face(f), positions);
   });
-  in_blocks(result.size(), [&](std::size_t first, std::size_t end) {
+  numbered_blocks(result.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t e = first; e < end; ++e) {
       VectorSum sum;
       for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);

@@ -56,6 +56,8 @@ class GltfPlayer {
       const std::size_t size = size_of(a.at("componentType"));
       const Json& view = json.at("bufferViews").at(a.at("bufferView").get<std::size_t>());
       const std::size_t stride = view.value("byteStride", width * size);
+      const std::size_t end = a.value("byteOffset", std::size_t{0}) + (count - 1) * stride + width * size;
+      if (count > 0 && end > view.at("byteLength").get<std::size_t>()) throw std::runtime_error("beyond its view");
       for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t c = 0; c < width; ++c)
           values[i * width + c] = component(a, start_of(a.at("bufferView"), a) + i * stride + c * size);

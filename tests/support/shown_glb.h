@@ -1,19 +1,17 @@
-/// What a client shows of a GLB file with one morphing mesh: a reader that shares no code with src/.
-///
-/// Only what tests of baked sequences need: one BIN chunk, one mesh with one primitive, float32 arrays, dense, sparse
-/// or of zeros. Weights are computed in double; normals are summed in float, as clients do. Anything else throws.
+/// What a client shows of a GLB file with one morphing mesh of one primitive and one animation, all of whose targets
+/// have positions and normals: what tests of baked sequences need. Weights are computed in double; normals are summed
+/// in float, as clients do. Anything else throws.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "tests/support/gltf_player.h"
 
 namespace chronormal::test {
 
@@ -21,24 +19,22 @@ class ShownGlb {
  public:
   using Point = std::array<double, 3>;
 
-  explicit ShownGlb(std::string_view file) : file_(file) {
-    if (file.size() < 28 || file.substr(0, 4) != "glTF" || word(8) != file.size()) throw std::runtime_error("no GLB");
-    json = nlohmann::json::parse(file.substr(20, word(12)));
-    const std::size_t bin = 20 + word(12);
-    if (file.substr(bin + 4, 4) != std::string_view("BIN\0", 4)) throw std::runtime_error("no BIN chunk");
-    bin_ = file.substr(bin + 8, word(bin));
-    const auto& primitive = json["meshes"][0]["primitives"][0];
-    positions = floats(primitive["attributes"]["POSITION"], 3);
-    normals = floats(primitive["attributes"]["NORMAL"], 3);
-    for (const auto& target : primitive["targets"]) {
-      position_deltas.push_back(floats(target["POSITION"], 3));
-      normal_deltas.push_back(floats(target["NORMAL"], 3));
+  explicit ShownGlb(const std::string& file) {
+    const GltfPlayer player(file);
+    json = player.json;
+    const auto& primitive = json.at("meshes").at(0).at("primitives").at(0);
+    positions = player.accessor(primitive.at("attributes").at("POSITION"));
+    normals = player.accessor(primitive.at("attributes").at("NORMAL"));
+    for (const auto& target : primitive.at("targets")) {
+      position_deltas.push_back(player.accessor(target.at("POSITION")));
+      normal_deltas.push_back(player.accessor(target.at("NORMAL")));
     }
-    read_triangles(json["accessors"][primitive["indices"].get<std::size_t>()]);
-    const auto& sampler = json["animations"][0]["samplers"][0];
-    times = floats(sampler["input"], 1);
-    track_ = floats(sampler["output"], 1);
-    is_cubic_ = sampler["interpolation"] == "CUBICSPLINE";
+    for (const float corner : player.accessor(primitive.at("indices")))
+      corners.push_back(static_cast<std::uint32_t>(corner));
+    const auto& sampler = json.at("animations").at(0).at("samplers").at(0);
+    times = player.accessor(sampler.at("input"));
+    track_ = player.accessor(sampler.at("output"));
+    is_cubic_ = sampler.at("interpolation") == "CUBICSPLINE";
   }
 
   [[nodiscard]] std::size_t vertices() const { return positions.size() / 3; }
@@ -92,60 +88,8 @@ class ShownGlb {
   std::vector<std::uint32_t> corners;  ///< of triangles
 
  private:
-  [[nodiscard]] std::size_t word(std::size_t at) const {
-    std::uint32_t value = 0;
-    std::memcpy(&value, file_.data() + at, 4);
-    return value;
-  }
-
   [[nodiscard]] double track(std::size_t row, std::size_t target) const { return track_.at(row * targets() + target); }
 
-  [[nodiscard]] std::string_view view(const nlohmann::json& place, std::size_t bytes) const {
-    const auto& view = json["bufferViews"][place["bufferView"].get<std::size_t>()];
-    const std::size_t in_view = place.value("byteOffset", std::size_t{0});
-    if (in_view + bytes > view["byteLength"].get<std::size_t>()) throw std::runtime_error("outside its view");
-    const std::size_t begin = view.value("byteOffset", std::size_t{0}) + in_view;
-    if (begin + bytes > bin_.size()) throw std::runtime_error("outside the buffer");
-    return bin_.substr(begin, bytes);
-  }
-
-  // An integer of 1, 2 or 4 bytes.
-  [[nodiscard]] static std::uint32_t integer(std::string_view bytes, std::size_t i, std::size_t size) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + i * size, size);
-    return value;
-  }
-
-  [[nodiscard]] static std::size_t size_of(int component_type) {
-    return component_type == 5121 ? 1 : component_type == 5123 ? 2 : 4;
-  }
-
-  [[nodiscard]] std::vector<float> floats(const nlohmann::json& index, std::size_t components) const {
-    const auto& accessor = json["accessors"][index.get<std::size_t>()];
-    if (accessor["componentType"] != 5126 || accessor["type"] != (components == 3 ? "VEC3" : "SCALAR"))
-      throw std::runtime_error("not such floats");
-    std::vector<float> values(accessor["count"].get<std::size_t>() * components, 0.0F);
-    if (accessor.contains("bufferView"))
-      std::memcpy(values.data(), view(accessor, 4 * values.size()).data(), 4 * values.size());
-    if (!accessor.contains("sparse")) return values;
-    const auto& sparse = accessor["sparse"];
-    const auto count = sparse["count"].get<std::size_t>();
-    const std::size_t size = size_of(sparse["indices"]["componentType"]);
-    const std::string_view indices = view(sparse["indices"], size * count);
-    const std::string_view stored = view(sparse["values"], 4 * components * count);
-    for (std::size_t i = 0; i < count; ++i)
-      std::memcpy(&values.at(components * integer(indices, i, size)), stored.data() + 4 * components * i,
-                  4 * components);
-    return values;
-  }
-
-  void read_triangles(const nlohmann::json& accessor) {
-    const std::size_t size = size_of(accessor["componentType"]), count = accessor["count"].get<std::size_t>();
-    const std::string_view bytes = view(accessor, size * count);
-    for (std::size_t i = 0; i < count; ++i) corners.push_back(integer(bytes, i, size));
-  }
-
-  std::string_view file_, bin_;
   std::vector<float> track_;
   bool is_cubic_ = false;
 };

@@ -28,6 +28,28 @@ void add_dance(GltfBuilder& builder) {
                     std::vector<float>{0, 0, 0, 1, 0, 0.5F, 1, 1, 0, 0.3F, 1, 1, 0, 0, 0.7F});
 }
 
+std::vector<float> deltas_of(const Baked& baked, std::size_t target) {
+  return baked.numbers(baked.mesh()["primitives"][0]["targets"][target]["NORMAL"]);
+}
+
+void expect_same_deltas(const Baked& a, const Baked& b) {
+  for (std::size_t k = 0; k < a.mesh()["primitives"][0]["targets"].size(); ++k)
+    EXPECT_EQ(deltas_of(a, k), deltas_of(b, k));
+}
+
+// One of three targets, from 0 to 1.
+std::vector<test::Pose> poses_alone(std::size_t target) {
+  std::vector<test::Pose> poses;
+  for (int i = 0; i <= 20; ++i) {
+    test::Pose& pose = poses.emplace_back();
+    pose.before.assign(3, 0.0);
+    pose.after.assign(3, 0.0F);
+    pose.after[target] = static_cast<float>(i) / 20;
+    pose.before[target] = static_cast<double>(pose.after[target]);
+  }
+  return poses;
+}
+
 // The error of deltas over the track of a file that has the same targets.
 ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform = false) {
   test::GltfTruth truth(*track.before, 0);
@@ -45,10 +67,11 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     const Baked fitted = test::bake_document(builder, endpoint());
     ASSERT_EQ(fitted.error, "");
     EXPECT_EQ(fitted.report.added_targets, 0U);
-    EXPECT_EQ(fitted.report.meshes[0].fitted_elements, 25U);
+    EXPECT_GE(fitted.report.meshes[0].fitted_elements, 24U);
     EXPECT_EQ(alone.report.meshes[0].fitted_elements, 0U);
     const ShownError error = error_on_track(fitted, fitted), of_alone = error_on_track(fitted, alone);
     EXPECT_LT(error.mean(), of_alone.mean());
+    EXPECT_LE(error.worst, of_alone.worst + 0.1);  // at other instants than those that were fitted to
     // It is stated at more instants than these.
     EXPECT_LE(error.worst, 1.02 * fitted.report.meshes[0].largest_error);
     EXPECT_GE(error.worst, 0.9 * fitted.report.meshes[0].largest_error);
@@ -111,10 +134,7 @@ TEST(BakeLines, of_targets_that_are_never_active_together_are_those_of_each_alon
   const Baked after = test::bake_document(builder, endpoint());
   ASSERT_EQ(after.error, "");
   EXPECT_EQ(after.report.meshes[0].fitted_elements, 0U);
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(after.numbers(after.mesh()["primitives"][0]["targets"][k]["NORMAL"]),
-              alone.numbers(alone.mesh()["primitives"][0]["targets"][k]["NORMAL"]));
-  }
+  expect_same_deltas(after, alone);
 }
 
 TEST(BakeLines, the_error_of_weights_beyond_0_and_1_is_stated) {
@@ -150,25 +170,80 @@ TEST(BakeLines, without_area_in_the_base_are_right_where_targets_are_active) {
 }
 
 TEST(BakeLines, other_weightings_are_fitted_to_their_own_normals) {
-  GltfBuilder builder = test::hills_document(3, 2);
-  add_dance(builder);
-  const Baked uniform = test::bake_document(builder, endpoint(Weighting::kUniform));
-  const Baked area = test::bake_document(builder, endpoint());
-  ASSERT_EQ(uniform.error, "");
-  EXPECT_LT(error_on_track(uniform, uniform, true).mean(), 0.9 * error_on_track(area, area, true).mean());
+  for (const float scale : {1.0F, 400.0F, 0.01F}) {  // lengths do not count
+    SCOPED_TRACE(scale);
+    test::Hills hills(2);
+    std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas(), hills.deltas()};
+    for (float& c : hills.positions) c *= scale;
+    for (std::vector<float>& of_target : deltas) {
+      for (float& c : of_target) c *= scale;
+    }
+    GltfBuilder builder;
+    builder.add_node(builder.add_mesh(hills.primitive(builder, deltas)));
+    builder.add_animation("move");
+    add_dance(builder);
+    const Baked uniform = test::bake_document(builder, endpoint(Weighting::kUniform));
+    const Baked area = test::bake_document(builder, endpoint());
+    ASSERT_EQ(uniform.error, "");
+    const ShownError error = error_on_track(uniform, uniform, true);
+    EXPECT_LT(error.mean(), 0.9 * error_on_track(area, area, true).mean());
+    EXPECT_LE(error.worst, 1.02 * uniform.report.meshes[0].largest_error);
+  }
 }
 
-TEST(BakeLines, poses_that_stand_still_count) {
+TEST(BakeLines, without_an_animation_each_target_is_for_itself) {
   GltfBuilder builder = test::still_hills_document(2, 3);
   builder.json["nodes"][0]["weights"] = {0.75, 1.0};
   const Baked posed = test::bake_document(builder, endpoint());
   ASSERT_EQ(posed.error, "");
-  EXPECT_EQ(posed.report.meshes[0].fitted_elements, 25U);
-  const std::vector<test::Pose> pose = {{{0.75, 1.0}, {0.75F, 1.0F}}};
-  const test::GltfTruth truth(*posed.before, 0);
-  const Baked alone = test::bake_document(test::still_hills_document(2, 3), endpoint());
-  EXPECT_LT(test::shown_error(truth, *posed.after, 0, pose).mean(),
-            0.7 * test::shown_error(truth, *alone.after, 0, pose).mean());
+  EXPECT_EQ(posed.report.meshes[0].fitted_elements, 0U);
+  expect_same_deltas(posed, test::bake_document(test::still_hills_document(2, 3), endpoint()));
+}
+
+TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
+  // Ones of a billionth; and two that go together but for a ten-thousandth.
+  GltfBuilder tiny = test::hills_document(3, 6), alike = test::hills_document(3, 6);
+  tiny.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{1e-9F, 2e-9F, 0, 0, 1e-9F, 1e-9F});
+  alike.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 0, 0.5F, 0.5001F, 0, 0.9F, 0.8999F, 0});
+  const Baked alone = test::bake_document(test::still_hills_document(3, 6), endpoint());
+  const Baked of_tiny = test::bake_document(tiny, endpoint()), of_alike = test::bake_document(alike, endpoint());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::vector<float> deltas = deltas_of(alone, k), with_tiny = deltas_of(of_tiny, k),
+                             with_alike = deltas_of(of_alike, k);
+    for (std::size_t i = 0; i < deltas.size(); ++i) {
+      EXPECT_NEAR(with_tiny[i], deltas[i], 1e-3);
+      EXPECT_NEAR(with_alike[i], deltas[i], 1.5);  // half of what both together lack
+    }
+  }
+}
+
+TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
+  // More samples than are fitted to: 16 for each of 300 pieces.
+  GltfBuilder builder = test::hills_document(3, 8);
+  test::Hills random(9);
+  std::vector<float> times, values;
+  for (int key = 0; key <= 300; ++key) {
+    times.push_back(static_cast<float>(key));
+    for (int k = 0; k < 3; ++k) values.push_back(random.uniform(0, 1));
+  }
+  builder.add_track(0, 0, times, values);
+  const Baked baked = test::bake_document(builder, endpoint());
+  ASSERT_EQ(baked.error, "");
+  const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
+  EXPECT_LE(worst, 1.05 * stated);
+  EXPECT_GE(worst, 0.5 * stated);
+}
+
+TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_error_is_stated) {
+  GltfBuilder builder = test::hills_document(3, 5);
+  // So little that the third target is off by most.
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0.01F, 0.01F, 0});
+  const Baked baked = test::bake_document(builder, endpoint());
+  const Baked alone = test::bake_document(test::still_hills_document(3, 5), endpoint());
+  EXPECT_EQ(deltas_of(baked, 2), deltas_of(alone, 2));
+  const double worst = test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses_alone(2)).worst;
+  EXPECT_GT(worst, 0.5);
+  EXPECT_LE(worst, baked.report.meshes[0].largest_error + 1e-3);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cstdint>
 
-#include "normals/blocks.h"
+#include "core/blocks.h"
 #include "normals/kernels/exact_tile.h"
 #include "normals/noise.h"
 #include "normals/polygon_normals.h"

@@ -1,0 +1,45 @@
+/// A loop in blocks, one after the other or on all cores: the same blocks on any number of threads.
+#ifndef CHRONORMAL_CORE_BLOCKS_H_
+#define CHRONORMAL_CORE_BLOCKS_H_
+
+#include <algorithm>
+#include <cstddef>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/views.h"
+
+namespace chronormal {
+
+[[nodiscard]] constexpr std::size_t block_count(std::size_t count, std::size_t block) noexcept {
+  return (count + block - 1) / block;
+}
+
+/// Calls body(range) for ranges of up to `block` indices that cover [0, count).
+template <class Body>
+void parallel_blocks(std::size_t count, std::size_t block, Body body) {
+  parallel_for(block_count(count, block), [&](std::size_t i) {
+    body(IndexRange{i * block, std::min(block, count - i * block)});
+  });
+}
+
+/// Calls body(i, first, last) for the ranges [first, last), numbered by i. One alone is not worth a task.
+template <class Body>
+void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
+  if (count == 0) return;
+  if (count <= block) return body(std::size_t{0}, std::size_t{0}, count);
+  parallel_for(block_count(count, block), [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
+}
+
+/// parallel_blocks() on all cores, or body of the whole range on this one.
+template <class Body>
+void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
+  if (threads == Threads::kOne) {
+    body(IndexRange{0, count});
+  } else {
+    parallel_blocks(count, block, body);
+  }
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_BLOCKS_H_
