@@ -12,33 +12,20 @@
 #include <hwy/highway.h>
 
 #include "normals/kernels/lanes-inl.h"
+#include "normals/kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::HWY_NAMESPACE {
 
 using IdTag = hn::RebindToUnsigned<FloatTag>;
-using PartTag = hn::CappedTag<double, 8>;  // of kLanes, or of half of them
-using PartOfFloats = hn::Rebind<float, PartTag>;
-using Doubles = hn::Vec<PartTag>;
 
 inline constexpr IdTag kIds;
-inline constexpr PartTag kPart;
 
 constexpr std::size_t kBlock = 16;
 
-struct Doubles3 {
-  Doubles x, y, z;
-};
-struct Lanes4 {
-  Floats x, y, z, w;
-};
-
 #if HWY_TARGET == HWY_SCALAR
 
-HWY_INLINE Lanes4 LoadRows(const float* rows) {
-  return {hn::Load(kFloats, rows), hn::Load(kFloats, rows + 1), hn::Load(kFloats, rows + 2),
-          hn::Load(kFloats, rows + 3)};
-}
+HWY_INLINE Lanes4 LoadRows(const float* rows) { return LoadRow(rows); }
 
 struct Sum {
   double values[4] = {};
@@ -54,28 +41,13 @@ struct Sum {
 
 #else
 
-using RowTag = hn::FixedTag<float, 4>;
-inline constexpr RowTag kRow;
-
 HWY_INLINE Floats Joined(Doubles lower, Doubles upper) {
-  const PartOfFloats part;
+  const HalfFloatTag part;
   return hn::Combine(kFloats, hn::DemoteTo(part, upper), hn::DemoteTo(part, lower));
 }
 
-// From rows x y z w to lanes. The rows of lanes k, k + 4, ... are the blocks of four of rk.
-HWY_INLINE Lanes4 Transposed(Floats r0, Floats r1, Floats r2, Floats r3) {
-  const Doubles xy01 = hn::BitCast(kPart, hn::InterleaveLower(kFloats, r0, r1));
-  const Doubles xy23 = hn::BitCast(kPart, hn::InterleaveLower(kFloats, r2, r3));
-  const Doubles zw01 = hn::BitCast(kPart, hn::InterleaveUpper(kFloats, r0, r1));
-  const Doubles zw23 = hn::BitCast(kPart, hn::InterleaveUpper(kFloats, r2, r3));
-  return {hn::BitCast(kFloats, hn::InterleaveLower(kPart, xy01, xy23)),
-          hn::BitCast(kFloats, hn::InterleaveUpper(kPart, xy01, xy23)),
-          hn::BitCast(kFloats, hn::InterleaveLower(kPart, zw01, zw23)),
-          hn::BitCast(kFloats, hn::InterleaveUpper(kPart, zw01, zw23))};
-}
-
 // Four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
-HWY_INLINE Floats Blocks(const float* base, const std::size_t* offsets) {
+HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
 #if HWY_TARGET == HWY_AVX3
   // A load that fills some of the lanes needs no permutation, as insertions do.
   const auto row = [base, offsets](std::size_t i) HWY_ATTR { return _mm_loadu_ps(base + offsets[i]); };
@@ -84,16 +56,16 @@ HWY_INLINE Floats Blocks(const float* base, const std::size_t* offsets) {
   rows = _mm512_mask_broadcast_f32x4(rows, 0x0F00, row(2));
   return Floats{_mm512_mask_broadcast_f32x4(rows, 0xF000, row(3))};
 #elif HWY_TARGET == HWY_AVX2
-  return hn::Combine(kFloats, hn::LoadU(kRow, base + offsets[1]), hn::LoadU(kRow, base + offsets[0]));
+  return hn::Combine(kFloats, LoadRow(base + offsets[1]), LoadRow(base + offsets[0]));
 #else
-  return hn::LoadU(kRow, base + offsets[0]);
+  return LoadRow(base + offsets[0]);
 #endif
 }
 
 HWY_INLINE Lanes4 LoadRows(const float* rows) {
   constexpr std::size_t kOffsets[] = {0, 16, 32, 48};
-  return Transposed(Blocks(rows, kOffsets), Blocks(rows + 4, kOffsets), Blocks(rows + 8, kOffsets),
-                    Blocks(rows + 12, kOffsets));
+  return Transposed(
+      {RowsAt(rows, kOffsets), RowsAt(rows + 4, kOffsets), RowsAt(rows + 8, kOffsets), RowsAt(rows + 12, kOffsets)});
 }
 
 // x, y, z and error of normals, added up in double.
@@ -106,7 +78,7 @@ struct SumOf {
     for (auto& part : parts) part = hn::Zero(Tag());
   }
   HWY_INLINE void Add(const FaceNormal& n) {
-    const auto row = hn::Load(kRow, &n.x);
+    const Row row = LoadRow(&n.x);
     if constexpr (kRegisters == 1) {
       parts[0] = hn::Add(parts[0], hn::PromoteTo(Tag(), row));
     } else {
@@ -182,9 +154,9 @@ HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::u
     offsets[kRows + i] = kStride * corners[12 * i + 1];
     offsets[2 * kRows + i] = kStride * corners[12 * i + 2];
   }
-  const Floats a0 = Blocks(from, offsets), a1 = Blocks(to, offsets);
-  const Floats b0 = Blocks(from, offsets + kRows), b1 = Blocks(to, offsets + kRows);
-  const Floats c0 = Blocks(from, offsets + 2 * kRows), c1 = Blocks(to, offsets + 2 * kRows);
+  const Floats a0 = RowsAt(from, offsets), a1 = RowsAt(to, offsets);
+  const Floats b0 = RowsAt(from, offsets + kRows), b1 = RowsAt(to, offsets + kRows);
+  const Floats c0 = RowsAt(from, offsets + 2 * kRows), c1 = RowsAt(to, offsets + 2 * kRows);
   return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
 }
 
@@ -196,10 +168,10 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
     const EdgeRows r1 = RowsOfEdges<kStride>(from, to, corners + 3);
     const EdgeRows r2 = RowsOfEdges<kStride>(from, to, corners + 6);
     const EdgeRows r3 = RowsOfEdges<kStride>(from, to, corners + 9);
-    StorePlanes(Transposed(r0.e0, r1.e0, r2.e0, r3.e0), block.start_e, k);
-    StorePlanes(Transposed(r0.f0, r1.f0, r2.f0, r3.f0), block.start_f, k);
-    StorePlanes(Transposed(r0.e1, r1.e1, r2.e1, r3.e1), block.end_e, k);
-    StorePlanes(Transposed(r0.f1, r1.f1, r2.f1, r3.f1), block.end_f, k);
+    StorePlanes(Transposed({r0.e0, r1.e0, r2.e0, r3.e0}), block.start_e, k);
+    StorePlanes(Transposed({r0.f0, r1.f0, r2.f0, r3.f0}), block.start_f, k);
+    StorePlanes(Transposed({r0.e1, r1.e1, r2.e1, r3.e1}), block.end_e, k);
+    StorePlanes(Transposed({r0.f1, r1.f1, r2.f1, r3.f1}), block.end_f, k);
   }
 }
 
@@ -207,21 +179,16 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 // Of half of the lanes of a vector, where there are two.
 HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
-  const PartOfFloats part;
+  const HalfFloatTag part;
   const auto load = [part, lane](const float* plane)
-                        HWY_ATTR { return hn::PromoteTo(kPart, hn::Load(part, plane + lane)); };
+                        HWY_ATTR { return hn::PromoteTo(kDoubles, hn::Load(part, plane + lane)); };
   return {hn::Add(hn::Mul(s, load(a[0])), hn::Mul(t, load(b[0]))),
           hn::Add(hn::Mul(s, load(a[1])), hn::Mul(t, load(b[1]))),
           hn::Add(hn::Mul(s, load(a[2])), hn::Mul(t, load(b[2])))};
 }
 
-HWY_INLINE Doubles3 Cross(const Doubles3& a, const Doubles3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-
 HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, double t) {
-  const Doubles s1 = hn::Set(kPart, 1 - t), t1 = hn::Set(kPart, t);
+  const Doubles s1 = hn::Set(kDoubles, 1 - t), t1 = hn::Set(kDoubles, t);
   return Cross(Lerp(s1, block.start_e, t1, block.end_e, lane), Lerp(s1, block.start_f, t1, block.end_f, lane));
 }
 
@@ -265,18 +232,18 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
   return count;
 }
 
-enum class Layout { kPacked, kStreamed, kPlanes, kOther };
+enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
 
 // Writes kLanes vectors from the first-th on, but for those beyond the end.
-template <Layout kLayout>
+template <ResultLayout kLayout>
 HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
-  if (HWY_LIKELY(kLayout != Layout::kOther && first + kLanes <= result.count)) {
-    if constexpr (kLayout == Layout::kPlanes) {
+  if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
+    if constexpr (kLayout == ResultLayout::kPlanes) {
       hn::StoreU(v.x, kFloats, result.x + first);
       hn::StoreU(v.y, kFloats, result.y + first);
       hn::StoreU(v.z, kFloats, result.z + first);
     } else {
-      StorePacked<kLayout == Layout::kStreamed>(v, result.x + 3 * first);
+      StorePacked<kLayout == ResultLayout::kStreamed>(v, result.x + 3 * first);
     }
     return;
   }
@@ -290,13 +257,13 @@ HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float
 // Calls body with the layout of a result, as a constant.
 template <class Body>
 HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
-  if (result.stride == 1) return body(std::integral_constant<Layout, Layout::kPlanes>());
+  if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
   if (result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2) {
     if (stream && reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0)
-      return body(std::integral_constant<Layout, Layout::kStreamed>());
-    return body(std::integral_constant<Layout, Layout::kPacked>());
+      return body(std::integral_constant<ResultLayout, ResultLayout::kStreamed>());
+    return body(std::integral_constant<ResultLayout, ResultLayout::kPacked>());
   }
-  return body(std::integral_constant<Layout, Layout::kOther>());
+  return body(std::integral_constant<ResultLayout, ResultLayout::kOther>());
 }
 
 // Whether one of the 48 corners of a block is this vertex.
@@ -393,7 +360,7 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
   return count;
 }
 
-template <Layout kLayout>
+template <ResultLayout kLayout>
 HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
                                     const VectorView<float>& result, std::uint32_t* doubtful) {
   const auto last = groups.faces(elements.end() - 1);
