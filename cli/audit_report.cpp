@@ -239,11 +239,17 @@ std::string advice(const Audited& input) {
   if (input.audit.subjects.empty()) return "";
   if (input.audit.error.worst <= kAuditFault)
     return fmt::format("\nnothing to do: no normal is off by more than {:g} degree\n", kAuditFault);
+  const auto& findings = input.audit.findings;
   const auto is_mark = [](const AuditFinding& found) {
     return found.kind == AuditFinding::Kind::kBaked || found.kind == AuditFinding::Kind::kSequenceTargets;
   };
-  if (std::any_of(input.audit.findings.begin(), input.audit.findings.end(), is_mark))
+  const auto has_extras = [&](const AuditFinding& found) { return is_mark(found) && found.count > 0; };
+  if (std::any_of(findings.begin(), findings.end(), has_extras))
     return "\nthe file was baked before: what is off is not between keyframes; bake the original in another way\n";
+  if (std::any_of(findings.begin(), findings.end(), is_mark))
+    return "\nthe file was baked before, with one delta per target, which cannot be right throughout: bake the "
+           "original "
+           "with --encode exact\n";
   if (input.bake.empty())
     return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
   return fmt::format("\nto write normals that are right at every instant: chronormal bake {} -o baked.glb\n",

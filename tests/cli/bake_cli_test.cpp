@@ -125,6 +125,22 @@ TEST_F(BakeCli, a_baked_file_is_copied_as_it_is) {
   }
 }
 
+TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
+  const ProcessResult baked = run("moving.glb -o out.glb --encode endpoint");
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  expect_words(baked.out, {"hills  endpoint", "0 targets and ",
+                           "24 normals that several targets move at once have deltas"
+                           " fitted to the weights of the file\n"});
+  EXPECT_EQ(Json::parse(run("moving.glb -o json.glb --encode endpoint --json").out)["meshes"][0]["fitted_normals"], 24);
+  const auto audit = [&](const std::string& name) {
+    return run_shell(std::string(CHRONORMAL_PROGRAM) + " audit " + name, folder_.path()).out;
+  };
+  expect_words(audit("moving.glb"), {"chronormal bake moving.glb"});
+  expect_words(audit("out.glb"), {"the file was baked before, with one delta per target", "--encode exact"});
+  ASSERT_EQ(run("moving.glb -o exact.glb").exit_code, 0);
+  expect_words(audit("exact.glb"), {"nothing to do"});
+}
+
 TEST_F(BakeCli, without_animations_the_default_is_endpoint_and_exact_writes_formulas) {
   const ProcessResult endpoint = run("still.glb -o out.glb");
   EXPECT_EQ(endpoint.exit_code, 0);
