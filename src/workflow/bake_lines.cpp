@@ -23,12 +23,16 @@ constexpr double kLeastPart = 0.1;
 // Below this part of the terms that it is made of the direction of a normal is not judged.
 constexpr double kLeastLength = 1e-4;
 // What pulls to the best of each target alone: relative to what the weights tell on average, so that those which differ
-// by a hundredth of themselves tell no deltas apart, and to weights of a thousandth, which tell nothing.
+// by a thousandth of themselves tell no deltas apart, and to weights of a thousandth, which tell nothing.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
+// Less than this, radians, is not worth it: directions are rounded to a third of it.
+constexpr double kLeastError = 1e-4;
 // More targets than these at one element keep what each has alone.
 constexpr std::size_t kMostTargets = 64;
 // Weighted deltas that a round adds up, and within limits the fewest poses for each target.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
+// Poses to state the error at: all keys, where elements are few.
+constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kBlock = 64;
 
 using Matrix = std::vector<std::vector<double>>;  // weights: a row for each pose
@@ -110,11 +114,12 @@ class Fit {
       row.part = max_abs(row.alone) > 0 ? 1 / dot(row.alone, row.alone) : 0;
     }
     before_ = error();
+    worst_ = before_.worst;
   }
 
   // The best deltas of all rounds. Returns whether these are better than those of each target alone.
   bool run(std::vector<Vec3d>& deltas) {
-    if (!take_matrix()) return false;
+    if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Error best = before_, last = before_;
     for (int round = 0; round < kRounds; ++round) {
       const std::vector<Vec3d> next = solve_round();
@@ -122,6 +127,7 @@ class Fit {
       const Error now = error();
       if (now.squares < best.squares && now.worst <= before_.worst) {
         best = now;
+        worst_ = now.worst;
         deltas = next;
       }
       if (round > 0 && now.squares > kStandstill * last.squares) break;
@@ -129,6 +135,8 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
+  /// The largest angle that is left.
+  [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:
   // A target, by its place in the element, and its weight.
@@ -168,7 +176,8 @@ class Fit {
     for (const Row& row : rows_) {
       for (const auto& [i, w] : active(row)) {
         for (const auto& [j, v] : active(row)) {
-          if (j <= i) matrix_[i * size + j] += row.part * w * v;
+          if (j > i) break;  // they ascend
+          matrix_[i * size + j] += row.part * w * v;
         }
         trace += row.part * w * w;
       }
@@ -198,6 +207,7 @@ class Fit {
   std::vector<Active> active_;
   std::vector<double> matrix_;  // its factor
   Error before_;
+  double worst_ = 0;
 };
 
 // What the elements are that targets move which are active at once somewhere.
@@ -210,12 +220,11 @@ class Together {
       active_.push_back(i);
       for (const std::uint32_t e : terms.elements(i)) targets_of_[e].push_back(static_cast<std::uint32_t>(i));
     }
-    const std::size_t targets = use.targets();
-    pairs_.resize(targets * targets);
-    for (const std::size_t i : active_) {
-      for (const std::size_t j : active_) {
-        if (j < i) pairs_[i * targets + j] = use.together(i, j);
-      }
+    place_.resize(use.targets());
+    pairs_.resize(active_.size() * active_.size());
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      place_[active_[a]] = a;
+      for (std::size_t b = 0; b < a; ++b) pairs_[a * active_.size() + b] = use.together(active_[a], active_[b]);
     }
   }
 
@@ -223,7 +232,7 @@ class Together {
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {
-      if (!is_shown[e] || targets_of_[e].size() > kMostTargets || !any_pair(targets_of_[e])) continue;
+      if (!is_shown[e] || !any_pair(targets_of_[e])) continue;
       Element& element = result.emplace_back();
       element.index = e;
       element.base = unit(terms_.base_of(e));
@@ -242,7 +251,7 @@ class Together {
   [[nodiscard]] bool any_pair(const std::vector<std::uint32_t>& of) const {
     for (std::size_t a = 0; a < of.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        if (pairs_[of[a] * use_.targets() + of[b]]) return true;
+        if (pairs_[place_[of[a]] * active_.size() + place_[of[b]]]) return true;
       }
     }
     return false;
@@ -264,7 +273,8 @@ class Together {
   const WeightUse& use_;
   std::vector<std::size_t> active_;                     // targets
   std::vector<std::vector<std::uint32_t>> targets_of_;  // of each element, those that are active
-  std::vector<bool> pairs_;                             // (targets, targets), below the diagonal
+  std::vector<std::size_t> place_;                      // of each target, in active_
+  std::vector<bool> pairs_;                             // (active, active), below the diagonal
 };
 
 }  // namespace
@@ -296,17 +306,19 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
   for (std::size_t p = 0; p < poses.size(); ++p)
     judge(poses[p], [&](std::size_t n, const Vec3d& unit) { right[n * poses.size() + p] = rounded(unit); });
   std::vector<char> is_fitted(elements.size());
+  std::vector<double> errors(elements.size());
   numbered_blocks(elements.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       std::vector<Vec3d> deltas = elements[n].deltas;
       Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
       is_fitted[n] = fit.run(deltas) ? 1 : 0;
+      errors[n] = fit.worst();
       elements[n].deltas = std::move(deltas);
     }
   });
   right = std::vector<Rounded>();
-  std::vector<double> errors(elements.size());
-  for (const std::vector<double>& pose : use.sample_count() <= most ? poses : use.samples_with_keys(2 * most))
+  const std::size_t stated = std::clamp(4 * kSums / sums, 2 * most, kMostStated);
+  for (const std::vector<double>& pose : use.sample_count() <= most ? poses : use.samples_with_keys(stated))
     judge(pose, [&](std::size_t n, const Vec3d& unit) {
       errors[n] = std::fmax(errors[n], angle_to(elements[n].shown(pose), unit));
     });

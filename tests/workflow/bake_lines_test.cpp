@@ -234,6 +234,52 @@ TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
   EXPECT_GE(worst, 0.5 * stated);
 }
 
+TEST(BakeLines, what_is_right_already_is_not_fitted_to_rounding) {
+  // Heights over a grid: the sum of linear terms is all there is.
+  test::Hills hills(7);
+  std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
+  for (std::vector<float>& of_target : deltas) {
+    for (std::size_t i = 0; i < of_target.size(); ++i) of_target[i] = i % 3 == 2 ? of_target[i] : 0;
+  }
+  GltfBuilder builder;
+  builder.add_node(builder.add_mesh(hills.primitive(builder, deltas)));
+  builder.add_animation("move");
+  builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0.5F, 0.5F, 1});
+  const Baked baked = test::bake_document(builder, endpoint());
+  EXPECT_EQ(baked.report.meshes[0].fitted_elements, 0U);
+  EXPECT_LT(error_on_track(baked, baked).worst, 1e-4);
+}
+
+TEST(BakeLines, more_targets_than_are_fitted_are_judged_all_the_same) {
+  GltfBuilder builder = test::hills_document(65, 2);
+  std::vector<float> last(65, 0.05F), values(65, 0.0F);
+  values.insert(values.end(), last.begin(), last.end());
+  builder.add_track(0, 0, std::vector<float>{0, 1}, values);
+  const Baked baked = test::bake_document(builder, endpoint());
+  ASSERT_EQ(baked.error, "");
+  EXPECT_EQ(baked.report.meshes[0].fitted_elements, 0U);
+  const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
+  EXPECT_LE(worst, 1.02 * stated);
+}
+
+TEST(BakeLines, a_wink_in_a_long_animation_counts) {
+  GltfBuilder builder = test::hills_document(2, 3);
+  std::vector<float> times, values;
+  for (int key = 0; key < 8000; ++key) {
+    times.push_back(static_cast<float>(key));
+    const bool wink = key == 4321;
+    values.push_back(wink ? 1.0F : 0.01F);
+    values.push_back(wink ? 1.0F : 0.01F);
+  }
+  builder.add_track(0, 0, times, values, "STEP");
+  const Baked baked = test::bake_document(builder, endpoint());
+  ASSERT_EQ(baked.error, "");
+  const ShownError error = test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0,
+                                             {{{1, 1}, {1, 1}}, {{0.01F, 0.01F}, {0.01F, 0.01F}}});
+  EXPECT_GT(error.worst, 1);
+  EXPECT_LE(error.worst, baked.report.meshes[0].largest_error + 1e-3);
+}
+
 TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_error_is_stated) {
   GltfBuilder builder = test::hills_document(3, 5);
   // So little that the third target is off by most.

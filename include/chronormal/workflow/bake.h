@@ -4,7 +4,7 @@
 ///                every instant in every host that adds up targets
 ///     endpoint   the best single delta per target (normals/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
-///                squares (analysis/delta_fit.h)
+///                squares (docs/theory.md, eq. 44)
 ///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_H_
@@ -56,7 +56,7 @@ struct BakedMesh {
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t without_base = 0;    ///< vertices whose faces have no area in the base: see docs/cli.md
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
-  /// active together are held against the weights of the file, at keys and fifteen instants between any two.
+  /// active together are held against the weights of the file, at keys and up to fifteen instants between any two.
   double largest_error = 0;
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
