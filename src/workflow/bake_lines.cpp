@@ -312,7 +312,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
       std::vector<Vec3d> deltas = elements[n].deltas;
       Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
       is_fitted[n] = fit.run(deltas) ? 1 : 0;
-      errors[n] = fit.worst();
+      if (fit.worst() > kLeastError) errors[n] = fit.worst();  // else it is the rounding
       elements[n].deltas = std::move(deltas);
     }
   });

@@ -248,6 +248,7 @@ TEST(BakeLines, what_is_right_already_is_not_fitted_to_rounding) {
   const Baked baked = test::bake_document(builder, endpoint());
   EXPECT_EQ(baked.report.meshes[0].fitted_elements, 0U);
   EXPECT_LT(error_on_track(baked, baked).worst, 1e-4);
+  EXPECT_LT(baked.report.meshes[0].largest_error, 1e-4);
 }
 
 TEST(BakeLines, more_targets_than_are_fitted_are_judged_all_the_same) {
