@@ -437,7 +437,12 @@ NormalCurves CurveBuilder::of_control_normals(std::span<const ControlNormals> no
 
 NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
                                     NormalCurves* reuse) {
-  return build(segment.topology->face_count(), options, threads, reuse, [&] { return FaceNormals(segment); });
+  const std::size_t faces = segment.topology->face_count();
+  if (segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered) {
+    const EndsSideBySide ends(segment, threads);
+    return build(faces, options, threads, reuse, [&] { return FaceNormals(ends.segment()); });
+  }
+  return build(faces, options, threads, reuse, [&] { return FaceNormals(segment); });
 }
 
 NormalCurves CurveBuilder::of_groups(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,

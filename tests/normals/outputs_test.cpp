@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/group_normals.h"
+#include "normals/coherence.h"
 #include "normals/kernels/targets.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
@@ -302,6 +304,23 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
       const ThreadLimit limit(threads);
       EXPECT_EQ(faces, everything(NormalCurves::of_faces(segment, options, Threads::kAll))) << threads;
       EXPECT_EQ(vertices, everything(NormalCurves::of_groups(segment, groups, options, Threads::kAll))) << threads;
+    }
+  }
+}
+
+// Where neighbours are not neighbours in memory both ends of a vertex are put side by side first.
+TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
+  const Motion motion = test::shuffled_grid(150);
+  const Segment segment = motion.segment(0);
+  ASSERT_GT(lines_per_face(motion.topology), 2);
+  const NormalGroups groups =
+      NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+  for (const double tolerance : {1e-6, 1e-3}) {
+    for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+      EXPECT_EQ(everything(NormalCurves::of_faces(segment, {tolerance}, threads)),
+                everything(NormalCurves(all_face_control_normals(segment), {tolerance})));
+      EXPECT_EQ(everything(NormalCurves::of_groups(segment, groups, {tolerance}, threads)),
+                everything(NormalCurves(all_group_control_normals(segment, groups), {tolerance})));
     }
   }
 }

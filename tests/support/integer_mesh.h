@@ -75,6 +75,29 @@ namespace chronormal::test {
   return motion;
 }
 
+/// The same with vertices and faces in no order.
+[[nodiscard]] inline Motion shuffled_grid(std::size_t cells, std::uint64_t seed = 91) {
+  Motion motion = integer_grid(cells, seed);
+  fixtures::Random random(seed);
+  std::vector<std::uint32_t> place(motion.topology.vertex_count());
+  for (std::uint32_t v = 0; v < place.size(); ++v) place[v] = v;
+  for (std::size_t v = place.size(); v > 1; --v) std::swap(place[v - 1], place[random.below(v)]);
+  for (Motion::Keyframe& key : motion.keyframes) {
+    const std::vector<float> ordered = key.positions;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) key.positions[3 * place[v] + c] = ordered[3 * v + c];
+    }
+  }
+  std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
+  for (std::uint32_t& corner : corners) corner = place[corner];
+  for (std::size_t f = corners.size() / 3; f > 1; --f) {
+    const std::size_t other = random.below(f);
+    for (std::size_t c = 0; c < 3; ++c) std::swap(corners[3 * (f - 1) + c], corners[3 * other + c]);
+  }
+  motion.topology = fixtures::make_triangles(place.size(), std::move(corners));
+  return motion;
+}
+
 }  // namespace chronormal::test
 
 #endif  // CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
