@@ -214,7 +214,7 @@ class Fit {
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)
-      : terms_(terms), use_(use), targets_of_(shading.groups.size()) {
+      : terms_(terms), targets_of_(shading.groups.size()) {
     for (std::size_t i = 0; i < use.targets(); ++i) {
       if (shading.set.targets[i].vertices.empty() || !use.together(i, i)) continue;
       active_.push_back(i);
@@ -270,7 +270,6 @@ class Together {
   }
 
   const NormalTerms& terms_;
-  const WeightUse& use_;
   std::vector<std::size_t> active_;                     // targets
   std::vector<std::vector<std::uint32_t>> targets_of_;  // of each element, those that are active
   std::vector<std::size_t> place_;                      // of each target, in active_
