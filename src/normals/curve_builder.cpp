@@ -181,6 +181,8 @@ class GroupNormals {
 
 // Above this many cache lines for each face, neighbours in the mesh are not neighbours in memory.
 constexpr double kScattered = 1;
+// Positions of both ends that a cache near the core holds in any order; looking at the order would take longer.
+constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 // Up to here the control normals of all faces may be held for a while: half a gigabyte.
 constexpr std::size_t kMostRows = std::size_t{4} << 20;
 
@@ -438,7 +440,8 @@ NormalCurves CurveBuilder::of_control_normals(std::span<const ControlNormals> no
 NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
                                     NormalCurves* reuse) {
   const std::size_t faces = segment.topology->face_count();
-  if (segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered) {
+  const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
+  if (!near && segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered) {
     const EndsSideBySide ends(segment, threads);
     return build(faces, options, threads, reuse, [&] { return FaceNormals(ends.segment()); });
   }

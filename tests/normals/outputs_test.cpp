@@ -310,7 +310,7 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
 
 // Where neighbours are not neighbours in memory both ends of a vertex are put side by side first.
 TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
-  const Motion motion = test::shuffled_grid(150);
+  const Motion motion = test::shuffled_grid(220);
   const Segment segment = motion.segment(0);
   ASSERT_GT(lines_per_face(motion.topology), 2);
   const NormalGroups groups =
