@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
+
+#include "core/cholesky.h"
 
 namespace chronormal {
 namespace {
@@ -18,39 +19,19 @@ Vec3d at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// A positive definite system, by Cholesky's factors.
-class Factors {
- public:
-  // Of the rows and columns of a symmetric matrix of `size` that are named.
-  Factors(const std::vector<double>& matrix, std::size_t size, std::span<const std::uint32_t> named)
-      : count_(named.size()), lower_(count_ * count_) {
-    double trace = 0;
-    for (const std::uint32_t i : named) trace += matrix[i * size + i];
-    const double ridge = trace > 0 ? kRidge * trace / static_cast<double>(count_) : 1;
-    for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        double sum = matrix[named[i] * size + named[j]] + (i == j ? ridge : 0);
-        for (std::size_t k = 0; k < j; ++k) sum -= lower_[i * count_ + k] * lower_[j * count_ + k];
-        lower_[i * count_ + j] = i == j ? std::sqrt(std::max(sum, ridge)) : sum / lower_[j * count_ + j];
-      }
-    }
+// The system of the targets that are named, from the normal equations of all.
+Cholesky factor(const std::vector<double>& matrix, std::size_t size, std::span<const std::uint32_t> named) {
+  const std::size_t count = named.size();
+  std::vector<double> part(count * count);
+  double trace = 0;
+  for (const std::uint32_t i : named) trace += matrix[i * size + i];
+  const double ridge = trace > 0 ? kRidge * trace / static_cast<double>(count) : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j <= i; ++j)
+      part[i * count + j] = matrix[named[i] * size + named[j]] + (i == j ? ridge : 0);
   }
-
-  void solve(std::span<Vec3d> values) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t k = 0; k < i; ++k) values[i] = values[i] - lower_[i * count_ + k] * values[k];
-      values[i] = (1 / lower_[i * count_ + i]) * values[i];
-    }
-    for (std::size_t i = count_; i-- > 0;) {
-      for (std::size_t k = i + 1; k < count_; ++k) values[i] = values[i] - lower_[k * count_ + i] * values[k];
-      values[i] = (1 / lower_[i * count_ + i]) * values[i];
-    }
-  }
-
- private:
-  std::size_t count_;
-  std::vector<double> lower_;
-};
+  return Cholesky(std::move(part), count, ridge);
+}
 
 // Which targets have a delta at each element, and where in its list.
 struct Entry {
@@ -100,7 +81,7 @@ void DeltaFit::add(std::span<const double> weights, std::span<const Vec3d> missi
 
 void DeltaFit::solve() {
   const std::size_t targets = right_.size();
-  std::optional<Factors> factors;  // of the last element: neighbours mostly have the same targets
+  std::optional<Cholesky> factors;  // of the last element: neighbours mostly have the same targets
   std::vector<std::uint32_t> factored;
   for (const std::vector<Entry>& entries : entries_of_elements(deltas_)) {
     if (entries.empty()) continue;
@@ -110,7 +91,7 @@ void DeltaFit::solve() {
       named.push_back(entry.target);
       values.push_back(right_[entry.target][entry.place]);
     }
-    if (!factors || named != factored) factors.emplace(matrix_, targets, named);
+    if (!factors || named != factored) factors = factor(matrix_, targets, named);
     factored = std::move(named);
     factors->solve(values);
     for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -9,6 +9,7 @@
 
 #include "chronormal/normals/end_delta.h"
 #include "core/blocks.h"
+#include "core/cholesky.h"
 
 namespace chronormal {
 namespace {
@@ -64,36 +65,12 @@ struct Element {
 };
 
 // How far one element is off, over all poses.
-struct Error {
+struct Misfit {
   double squares = 0, worst = 0;
 };
 
 double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
-}
-
-// The lower factor of a positive definite matrix, (k, k), in its place.
-void factor(std::vector<double>& matrix, std::size_t size) {
-  const auto at = [&](std::size_t i, std::size_t j) -> double& { return matrix[i * size + j]; };
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = at(i, j);
-      for (std::size_t k = 0; k < j; ++k) sum -= at(i, k) * at(j, k);
-      at(i, j) = i == j ? std::sqrt(sum) : sum / at(j, j);
-    }
-  }
-}
-
-void solve(const std::vector<double>& lower, std::vector<Vec3d>& values) {
-  const std::size_t size = values.size();
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < i; ++k) values[i] = values[i] - lower[i * size + k] * values[k];
-    values[i] = (1 / lower[i * size + i]) * values[i];
-  }
-  for (std::size_t i = size; i-- > 0;) {
-    for (std::size_t k = i + 1; k < size; ++k) values[i] = values[i] - lower[k * size + i] * values[k];
-    values[i] = (1 / lower[i * size + i]) * values[i];
-  }
 }
 
 // The fit of one element.
@@ -120,11 +97,11 @@ class Fit {
   // The best deltas of all rounds. Returns whether these are better than those of each target alone.
   bool run(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
-    Error best = before_, last = before_;
+    Misfit best = before_, last = before_;
     for (int round = 0; round < kRounds; ++round) {
       const std::vector<Vec3d> next = solve_round();
       for (Row& row : rows_) row.shown = shown(row, next);
-      const Error now = error();
+      const Misfit now = error();
       if (now.squares < best.squares && now.worst <= before_.worst) {
         best = now;
         worst_ = now.worst;
@@ -159,8 +136,8 @@ class Fit {
     return sum;
   }
 
-  [[nodiscard]] Error error() const {
-    Error error;
+  [[nodiscard]] Misfit error() const {
+    Misfit error;
     for (const Row& row : rows_) {
       const double angle = angle_to(row.shown, row.right);
       error.squares += angle * angle;
@@ -171,13 +148,13 @@ class Fit {
 
   bool take_matrix() {
     const std::size_t size = alone_.targets.size();
-    matrix_.assign(size * size, 0.0);
+    std::vector<double> matrix(size * size);
     double trace = 0, all = 0;
     for (const Row& row : rows_) {
       for (const auto& [i, w] : active(row)) {
         for (const auto& [j, v] : active(row)) {
           if (j > i) break;  // they ascend
-          matrix_[i * size + j] += row.part * w * v;
+          matrix[i * size + j] += row.part * w * v;
         }
         trace += row.part * w * w;
       }
@@ -185,8 +162,8 @@ class Fit {
     }
     const double ridge = kRidge * trace / static_cast<double>(size) + kLeastWeight * kLeastWeight * all;
     if (!(ridge > 0) || !std::isfinite(ridge)) return false;
-    for (std::size_t i = 0; i < size; ++i) matrix_[i * size + i] += ridge;
-    factor(matrix_, size);
+    for (std::size_t i = 0; i < size; ++i) matrix[i * size + i] += ridge;
+    matrix_ = Cholesky(std::move(matrix), size, ridge);
     return true;
   }
 
@@ -197,7 +174,7 @@ class Fit {
       const Vec3d missing = row.part * (along * row.right - row.alone);
       for (const auto& [k, w] : active(row)) values[k] = values[k] + w * missing;
     }
-    solve(matrix_, values);
+    matrix_.solve(values);
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = values[k] + alone_.deltas[k];
     return values;
   }
@@ -205,8 +182,8 @@ class Fit {
   const Element& alone_;
   std::vector<Row> rows_;
   std::vector<Active> active_;
-  std::vector<double> matrix_;  // its factor
-  Error before_;
+  Cholesky matrix_;  // of the normal equations
+  Misfit before_;
   double worst_ = 0;
 };
 

@@ -1,0 +1,53 @@
+/// Systems with a symmetric positive definite matrix, such as normal equations with a ridge.
+#ifndef CHRONORMAL_CORE_CHOLESKY_H_
+#define CHRONORMAL_CORE_CHOLESKY_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// The lower factor of a matrix. O(n^3), and O(n^2) for each solve().
+class Cholesky {
+ public:
+  Cholesky() = default;
+  /// Of a matrix (n, n), of which the lower half is read. No squared pivot becomes smaller than `least`, which rounding
+  /// could make negative. least must be positive
+  Cholesky(std::vector<double> matrix, std::size_t n, double least) : lower_(std::move(matrix)), n_(n) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = at(i, j);
+        for (std::size_t k = 0; k < j; ++k) sum -= at(i, k) * at(j, k);
+        lower_[i * n_ + j] = i == j ? std::sqrt(std::max(sum, least)) : sum / at(j, j);
+      }
+    }
+  }
+
+  /// Replaces right sides by the solution. values must have n elements
+  void solve(std::span<Vec3d> values) const {
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t k = 0; k < i; ++k) values[i] = values[i] - at(i, k) * values[k];
+      values[i] = (1 / at(i, i)) * values[i];
+    }
+    for (std::size_t i = n_; i-- > 0;) {
+      for (std::size_t k = i + 1; k < n_; ++k) values[i] = values[i] - at(k, i) * values[k];
+      values[i] = (1 / at(i, i)) * values[i];
+    }
+  }
+
+ private:
+  [[nodiscard]] double at(std::size_t i, std::size_t j) const { return lower_[i * n_ + j]; }
+
+  std::vector<double> lower_;
+  std::size_t n_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_CHOLESKY_H_
