@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::size_t kChunkTiles = 32;
 constexpr std::size_t kChunk = kChunkTiles * kTile;
+constexpr std::size_t kWrittenTiles = 4;  // by one call of a source
 
 // Elements that a thread makes at a time: enough that windows of faces and moves at the end cost little, and several
 // for each thread. Of the size alone, and so the same for any number of threads.
@@ -241,8 +242,11 @@ class CurveBuilder::PartBuilder {
   void add_chunk(Source& source, IndexRange elements) {
     const std::size_t tile_count = (elements.count + kTile - 1) / kTile;
     const std::span<ControlTile> tiles(tiles_.data(), tile_count);
-    fetch_destination();
-    source.write(elements, tiles);
+    for (std::size_t k = 0; k < tile_count; k += kWrittenTiles) {
+      const std::size_t count = std::min(kWrittenTiles, tile_count - k), first = k * kTile;
+      fetch_destination(k, count);
+      source.write({elements.first + first, std::min(count * kTile, elements.count - first)}, tiles.subspan(k, count));
+    }
     TileSummary summaries[kChunkTiles];
     summarize_tiles(tiles, limits_, std::span(summaries, tile_count));
 
@@ -275,12 +279,14 @@ class CurveBuilder::PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Asks for the memory that the blocks of the next chunk will go to, as many bytes as the last one had: it comes while
-  // their tiles are computed.
-  void fetch_destination() const {
+  // Asks for the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had: it comes
+  // while tiles are computed, a little at a time, for the core would wait where more is asked for than can be under way.
+  void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
     constexpr std::size_t kCacheLine = 64;
-    for (std::size_t i = 0; i < chunk_bytes_; i += kCacheLine) __builtin_prefetch(part_.begin + part_.bytes + i, 1);
+    const std::size_t each = chunk_bytes_ / kChunkTiles;
+    const std::byte* const destination = part_.begin + part_.bytes + tile * each;
+    for (std::size_t i = 0; i < count * each; i += kCacheLine) __builtin_prefetch(destination + i, 1);
 #endif
   }
 

@@ -278,7 +278,8 @@ HWY_INLINE void FaceTile(const Segment& segment, bool rows, std::size_t first, s
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {
     const bool far = TriangleTile(segment, rows, corners, tile);
-    if (far && first + (kAhead + 1) * kTile <= end) PrefetchPoints(segment, corners + 3 * kAhead * kTile, 3 * kTile);
+    if (far && first + (kAhead + 1) * kTile <= topology.face_count())
+      PrefetchPoints(segment, corners + 3 * kAhead * kTile, 3 * kTile);
     return;
   }
   std::uint32_t repeated[3 * kTile];
