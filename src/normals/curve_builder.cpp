@@ -279,8 +279,9 @@ class CurveBuilder::PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Asks for the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had: it comes
-  // while tiles are computed, a little at a time, for the core would wait where more is asked for than can be under way.
+  // Asks for the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had: it
+  // comes while tiles are computed, a little at a time, for the core would wait where more is asked for than can be
+  // under way.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
     constexpr std::size_t kCacheLine = 64;

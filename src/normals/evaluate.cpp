@@ -18,10 +18,9 @@ namespace {
 
 // What one thread does at a time, and below which there is nothing to share out.
 constexpr std::size_t kPiece = 16384;
-// What stays in the cache of a core while many t are evaluated; few enough streams of results, each long enough.
-constexpr std::size_t kManyTimes = 8192;
-
-bool is_aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % 64 == 0; }
+// Of how many elements many t are evaluated before the next ones: as many as stay in the nearest cache; and where
+// results go past the caches, as many as let each of these streams be long.
+constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 float clamped_to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -69,7 +68,8 @@ std::size_t NormalCurves::evaluate_range(IndexRange range, double t, const Curve
     const auto kind = static_cast<BlockKind>(run->kind);
     const std::size_t end = std::min((run->first_block + run->block_count) * kTile, range.end());
     const std::size_t skipped = element - run->first_block * kTile;
-    output.write({blocks_.data() + run->offset + skipped * bytes_of(kind), kind, end - element}, weights, element);
+    const std::byte* const blocks = blocks_.data() + run->offset + skipped * bytes_of(kind);
+    output.write({blocks, kind, end - element}, weights, element);
     element = end;
   }
 
@@ -94,7 +94,7 @@ std::size_t NormalCurves::write_flagged(IndexRange range, double t, const Output
 }
 
 std::size_t NormalCurves::write_flagged(double t, VectorView<float> result) const noexcept {
-  return write_flagged({0, size_}, t, PlanesOutput{result});
+  return write_flagged({0, size_}, t, PlanesOutput(result, Reach::kCaches));
 }
 
 template <class Output>
@@ -105,15 +105,16 @@ std::size_t NormalCurves::evaluate_all(double t, const Output& output, Threads t
 }
 
 template <class Output>
-std::size_t NormalCurves::evaluate_many(std::span<const double> times, std::span<const Output> outputs,
+std::size_t NormalCurves::evaluate_many(std::span<const double> times, std::span<const Output> outputs, Reach reach,
                                         Threads threads) const {
   if (size_ == 0) return 0;
+  const std::size_t step = reach == Reach::kCaches ? kManyTimes : kManyTimesLarge;
   std::vector<CurveWeights> weights;
   for (const double t : times) weights.push_back(CurveWeights::at(t, !keeps_lengths_));
   return over_pieces(threads, kPiece, [&](IndexRange piece) {
     std::size_t without_direction = 0;
-    for (std::size_t first = piece.first; first < piece.end(); first += kManyTimes) {
-      const IndexRange range{first, std::min(kManyTimes, piece.end() - first)};
+    for (std::size_t first = piece.first; first < piece.end(); first += step) {
+      const IndexRange range{first, std::min(step, piece.end() - first)};
       for (std::size_t k = 0; k < times.size(); ++k)
         without_direction += evaluate_range(range, times[k], weights[k], outputs[k]);
     }
@@ -137,34 +138,33 @@ std::size_t NormalCurves::over_pieces(Threads threads, std::size_t piece, Body b
 
 std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
   assert(result.count == size_);
-  const bool stream = blocks_.size() + size_ * 3 * sizeof(float) > kStreamFrom && is_aligned(result.x);
-  return with_output(result, stream, [&](const auto& output) { return evaluate_all(t, output, threads); });
+  return with_output(result, reach_of(blocks_.size(), size_ * 3 * sizeof(float)),
+                     [&](const auto& output) { return evaluate_all(t, output, threads); });
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
   assert(result.size() == size_);
-  const bool stream = blocks_.size() + size_ * sizeof(Octahedral) > kStreamFrom && is_aligned(result.data());
-  return evaluate_all(t, OctahedralOutput{result, stream}, threads);
+  return evaluate_all(t, OctahedralOutput(result, reach_of(blocks_.size(), size_ * sizeof(Octahedral))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Threads threads) const {
   assert(result.size() == size_);
-  return evaluate_all(t, Rgb10A2Output{result}, threads);
+  return evaluate_all(t, Rgb10A2Output(result, reach_of(blocks_.size(), size_ * sizeof(Rgb10A2))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                                        Threads threads) const {
   assert(results.size() == times.size());
-  const bool large = blocks_.size() + times.size() * size_ * 3 * sizeof(float) > kStreamFrom;
+  const Reach reach = reach_of(blocks_.size(), times.size() * size_ * 3 * sizeof(float));
   if (std::all_of(results.begin(), results.end(), is_packed)) {
     std::vector<PackedOutput> outputs;
-    for (const auto& result : results) outputs.push_back({result, large && is_aligned(result.x)});
-    return evaluate_many<PackedOutput>(times, outputs, threads);
+    for (const auto& result : results) outputs.emplace_back(result, reach);
+    return evaluate_many<PackedOutput>(times, outputs, reach, threads);
   }
   if (std::all_of(results.begin(), results.end(), [](const auto& result) { return result.stride == 1; })) {
     std::vector<PlanesOutput> outputs;
-    for (const auto& result : results) outputs.push_back({result});
-    return evaluate_many<PlanesOutput>(times, outputs, threads);
+    for (const auto& result : results) outputs.emplace_back(result, reach);
+    return evaluate_many<PlanesOutput>(times, outputs, reach, threads);
   }
   std::size_t without_direction = 0;
   for (std::size_t k = 0; k < times.size(); ++k) without_direction += unit_normals(times[k], results[k], threads);
@@ -175,12 +175,12 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
                                        Threads threads) const {
   assert(results.size() == times.size());
   std::vector<OctahedralOutput> outputs;
-  const bool large = blocks_.size() + times.size() * size_ * sizeof(Octahedral) > kStreamFrom;
+  const Reach reach = reach_of(blocks_.size(), times.size() * size_ * sizeof(Octahedral));
   for (const auto& result : results) {
     assert(result.size() == size_);
-    outputs.push_back({result, large && is_aligned(result.data())});
+    outputs.emplace_back(result, reach);
   }
-  return evaluate_many<OctahedralOutput>(times, outputs, threads);
+  return evaluate_many<OctahedralOutput>(times, outputs, reach, threads);
 }
 
 void NormalCurves::normals(double t, VectorView<float> result) const noexcept {

@@ -20,44 +20,63 @@ namespace chronormal {
   return view.stride == 3 && view.y == view.x + 1 && view.z == view.x + 2;
 }
 
+/// The reach of results in such arrays: these can go past the caches if all begin at a cache line.
+template <class... Pointer>
+[[nodiscard]] Reach reach_into(Reach reach, Pointer... arrays) {
+  return ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...) ? reach : Reach::kCaches;
+}
+
 struct PackedOutput {
-  VectorView<float> result;
-  bool stream = false;
+  PackedOutput(const VectorView<float>& view, Reach of_pass) : result(view), reach(reach_into(of_pass, view.x)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
-    evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, stream});
+    evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, reach});
   }
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
+
+  VectorView<float> result;
+  Reach reach;
 };
 
 struct PlanesOutput {
-  VectorView<float> result;
+  PlanesOutput(const VectorView<float>& view, Reach of_pass)
+      : result(view), reach(reach_into(of_pass, view.x, view.y, view.z)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
-    evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first});
+    evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first, reach});
   }
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
+
+  VectorView<float> result;
+  Reach reach;
 };
 
 struct OctahedralOutput {
-  std::span<Octahedral> result;
-  bool stream = false;
+  OctahedralOutput(std::span<Octahedral> normals, Reach of_pass)
+      : result(normals), reach(reach_into(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Octahedral) == sizeof(std::uint32_t));
-    evaluate_blocks(span, weights, OctahedralResult{&result[first].bits, stream});
+    evaluate_blocks(span, weights, OctahedralResult{&result[first].bits, reach});
   }
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_octahedral(v); }
+
+  std::span<Octahedral> result;
+  Reach reach;
 };
 
 struct Rgb10A2Output {
-  std::span<Rgb10A2> result;
+  Rgb10A2Output(std::span<Rgb10A2> normals, Reach of_pass)
+      : result(normals), reach(reach_into(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Rgb10A2) == sizeof(std::uint32_t));
-    evaluate_blocks(span, weights, Rgb10A2Result{&result[first].bits});
+    evaluate_blocks(span, weights, Rgb10A2Result{&result[first].bits, reach});
   }
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_rgb10a2(v); }
+
+  std::span<Rgb10A2> result;
+  Reach reach;
 };
 
 /// Any other form, by a function of index and vector: through planes on the stack, a few blocks at a time.
@@ -70,7 +89,8 @@ struct AnyOutput {
     alignas(64) float x[kCount], y[kCount], z[kCount];
     for (std::size_t i = 0; i < span.elements; i += kCount) {
       const std::size_t count = std::min(kCount, span.elements - i);
-      evaluate_blocks({span.blocks + i * bytes_of(span.kind), span.kind, count}, weights, PlanesResult{x, y, z});
+      const BlockSpan some{span.blocks + i * bytes_of(span.kind), span.kind, count};
+      evaluate_blocks(some, weights, PlanesResult{x, y, z, Reach::kCaches});
       for (std::size_t k = 0; k < count; ++k) set(first + i + k, {x[k], y[k], z[k]});
     }
   }
@@ -81,9 +101,9 @@ AnyOutput(Set) -> AnyOutput<Set>;
 
 /// Calls body(output) with the form that a view has; returns what it returns.
 template <class Body>
-auto with_output(const VectorView<float>& result, bool stream, Body body) {
-  if (is_packed(result)) return body(PackedOutput{result, stream});
-  if (result.stride == 1) return body(PlanesOutput{result});
+auto with_output(const VectorView<float>& result, Reach of_pass, Body body) {
+  if (is_packed(result)) return body(PackedOutput(result, of_pass));
+  if (result.stride == 1) return body(PlanesOutput(result, of_pass));
   return body(AnyOutput{[result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
 }
 

@@ -16,6 +16,7 @@
 #include "chronormal/normals/evaluate.h"
 #include "chronormal/normals/group_normals.h"
 #include "normals/coherence.h"
+#include "normals/kernels/evaluate.h"
 #include "normals/kernels/targets.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
@@ -346,37 +347,74 @@ TEST(ReusedCurves, are_those_that_were_never_used) {
 
 // ---- results that go past the caches -------------------------------------------------------------------------------
 
-// Above 64 MiB aligned results are streamed, others are not.
-TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
-  if (kSanitizer) GTEST_SKIP() << "slow under a sanitizer; many_t covers the stores";
-  const std::size_t faces = (std::size_t{64} << 20) / 12 + 37;
-  Motion motion = test::integer_grid(50);
-  const auto corners = motion.topology.corners();
+// A grid again and again, until there are so many faces.
+Topology repeated_grid(const Topology& grid, std::size_t faces) {
+  const auto corners = grid.corners();
   std::vector<std::uint32_t> repeated;
   repeated.reserve(3 * faces);
-  while (repeated.size() < 3 * faces)
-    repeated.insert(
-        repeated.end(), corners.begin(),
-        corners.begin() + static_cast<std::ptrdiff_t>(std::min(corners.size(), 3 * faces - repeated.size())));
-  motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), std::move(repeated));
-  const NormalCurves curves = NormalCurves::of_faces(motion.segment(0), {1e-3}, Threads::kAll);
-  ASSERT_EQ(curves.size(), faces);
+  while (repeated.size() < 3 * faces) {
+    const std::size_t count = std::min(corners.size(), 3 * faces - repeated.size());
+    repeated.insert(repeated.end(), corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  return fixtures::make_triangles(grid.vertex_count(), std::move(repeated));
+}
 
-  Guarded<float> streamed(3 * faces, 0), stored(3 * faces, 1);
-  const auto a = VectorView<float>::packed(streamed.data(), faces), b = VectorView<float>::packed(stored.data(), faces);
-  const std::size_t count = curves.unit_normals(0.3, b);
+// Evaluates to aligned memory, on one thread and on all, and to memory one word off, which is never streamed.
+template <class T, class Evaluate>
+void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
+  Guarded<T> streamed(words, 0), stored(words, 1);
+  const std::size_t count = evaluate(stored.data(), Threads::kOne);
   for (const Threads threads : {Threads::kOne, Threads::kAll}) {
-    EXPECT_EQ(curves.unit_normals(0.3, a, threads), count);
-    EXPECT_EQ(std::memcmp(streamed.data(), stored.data(), 12 * faces), 0);
+    EXPECT_EQ(evaluate(streamed.data(), threads), count);
+    EXPECT_EQ(std::memcmp(streamed.data(), stored.data(), sizeof(T) * words), 0);
     EXPECT_TRUE(streamed.is_intact() && stored.is_intact());
-    std::fill_n(streamed.data(), 3 * faces, 2.0F);
+    std::fill_n(streamed.data(), words, T{});
+  }
+}
+
+TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
+  if (kSanitizer) GTEST_SKIP() << "slow under a sanitizer; many_t covers the stores";
+  for (const auto& [faces, reach] :
+       {std::pair{std::size_t{1'000'037}, Reach::kShared}, std::pair{std::size_t{1'500'037}, Reach::kMemory}}) {
+    SCOPED_TRACE(faces);
+    Motion motion = test::integer_grid(50);
+    motion.topology = repeated_grid(motion.topology, faces);
+    const NormalCurves curves = NormalCurves::of_faces(motion.segment(0), {}, Threads::kAll);
+    ASSERT_EQ(curves.size(), faces);
+    std::size_t blocks = 0;
+    for (const auto& [bytes, elements] : curves.byte_counts()) blocks += bytes * elements;
+    EXPECT_EQ(reach_of(blocks, 12 * faces), reach) << blocks;
+    EXPECT_EQ(reach_of(blocks, 4 * faces), reach) << blocks;
+
+    expect_streamed_as_stored<float>(3 * faces, [&](float* xyz, Threads threads) {
+      return curves.unit_normals(0.3, VectorView<float>::packed(xyz, faces), threads);
+    });
+    const std::size_t plane = (faces + 15) / 16 * 16;
+    expect_streamed_as_stored<float>(3 * plane, [&](float* x, Threads threads) {
+      for (std::size_t k = 0; k < 3; ++k) std::fill(x + k * plane + faces, x + (k + 1) * plane, 0.0F);
+      return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane, faces), threads);
+    });
+    expect_streamed_as_stored<float>(3 * plane, [&](float* x, Threads threads) {  // one plane of three, or two, aligned
+      std::fill(x + faces, x + plane, 0.0F);
+      std::fill(x + plane + faces, x + 2 * plane - 1, 0.0F);
+      std::fill(x + 2 * plane - 1 + faces, x + 3 * plane, 0.0F);
+      return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane - 1, faces), threads);
+    });
+    expect_streamed_as_stored<Octahedral>(faces, [&](Octahedral* words, Threads threads) {
+      return curves.unit_normals(0.3, std::span(words, faces), threads);
+    });
+    expect_streamed_as_stored<Rgb10A2>(faces, [&](Rgb10A2* words, Threads threads) {
+      return curves.unit_normals(0.3, std::span(words, faces), threads);
+    });
   }
 }
 
 TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
   const auto elements = mixed_elements(70007, 98);
-  // Times 70,007 elements: above 64 MiB of results.
-  constexpr std::size_t kManyPacked = 80, kManyOctahedral = 240;
+  constexpr std::size_t kManyVectors = 36, kManyOctahedral = 100;
+  EXPECT_EQ(reach_of(0, kManyVectors * 12 * elements.size()), Reach::kShared);
+  EXPECT_EQ(reach_of(0, kManyOctahedral * 4 * elements.size()), Reach::kShared);
+  const std::size_t plane = (elements.size() + 15) / 16 * 16;
   for (const std::int64_t target : supported_targets()) {
     if (kSanitizer && target != current_target()) continue;
     const ScopedTarget scoped(target);
@@ -384,21 +422,26 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
     for (const double tolerance : {1e-6, 5e-3}) {
       const NormalCurves curves(elements, {tolerance});
       // All to the same memory: the last t stays.
-      Guarded<float> packed(3 * elements.size(), 0);
+      Guarded<float> packed(3 * elements.size(), 0), planes(3 * plane, 0);
       Guarded<Octahedral> words(elements.size(), 0);
       const auto times = [](std::size_t count) {
         std::vector<double> result(count, 0.25);
         result.back() = 0.75;
         return result;
       };
-      const std::vector<VectorView<float>> views(kManyPacked,
-                                                 VectorView<float>::packed(packed.data(), elements.size()));
+      const auto packed_view = VectorView<float>::packed(packed.data(), elements.size());
+      const auto planes_view =
+          VectorView<float>::planes(planes.data(), planes.data() + plane, planes.data() + 2 * plane, elements.size());
       const std::vector<std::span<Octahedral>> spans(kManyOctahedral, words.span());
-      (void)curves.unit_normals(times(kManyPacked), views);
+      (void)curves.unit_normals(times(kManyVectors), std::vector(kManyVectors, packed_view));
+      (void)curves.unit_normals(times(kManyVectors), std::vector(kManyVectors, planes_view));
       (void)curves.unit_normals(times(kManyOctahedral), spans);
-      EXPECT_TRUE(packed.is_intact() && words.is_intact());
+      EXPECT_TRUE(packed.is_intact() && planes.is_intact() && words.is_intact());
       const Reference expected = reference(curves, 0.75);
-      for (std::size_t i = 0; i < elements.size(); ++i) ASSERT_TRUE(same_bits(views[0][i], expected.normals[i])) << i;
+      for (std::size_t i = 0; i < elements.size(); ++i) {
+        ASSERT_TRUE(same_bits(packed_view[i], expected.normals[i])) << i;
+        ASSERT_TRUE(same_bits(planes_view[i], expected.normals[i])) << i;
+      }
       std::vector<Octahedral> stored(elements.size());
       (void)curves.unit_normals(0.75, stored);
       EXPECT_TRUE(std::equal(stored.begin(), stored.end(), words.span().begin()));

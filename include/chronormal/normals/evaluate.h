@@ -45,6 +45,7 @@
 namespace chronormal {
 
 struct CurveWeights;
+enum class Reach;
 
 /// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians
@@ -133,7 +134,8 @@ class NormalCurves {
   template <class Output>
   std::size_t evaluate_all(double t, const Output& output, Threads threads) const;
   template <class Output>
-  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, Threads threads) const;
+  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, Reach reach,
+                            Threads threads) const;
   template <class Body>
   std::size_t over_pieces(Threads threads, std::size_t piece, Body body) const;
 
