@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "bare_loop.h"
 #include "chronormal/normals/evaluate.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
@@ -147,6 +148,14 @@ Case many_times_case(const SharedPointer& shared, double tolerance, std::size_t 
   return one;
 }
 
+Case bare_case(BareLoop::Reads reads, std::size_t count, std::size_t evaluations, Threads threads) {
+  Case one;
+  one.evaluations = evaluations;
+  one.run = [loop = std::make_shared<BareLoop>(reads, count * evaluations, threads)] { loop->run(); };
+  one.note = "no normals";
+  return one;
+}
+
 Case playback_case(const SharedPointer& shared) {
   constexpr std::size_t kSteps = 1024;  // from the first frame to the last, and again
   struct Played {
@@ -163,15 +172,13 @@ Case playback_case(const SharedPointer& shared) {
     (void)played->playback->next(shared->packed());
     ++played->step;
   };
-  // As far from where it was made anew as it gets.
-  const std::size_t verified = kDefaultAnchorInterval - 1;
+  // A run goes from where it is made anew to the last step before the next time; that one is verified.
   Case one;
-  one.run = [step, played, first = std::make_shared<bool>(true)] {
-    for (std::size_t i = 0; *first && i < verified; ++i) step();
-    *first = false;
-    step();
+  one.evaluations = kDefaultAnchorInterval;
+  one.run = [step] {
+    for (std::size_t i = 0; i < kDefaultAnchorInterval; ++i) step();
   };
-  one.checks = {packed_check(static_cast<double>(verified) / kSteps, shared->result())};
+  one.checks = {packed_check(static_cast<double>(kDefaultAnchorInterval - 1) / kSteps, shared->result())};
   one.limit = kPlaybackError;
   one.note = "steps of 1/1024";
   return one;
@@ -215,6 +222,8 @@ void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups
       add(std::string("prepare ") + form.name, [&] { return prepare_case(shared, form.tolerance, mode); });
       add(std::string(form.name) + " to float3", [&] { return packed_case(shared, form.tolerance, mode); });
     }
+    add("bare loop as exact", [&] { return bare_case(BareLoop::Reads::kExact, shared->count, 1, mode); });
+    add("bare loop as compact", [&] { return bare_case(BareLoop::Reads::kCompact, shared->count, 1, mode); });
     if (threads == 1) break;
   }
   list.add("exact to planes", [&] { return planes_case(shared, kExactTolerance); });
@@ -222,12 +231,14 @@ void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups
     list.add(std::string(form.name) + " to octahedral",
              [&] { return encoded_case<Octahedral>(shared, form.tolerance, kOctahedralError); });
   list.add("exact to rgb10a2", [&] { return encoded_case<Rgb10A2>(shared, kExactTolerance, kRgb10A2Error); });
-  for (const Form& form : kForms) {
-    for (const std::size_t evaluations : {std::size_t{8}, std::size_t{64}}) {
-      if (12 * shared->count * evaluations > kManyTimesBytes) continue;
-      list.add(std::string(form.name) + " to float3, " + std::to_string(evaluations) + " t",
+  for (const std::size_t evaluations : {std::size_t{8}, std::size_t{64}}) {
+    if (12 * shared->count * evaluations > kManyTimesBytes) continue;
+    const std::string suffix = ", " + std::to_string(evaluations) + " t";
+    for (const Form& form : kForms)
+      list.add(std::string(form.name) + " to float3" + suffix,
                [&] { return many_times_case(shared, form.tolerance, evaluations, Threads::kOne); });
-    }
+    list.add("bare loop that writes" + suffix,
+             [&] { return bare_case(BareLoop::Reads::kNothing, shared->count, evaluations, Threads::kOne); });
   }
   list.add("playback to float3", [&] { return playback_case(shared); });
 }

@@ -137,14 +137,12 @@ void run_schemes(Suite& suite, const Size& size) {
         (void)prepared->playback->next(result);
         ++prepared->step;
       };
-      const std::size_t verified = kDefaultAnchorInterval - 1;
-      const double at = static_cast<double>(verified) / kSteps;
+      const double at = static_cast<double>(kDefaultAnchorInterval - 1) / kSteps;
       Expectation expected = expectation(name, at);
       Case one;
-      one.run = [step, first = std::make_shared<bool>(true)] {
-        for (std::size_t i = 0; *first && i < verified; ++i) step();
-        *first = false;
-        step();
+      one.evaluations = kDefaultAnchorInterval;
+      one.run = [step] {
+        for (std::size_t i = 0; i < kDefaultAnchorInterval; ++i) step();
       };
       one.checks = {packed_check(at, memory.data())};
       one.checks[0].expected = std::move(expected.expected);

@@ -10,9 +10,11 @@
 namespace chronormal::bench {
 namespace {
 
-// Calls that take longer are not warmed up; of those beyond the second number, the one that was seen counts as well,
-// and there is one more.
-constexpr double kSlow = 0.15, kVerySlow = 3;
+// Calls beyond the first number of seconds are warmed up by one call, beyond the second by none; of those beyond the
+// third, the one that was seen counts as well, and there is one more. Where the data just does not fit into a cache,
+// it takes several passes until what lies in it is what would lie in it after many.
+constexpr int kWarmCalls = 4;
+constexpr double kShort = 0.005, kSlow = 0.15, kVerySlow = 3;
 
 class Collector : public benchmark::BenchmarkReporter {
  public:
@@ -72,9 +74,11 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const double calls = std::max(1.0, std::ceil(effort.repetition / seconds));
     const int wanted = static_cast<int>(std::min<double>(effort.most, effort.total / (calls * seconds)));
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
-                                 [&run, warm = seconds < kSlow](benchmark::State& state) {
+                                 [&run, warm = seconds < kShort  ? kWarmCalls
+                                               : seconds < kSlow ? 1
+                                                                 : 0](benchmark::State& state) {
                                    // The others have been in the caches.
-                                   if (warm) run();
+                                   for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
                                  })
         ->Iterations(static_cast<benchmark::IterationCount>(calls))

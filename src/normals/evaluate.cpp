@@ -17,7 +17,7 @@ namespace chronormal {
 namespace {
 
 // What one thread does at a time, and below which there is nothing to share out.
-constexpr std::size_t kPiece = 16384;
+constexpr std::size_t kPiece = 8192;
 // Of how many elements many t are evaluated before the next ones: as many as stay in the nearest cache; and where
 // results go past the caches, as many as let each of these streams be long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;

@@ -74,7 +74,10 @@ void write_head(Page& page) {
       "were "
       "measured beside it, with as many bytes. The mixture of reads and writes is another one than that of copies, so "
       "that more than 100 % are "
-      "possible.");
+      "possible. The *bare loops* read and write as an evaluation does, in the same order, and compute next to "
+      "nothing: "
+      "the fastest of several ways to do it. On two cores of a virtual machine they also show what its host allows: "
+      "whether both share a cache and the way to the memory may change from minute to minute.");
 }
 
 void write_page(const fs::path& results, const std::string& folder) {

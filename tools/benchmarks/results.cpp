@@ -82,13 +82,18 @@ const std::vector<std::string>& ours() {
                                                "compact to float3, 8 t",
                                                "compact to float3, 64 t",
                                                "playback to float3",
+                                               "bare loop as exact",
+                                               "bare loop as compact",
+                                               "bare loop that writes, 8 t",
+                                               "bare loop that writes, 64 t",
                                                "prepare exact",
                                                "prepare compact"};
   return all;
 }
 
 const std::vector<std::string>& threaded() {
-  static const std::vector<std::string> all = {"recompute", "exact to float3", "compact to float3", "prepare exact",
+  static const std::vector<std::string> all = {"recompute",          "exact to float3",      "compact to float3",
+                                               "bare loop as exact", "bare loop as compact", "prepare exact",
                                                "prepare compact"};
   return all;
 }

@@ -191,7 +191,8 @@ struct Quadratic11 {
 template <Reach kReach>
 struct Stores {
   static constexpr bool kStream = kReach != Reach::kCaches;
-  static constexpr std::size_t kAhead = kReach == Reach::kShared ? 16384 : 8192;  // of the blocks, in bytes
+  // How many bytes ahead of itself a kernel asks for blocks.
+  static constexpr std::size_t kAhead = kReach == Reach::kCaches ? 2048 : kReach == Reach::kShared ? 16384 : 8192;
 };
 
 template <Reach kReach>
