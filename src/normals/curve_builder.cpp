@@ -191,8 +191,14 @@ constexpr std::size_t kMostRows = std::size_t{4} << 20;
 // every vertex is one.
 class EndsSideBySide {
  public:
-  EndsSideBySide(const Segment& segment, Threads threads) : ends_(kRow * segment.from.count), segment_(segment) {
+  // Into memory that is there, where that is enough.
+  EndsSideBySide(const Segment& segment, Threads threads, AlignedArray<float> memory)
+      : ends_(std::move(memory)), segment_(segment) {
     const std::size_t count = segment.from.count;
+    if (ends_.size() < kRow * count) {
+      ends_ = {};
+      ends_ = AlignedArray<float>(kRow * count);
+    }
     blocks_on(threads, count, part_size(count), [&](IndexRange vertices) {
       for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
         const Vec3f from = segment.from[v], to = segment.to[v];
@@ -206,6 +212,7 @@ class EndsSideBySide {
   }
 
   [[nodiscard]] const Segment& segment() const { return segment_; }
+  [[nodiscard]] AlignedArray<float> take_memory() { return std::move(ends_); }
 
  private:
   static constexpr std::size_t kRow = 8;
@@ -444,27 +451,38 @@ NormalCurves CurveBuilder::of_control_normals(std::span<const ControlNormals> no
   return build(normals.size(), options, Threads::kOne, nullptr, [&] { return GivenNormals(normals); });
 }
 
+template <class Build>
+NormalCurves CurveBuilder::from_both_ends(const Segment& segment, Threads threads, NormalCurves* reuse, Build build) {
+  EndsSideBySide ends(segment, threads, reuse != nullptr ? std::exchange(reuse->scratch_, {}) : AlignedArray<float>());
+  NormalCurves curves = build(ends.segment());
+  if (reuse != nullptr) curves.scratch_ = ends.take_memory();
+  return curves;
+}
+
 NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
                                     NormalCurves* reuse) {
-  const std::size_t faces = segment.topology->face_count();
+  const auto build_from = [&](const Segment& from) {
+    return build(from.topology->face_count(), options, threads, reuse, [&] { return FaceNormals(from); });
+  };
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
-  if (!near && segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered) {
-    const EndsSideBySide ends(segment, threads);
-    return build(faces, options, threads, reuse, [&] { return FaceNormals(ends.segment()); });
-  }
-  return build(faces, options, threads, reuse, [&] { return FaceNormals(segment); });
+  if (!near && segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered)
+    return from_both_ends(segment, threads, reuse, build_from);
+  return build_from(segment);
 }
 
 NormalCurves CurveBuilder::of_groups(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, NormalCurves* reuse) {
+  const auto build_from = [&](const Segment& from, const AllFaceRows* rows) {
+    return build(groups.size(), options, threads, reuse, [&, rows] { return GroupNormals(from, groups, rows); });
+  };
   if (lines_per_face(*segment.topology) > kScattered) {
-    const EndsSideBySide ends(segment, threads);
-    std::optional<AllFaceRows> rows;
-    if (segment.topology->face_count() <= kMostRows) rows.emplace(ends.segment(), threads);
-    return build(groups.size(), options, threads, reuse,
-                 [&] { return GroupNormals(ends.segment(), groups, rows ? &*rows : nullptr); });
+    return from_both_ends(segment, threads, reuse, [&](const Segment& ends) {
+      std::optional<AllFaceRows> rows;
+      if (segment.topology->face_count() <= kMostRows) rows.emplace(ends, threads);
+      return build_from(ends, rows ? &*rows : nullptr);
+    });
   }
-  return build(groups.size(), options, threads, reuse, [&] { return GroupNormals(segment, groups); });
+  return build_from(segment, nullptr);
 }
 
 }  // namespace chronormal

@@ -28,6 +28,10 @@ class CurveBuilder {
   static NormalCurves build(std::size_t size, const CurveOptions& options, Threads threads, NormalCurves* reuse,
                             MakeSource make_source);
 
+  // Builds from a copy of the segment in which both positions of a vertex lie side by side.
+  template <class Build>
+  static NormalCurves from_both_ends(const Segment& segment, Threads threads, NormalCurves* reuse, Build build);
+
   struct Part;
   class PartBuilder;
 };

@@ -40,6 +40,7 @@ NormalCurves& NormalCurves::operator=(NormalCurves&& other) noexcept {
   exponents_ = std::exchange(other.exponents_, {});
   flagged_ = std::exchange(other.flagged_, {});
   exact_ = std::exchange(other.exact_, {});
+  scratch_ = std::exchange(other.scratch_, {});
   return *this;
 }
 

@@ -345,6 +345,22 @@ TEST(ReusedCurves, are_those_that_were_never_used) {
   }
 }
 
+TEST(ReusedCurves, take_scratch_of_any_size_from_the_ones_before) {
+  const Motion small = test::shuffled_grid(30), large = test::shuffled_grid(60), in_order = test::integer_grid(50);
+  const auto vertices_of = [](const Motion& motion) {
+    return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+  };
+  NormalCurves curves;
+  for (const Motion* const motion : {&small, &large, &small, &in_order, &large}) {
+    const Segment segment = motion->segment(0);
+    const NormalGroups groups = vertices_of(*motion);
+    curves = NormalCurves::of_groups(segment, groups, {}, Threads::kOne, &curves);
+    ASSERT_EQ(everything(curves), everything(NormalCurves(all_group_control_normals(segment, groups), {})));
+  }
+  EXPECT_GT(lines_per_face(small.topology), 1);
+  EXPECT_GT(lines_per_face(large.topology), 1);
+}
+
 // ---- results that go past the caches -------------------------------------------------------------------------------
 
 // A grid again and again, until there are so many faces.

@@ -69,9 +69,10 @@ class NormalCurves {
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
   /// The same of all faces of a segment, or of all elements of the groups, straight from positions, without an array
-  /// of control normals in between. (Groups of a mesh in no order need one for a while: 128 bytes a face up to half a
-  /// gigabyte, and 32 a vertex.) Where many segments are prepared one after the other, name the curves of the one
-  /// before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new pages.
+  /// of control normals in between. (Meshes in no order need more for a while: 32 bytes a vertex, and groups of them
+  /// 128 a face up to half a gigabyte.) Where many segments are prepared one after the other, name the curves of the
+  /// one before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new
+  /// pages; the 32 bytes a vertex are then kept for the next one.
   ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
   [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
                                              Threads threads = Threads::kOne, NormalCurves* reuse = nullptr);
@@ -105,7 +106,7 @@ class NormalCurves {
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept { return degree_counts_; }
   /// How many elements are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept { return flagged_.size(); }
-  /// Memory that is kept, in bytes, but for what fills up the last block.
+  /// Memory that is kept, in bytes, but for what fills up the last block, and what is kept for the next `reuse`.
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// How many elements are kept in blocks of each number of bytes.
   struct ByteCount {
@@ -147,6 +148,7 @@ class NormalCurves {
   std::vector<std::int16_t> exponents_;  // a block holds n * 2^-exponent; empty where all are 0
   std::vector<std::size_t> flagged_;     // elements that are evaluated in double, ascending
   std::vector<ControlNormals> exact_;    // of these
+  AlignedArray<float> scratch_;          // of preparing, for the next one
 };
 
 }  // namespace chronormal
