@@ -17,28 +17,28 @@ namespace {
 // Where the data of a pass lie, by their size: in the cache of a core, in the shared one, in memory.
 enum Level { kNear, kShared, kMemory };
 
-// Nanoseconds, one for each level. Medians of one core of a Zen 5 server, meshes of 15 k, 1 M and 10 M triangles in
-// grid order and shuffled; see docs/benchmarks.md. What is added for polygons, and for a cache line that is far away,
-// is the difference between two of them.
+// Nanoseconds, one for each level. Medians of one core of a Zen 5 server, meshes of 15 k, 45 k, 1 M and 10 M triangles
+// in grid order and shuffled; see docs/benchmarks.md. What is added for polygons, and for a cache line that is far
+// away, is the difference between two of them.
 struct Row {
   std::array<double, 3> at;
 };
 
 // Recompute, faces: a triangle; the triangle of a polygon; a line of positions that was not at hand.
-constexpr Row kRecomputeTriangle = {1.9, 2.1, 2.1}, kRecomputePolygon = {12.7, 12.9, 12.9};
-constexpr Row kRecomputeMiss = {0.6, 0.9, 3.1};
+constexpr Row kRecomputeTriangle = {1.9, 2.0, 2.5}, kRecomputePolygon = {12.7, 12.9, 13.3};
+constexpr Row kRecomputeMiss = {0.2, 0.64, 2.97};
 // Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand.
-constexpr Row kRecomputeKept = {2.15, 3.0, 3.1}, kRecomputeTerm = {0.55, 0.67, 0.72},
-              kRecomputeTermMiss = {0.1, 1.0, 2.4};
+constexpr Row kRecomputeKept = {2.1, 2.35, 2.75}, kRecomputeTerm = {0.55, 0.67, 0.7},
+              kRecomputeTermMiss = {0.02, 1.6, 3.5};
 
 // The same of preparing curves.
-constexpr Row kPrepareTriangle = {4.7, 5.8, 6.2}, kPreparePolygon = {22, 22, 22}, kPrepareMiss = {1.2, 1.7, 9.1};
-constexpr Row kPrepareKept = {5.2, 6.0, 6.2}, kPrepareTerm = {0.75, 0.85, 0.9}, kPrepareTermMiss = {2.5, 6.9, 12.4};
+constexpr Row kPrepareTriangle = {4.5, 4.7, 5.6}, kPreparePolygon = {22, 22, 22}, kPrepareMiss = {0.7, 2.05, 4};
+constexpr Row kPrepareKept = {5, 5.2, 6.2}, kPrepareTerm = {0.75, 0.83, 0.9}, kPrepareTermMiss = {1.1, 4.5, 16.4};
 // For each byte of curves: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
 // Evaluating curves: an element, and each byte read and written.
-constexpr Row kEvaluate = {0.14, 0, 0}, kEvaluateByte = {0.0038, 0.0245, 0.0225};
+constexpr Row kEvaluate = {0.19, 0, 0}, kEvaluateByte = {0.0003, 0.0083, 0.0195};
 
 constexpr double kResultBytes = 3 * sizeof(float);
 constexpr double kPositionBytes = 6 * sizeof(float);  // of both ends
