@@ -77,7 +77,7 @@ HWY_EXPORT(Lines9);
 
 constexpr int kWays = 5;
 constexpr std::size_t kBlock = 16;                    // elements
-constexpr std::size_t kPiece = 1024;                  // blocks that a thread takes at a time
+constexpr std::size_t kPiece = 512;                   // blocks that a thread takes at a time
 constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // what prefetch asks for behind the end is memory of ours
 
 }  // namespace
@@ -100,7 +100,7 @@ BareLoop::BareLoop(Reads reads, std::size_t count, Threads threads)
 }
 
 void BareLoop::run() const {
-  blocks_on(threads_, blocks_, kPiece, [this](IndexRange blocks) {
+  blocks_on(blocks_ < 2 * kPiece ? Threads::kOne : threads_, blocks_, kPiece, [this](IndexRange blocks) {
     const float* const from = from_.data() + blocks.first * kBlock * static_cast<std::size_t>(reads_) / 4;
     float* const to = to_.data() + blocks.first * kBlock * 3;
     switch (reads_) {

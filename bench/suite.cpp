@@ -55,7 +55,7 @@ void Suite::run(const std::string& group, const Size& size, std::size_t element_
   for (const Case& one : cases) {
     Row row{group, one.name, one.library, one.note, size.name, size.order()};
     row.elements = element_count, row.threads = one.threads, row.evaluations = one.evaluations;
-    row.limit = one.limit, row.verified_elements = oracle.elements().size();
+    row.limit = one.limit, row.verified_elements = one.checks.empty() ? 0 : oracle.elements().size();
     const auto start = std::chrono::steady_clock::now();
     one.run();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -146,7 +147,8 @@ std::string histogram(const MotionError& error) {
   const std::size_t most = *std::max_element(error.histogram.begin(), error.histogram.end());
   for (std::size_t bin = 0; bin < kAuditBins; ++bin) {
     const double count = static_cast<double>(error.histogram[bin]);
-    const auto bar = most > 0 ? static_cast<std::size_t>(kLongestBar * count / static_cast<double>(most) + 0.5) : 0;
+    const auto bar =
+        most > 0 ? static_cast<std::size_t>(std::lround(kLongestBar * count / static_cast<double>(most))) : 0;
     const double share = error.judged > 0 ? 100 * count / static_cast<double>(error.judged) : 0;
     table.add_row({bin_words(bin), grouped(error.histogram[bin]), fmt::format("{:.1f}", share),
                    std::string(error.histogram[bin] > 0 ? std::max<std::size_t>(bar, 1) : 0, '#')});

@@ -154,7 +154,7 @@ Result<SampleOptions> sample_options(const Options& options) {
 
 Result<SampleFormat> format_of(const Options& options) {
   if (!options.format.empty()) {
-    const auto format = make_sample_format(options.format);
+    auto format = make_sample_format(options.format);
     if (!format) return misuse("--format", format.error().message);
     return format;
   }

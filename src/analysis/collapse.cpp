@@ -20,9 +20,11 @@ bool stays_long(const ControlNormals& c) {
 // n where it has got clear of the collapse between `from` and the end of the segment: far enough to have a direction.
 Vec3d clear_of(const ControlNormals& c, double from, double end) {
   constexpr double kClear = 4 * kCollapseShare;
-  for (double step = kCollapseMargin; step < std::fabs(end - from); step *= 2) {
+  double step = kCollapseMargin;
+  while (step < std::fabs(end - from)) {
     const Vec3d n = normal_at(c, end < from ? from - step : from + step);
     if (length_squared(n) > kClear * kClear) return n;
+    step *= 2;
   }
   return normal_at(c, end);
 }

@@ -28,9 +28,10 @@ class CornerVectors {
   }
 
   [[nodiscard]] Vec3d& operator[](std::size_t c) noexcept { return count_ > kSmallFace ? many_[c] : few_[c]; }
-  [[nodiscard]] operator std::span<const Vec3d>() const noexcept {
-    return {count_ > kSmallFace ? many_.data() : few_.data(), count_};
+  [[nodiscard]] const Vec3d& operator[](std::size_t c) const noexcept {
+    return count_ > kSmallFace ? many_[c] : few_[c];
   }
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
 
  private:
   std::size_t count_;
@@ -54,7 +55,7 @@ class ProductSum {
   /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
   /// Edges and both products of a component are within 10 half eps of the absolute products; each triangle adds a
   /// rounding, and four for what counts as noise.
-  void add(std::span<const Vec3d> p, std::span<const Vec3d> q) {
+  void add(const CornerVectors& p, const CornerVectors& q) {
     Vec3d e = p[1] - p[0];
     for (std::size_t c = 2; c < p.size(); ++c) {
       const Vec3d f = q[c] - q[0];

@@ -32,6 +32,11 @@ namespace chronormal {
   return static_cast<double>(lines) / static_cast<double>(faces);
 }
 
+/// Above this many lines for each face, neighbours in the mesh are not neighbours in memory; curves are prepared from a
+/// copy of both ends then, of so many bytes for each vertex.
+inline constexpr double kScatteredLines = 1;
+inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_NORMALS_COHERENCE_H_

@@ -180,8 +180,6 @@ class GroupNormals {
   GroupTiles tiles_;
 };
 
-// Above this many cache lines for each face, neighbours in the mesh are not neighbours in memory.
-constexpr double kScattered = 1;
 // Positions of both ends that a cache near the core holds in any order; looking at the order would take longer.
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 // Up to here the control normals of all faces may be held for a while: half a gigabyte.
@@ -215,7 +213,7 @@ class EndsSideBySide {
   [[nodiscard]] AlignedArray<float> take_memory() { return std::move(ends_); }
 
  private:
-  static constexpr std::size_t kRow = 8;
+  static constexpr std::size_t kRow = kScatteredBytes / sizeof(float);
   AlignedArray<float> ends_;
   Segment segment_;
 };
@@ -385,6 +383,7 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
                                  MakeSource make_source) {
   NormalCurves curves;
   if (reuse != nullptr) curves.blocks_ = std::exchange(*reuse, {}).blocks_;
+  curves.blocks_.resize(0);
   curves.size_ = size;
   curves.keeps_lengths_ = !(options.tolerance > kExactTolerance);
   if (size == 0) return curves;
@@ -465,7 +464,7 @@ NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& 
     return build(from.topology->face_count(), options, threads, reuse, [&] { return FaceNormals(from); });
   };
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
-  if (!near && segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScattered)
+  if (!near && segment.topology->all_triangles() && lines_per_face(*segment.topology) > kScatteredLines)
     return from_both_ends(segment, threads, reuse, build_from);
   return build_from(segment);
 }
@@ -475,7 +474,7 @@ NormalCurves CurveBuilder::of_groups(const Segment& segment, const NormalGroups&
   const auto build_from = [&](const Segment& from, const AllFaceRows* rows) {
     return build(groups.size(), options, threads, reuse, [&, rows] { return GroupNormals(from, groups, rows); });
   };
-  if (lines_per_face(*segment.topology) > kScattered) {
+  if (lines_per_face(*segment.topology) > kScatteredLines) {
     return from_both_ends(segment, threads, reuse, [&](const Segment& ends) {
       std::optional<AllFaceRows> rows;
       if (segment.topology->face_count() <= kMostRows) rows.emplace(ends, threads);

@@ -22,6 +22,8 @@ constexpr std::size_t kPiece = 8192;
 // results go past the caches, as many as let each of these streams be long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
+std::size_t many_times_step(WorkingSet set) { return set == WorkingSet::kCoreCache ? kManyTimes : kManyTimesLarge; }
+
 float clamped_to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
@@ -95,7 +97,7 @@ std::size_t NormalCurves::write_flagged(IndexRange range, double t, const Output
 }
 
 std::size_t NormalCurves::write_flagged(double t, VectorView<float> result) const noexcept {
-  return write_flagged({0, size_}, t, PlanesOutput(result, Reach::kCaches));
+  return write_flagged({0, size_}, t, PlanesOutput(result, WorkingSet::kCoreCache));
 }
 
 template <class Output>
@@ -106,10 +108,9 @@ std::size_t NormalCurves::evaluate_all(double t, const Output& output, Threads t
 }
 
 template <class Output>
-std::size_t NormalCurves::evaluate_many(std::span<const double> times, std::span<const Output> outputs, Reach reach,
-                                        Threads threads) const {
+std::size_t NormalCurves::evaluate_many(std::span<const double> times, std::span<const Output> outputs,
+                                        std::size_t step, Threads threads) const {
   if (size_ == 0) return 0;
-  const std::size_t step = reach == Reach::kCaches ? kManyTimes : kManyTimesLarge;
   std::vector<CurveWeights> weights;
   for (const double t : times) weights.push_back(CurveWeights::at(t, !keeps_lengths_));
   return over_pieces(threads, kPiece, [&](IndexRange piece) {
@@ -139,33 +140,33 @@ std::size_t NormalCurves::over_pieces(Threads threads, std::size_t piece, Body b
 
 std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
   assert(result.count == size_);
-  return with_output(result, reach_of(blocks_.size(), size_ * 3 * sizeof(float)),
+  return with_output(result, working_set_of(blocks_.size(), size_ * 3 * sizeof(float)),
                      [&](const auto& output) { return evaluate_all(t, output, threads); });
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
   assert(result.size() == size_);
-  return evaluate_all(t, OctahedralOutput(result, reach_of(blocks_.size(), size_ * sizeof(Octahedral))), threads);
+  return evaluate_all(t, OctahedralOutput(result, working_set_of(blocks_.size(), size_ * sizeof(Octahedral))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Threads threads) const {
   assert(result.size() == size_);
-  return evaluate_all(t, Rgb10A2Output(result, reach_of(blocks_.size(), size_ * sizeof(Rgb10A2))), threads);
+  return evaluate_all(t, Rgb10A2Output(result, working_set_of(blocks_.size(), size_ * sizeof(Rgb10A2))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                                        Threads threads) const {
   assert(results.size() == times.size());
-  const Reach reach = reach_of(blocks_.size(), times.size() * size_ * 3 * sizeof(float));
+  const WorkingSet set = working_set_of(blocks_.size(), times.size() * size_ * 3 * sizeof(float));
   if (std::all_of(results.begin(), results.end(), is_packed)) {
     std::vector<PackedOutput> outputs;
-    for (const auto& result : results) outputs.emplace_back(result, reach);
-    return evaluate_many<PackedOutput>(times, outputs, reach, threads);
+    for (const auto& result : results) outputs.emplace_back(result, set);
+    return evaluate_many<PackedOutput>(times, outputs, many_times_step(set), threads);
   }
   if (std::all_of(results.begin(), results.end(), [](const auto& result) { return result.stride == 1; })) {
     std::vector<PlanesOutput> outputs;
-    for (const auto& result : results) outputs.emplace_back(result, reach);
-    return evaluate_many<PlanesOutput>(times, outputs, reach, threads);
+    for (const auto& result : results) outputs.emplace_back(result, set);
+    return evaluate_many<PlanesOutput>(times, outputs, many_times_step(set), threads);
   }
   std::size_t without_direction = 0;
   for (std::size_t k = 0; k < times.size(); ++k) without_direction += unit_normals(times[k], results[k], threads);
@@ -176,12 +177,12 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
                                        Threads threads) const {
   assert(results.size() == times.size());
   std::vector<OctahedralOutput> outputs;
-  const Reach reach = reach_of(blocks_.size(), times.size() * size_ * sizeof(Octahedral));
+  const WorkingSet set = working_set_of(blocks_.size(), times.size() * size_ * sizeof(Octahedral));
   for (const auto& result : results) {
     assert(result.size() == size_);
-    outputs.emplace_back(result, reach);
+    outputs.emplace_back(result, set);
   }
-  return evaluate_many<OctahedralOutput>(times, outputs, reach, threads);
+  return evaluate_many<OctahedralOutput>(times, outputs, many_times_step(set), threads);
 }
 
 void NormalCurves::normals(double t, VectorView<float> result) const noexcept {

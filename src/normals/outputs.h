@@ -20,68 +20,69 @@ namespace chronormal {
   return view.stride == 3 && view.y == view.x + 1 && view.z == view.x + 2;
 }
 
-/// The reach of results in such arrays: these can go past the caches if all begin at a cache line.
+/// The access of a pass to results in such arrays: a large one streams if all of them begin at a cache line.
 template <class... Pointer>
-[[nodiscard]] Reach reach_into(Reach reach, Pointer... arrays) {
-  return ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...) ? reach : Reach::kCaches;
+[[nodiscard]] Access access_to(WorkingSet set, Pointer... arrays) {
+  const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
+  return {set, set != WorkingSet::kCoreCache && aligned};
 }
 
 struct PackedOutput {
-  PackedOutput(const VectorView<float>& view, Reach of_pass) : result(view), reach(reach_into(of_pass, view.x)) {}
+  PackedOutput(const VectorView<float>& view, WorkingSet set) : result(view), access(access_to(set, view.x)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
-    evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, reach});
+    evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, access});
   }
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
 
   VectorView<float> result;
-  Reach reach;
+  Access access;
 };
 
 struct PlanesOutput {
-  PlanesOutput(const VectorView<float>& view, Reach of_pass)
-      : result(view), reach(reach_into(of_pass, view.x, view.y, view.z)) {}
+  PlanesOutput(const VectorView<float>& view, WorkingSet set)
+      : result(view), access(access_to(set, view.x, view.y, view.z)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
-    evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first, reach});
+    evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first, access});
   }
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
 
   VectorView<float> result;
-  Reach reach;
+  Access access;
 };
 
 struct OctahedralOutput {
-  OctahedralOutput(std::span<Octahedral> normals, Reach of_pass)
-      : result(normals), reach(reach_into(of_pass, normals.data())) {}
+  OctahedralOutput(std::span<Octahedral> normals, WorkingSet set)
+      : result(normals), access(access_to(set, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Octahedral) == sizeof(std::uint32_t));
-    evaluate_blocks(span, weights, OctahedralResult{&result[first].bits, reach});
+    evaluate_blocks(span, weights, OctahedralResult{&result[first].bits, access});
   }
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_octahedral(v); }
 
   std::span<Octahedral> result;
-  Reach reach;
+  Access access;
 };
 
 struct Rgb10A2Output {
-  Rgb10A2Output(std::span<Rgb10A2> normals, Reach of_pass)
-      : result(normals), reach(reach_into(of_pass, normals.data())) {}
+  Rgb10A2Output(std::span<Rgb10A2> normals, WorkingSet set) : result(normals), access(access_to(set, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Rgb10A2) == sizeof(std::uint32_t));
-    evaluate_blocks(span, weights, Rgb10A2Result{&result[first].bits, reach});
+    evaluate_blocks(span, weights, Rgb10A2Result{&result[first].bits, access});
   }
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_rgb10a2(v); }
 
   std::span<Rgb10A2> result;
-  Reach reach;
+  Access access;
 };
 
 /// Any other form, by a function of index and vector: through planes on the stack, a few blocks at a time.
 template <class Set>
 struct AnyOutput {
+  WorkingSet working_set;
   Set set;
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
@@ -90,21 +91,21 @@ struct AnyOutput {
     for (std::size_t i = 0; i < span.elements; i += kCount) {
       const std::size_t count = std::min(kCount, span.elements - i);
       const BlockSpan some{span.blocks + i * bytes_of(span.kind), span.kind, count};
-      evaluate_blocks(some, weights, PlanesResult{x, y, z, Reach::kCaches});
+      evaluate_blocks(some, weights, PlanesResult{x, y, z, {working_set, false}});
       for (std::size_t k = 0; k < count; ++k) set(first + i + k, {x[k], y[k], z[k]});
     }
   }
 };
 
 template <class Set>
-AnyOutput(Set) -> AnyOutput<Set>;
+AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
 /// Calls body(output) with the form that a view has; returns what it returns.
 template <class Body>
-auto with_output(const VectorView<float>& result, Reach of_pass, Body body) {
-  if (is_packed(result)) return body(PackedOutput(result, of_pass));
-  if (result.stride == 1) return body(PlanesOutput(result, of_pass));
-  return body(AnyOutput{[result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
+auto with_output(const VectorView<float>& result, WorkingSet set, Body body) {
+  if (is_packed(result)) return body(PackedOutput(result, set));
+  if (result.stride == 1) return body(PlanesOutput(result, set));
+  return body(AnyOutput{set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
 }
 
 }  // namespace chronormal

@@ -112,18 +112,18 @@ std::size_t NormalPlayback::next(VectorView<float> result) noexcept {
     const VectorView<float> part = result.part({first, end - first});
     if (degree == 0) {
       const BlockSpan span{curves_->blocks_.data() + run.offset, static_cast<BlockKind>(run.kind), part.count};
-      with_output(part, Reach::kCaches, [&](const auto& output) { output.write(span, weights, 0); });
+      with_output(part, WorkingSet::kCoreCache, [&](const auto& output) { output.write(span, weights, 0); });
       continue;
     }
     const std::size_t whole = is_packed(part) || part.stride == 1 ? part.count / kTile : 0;
     if (is_packed(part)) {
-      play_blocks(state, whole, degree, PackedResult{part.x, Reach::kCaches});
+      play_blocks(state, whole, degree, PackedResult{part.x});
     } else {
-      play_blocks(state, whole, degree, PlanesResult{part.x, part.y, part.z, Reach::kCaches});
+      play_blocks(state, whole, degree, PlanesResult{part.x, part.y, part.z});
     }
     for (std::size_t b = whole; b < run.block_count; ++b) {
       alignas(64) float x[kTile], y[kTile], z[kTile];
-      play_blocks(state + b * state_floats(degree), 1, degree, PlanesResult{x, y, z, Reach::kCaches});
+      play_blocks(state + b * state_floats(degree), 1, degree, PlanesResult{x, y, z});
       for (std::size_t i = b * kTile; i < std::min((b + 1) * kTile, part.count); ++i)
         part.set(i, {x[i % kTile], y[i % kTile], z[i % kTile]});
     }

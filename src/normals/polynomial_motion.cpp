@@ -151,8 +151,9 @@ Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double dis
 
   Motion motion;
   motion.topology = *segment.topology;
-  for (double piece = 0; piece <= pieces; ++piece) {
-    const double t = piece / pieces;
+  const auto piece_count = static_cast<std::size_t>(pieces);
+  for (std::size_t piece = 0; piece <= piece_count; ++piece) {
+    const double t = static_cast<double>(piece) / pieces;
     Motion::Keyframe keyframe;
     keyframe.time = segment.start_time + t * (segment.end_time - segment.start_time);
     keyframe.positions.reserve(3 * segment.topology->vertex_count());
@@ -168,13 +169,13 @@ Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double dis
   return motion;
 }
 
-#define CHRONORMAL_INSTANTIATE(K)                                                                                   \
-  template void polynomial_face_normals<K>(const PolynomialSegment<K>&, IndexRange,                                 \
-                                           std::span<PolynomialNormals<K>>) noexcept;                               \
-  template void polynomial_group_normals<K>(const NormalGroups&, std::span<const PolynomialNormals<K>>, IndexRange, \
-                                            std::span<PolynomialNormals<K>>) noexcept;                              \
-  template UnitNormal unit_normal_at(const std::array<Vec3d, 2 * (K) + 1>&, double) noexcept;                       \
-  template Result<Motion> cut_into_segments<K>(const PolynomialSegment<K>&, double, std::size_t)
+#define CHRONORMAL_INSTANTIATE(K)                                                                           \
+  template void polynomial_face_normals<(K)>(const PolynomialSegment<(K)>&, IndexRange,                     \
+                                             std::span<PolynomialNormals<(K)>>) noexcept;                   \
+  template void polynomial_group_normals<(K)>(const NormalGroups&, std::span<const PolynomialNormals<(K)>>, \
+                                              IndexRange, std::span<PolynomialNormals<(K)>>) noexcept;      \
+  template UnitNormal unit_normal_at(const std::array<Vec3d, 2 * (K) + 1>&, double) noexcept;               \
+  template Result<Motion> cut_into_segments<(K)>(const PolynomialSegment<(K)>&, double, std::size_t)
 
 CHRONORMAL_INSTANTIATE(1);
 CHRONORMAL_INSTANTIATE(2);

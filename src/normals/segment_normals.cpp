@@ -34,7 +34,7 @@ constexpr Row kRecomputeKept = {2.1, 2.35, 2.75}, kRecomputeTerm = {0.55, 0.67, 
 // The same of preparing curves.
 constexpr Row kPrepareTriangle = {4.5, 4.7, 5.6}, kPreparePolygon = {22, 22, 22}, kPrepareMiss = {0.7, 2.05, 4};
 constexpr Row kPrepareKept = {5, 5.2, 6.2}, kPrepareTerm = {0.75, 0.83, 0.9}, kPrepareTermMiss = {1.1, 4.5, 16.4};
-// For each byte of curves: memory that the system gives for the first time has to be cleared.
+// For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
 // Evaluating curves: an element, and each byte read and written.
@@ -170,7 +170,8 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
 
   const double kept = curve_bytes_of_element(shape.degree, tolerance);
   costs.curve_bytes = kept * elements;
-  costs.prepare += kNewByte * kept;
+  const double scratch = shape.lines_per_face > kScatteredLines ? kScatteredBytes * vertices / elements : 0;
+  costs.prepare += kNewByte * (kept + scratch);
   const Level level_of_curves = level_of((kept + kResultBytes) * elements);
   costs.evaluate = cost(kEvaluate, level_of_curves) + cost(kEvaluateByte, level_of_curves) * (kept + kResultBytes);
   return costs;
@@ -214,11 +215,13 @@ std::size_t SegmentNormals::unit_normals(double t, VectorView<float> result, Thr
 }
 
 std::size_t SegmentNormals::size() const noexcept {
-  return std::visit([](const auto& normals) { return normals.size(); }, normals_);
+  const auto* const curves = std::get_if<NormalCurves>(&normals_);
+  return curves != nullptr ? curves->size() : std::get_if<NormalRecompute>(&normals_)->size();
 }
 
 std::size_t SegmentNormals::bytes() const noexcept {
-  return std::visit([](const auto& normals) { return normals.bytes(); }, normals_);
+  const auto* const curves = std::get_if<NormalCurves>(&normals_);
+  return curves != nullptr ? curves->bytes() : std::get_if<NormalRecompute>(&normals_)->bytes();
 }
 
 }  // namespace chronormal

@@ -127,14 +127,14 @@ class Judge {
   // The largest control normal of each element: those of a quadratic follow from its ends and its middle.
   void find_scales(std::size_t segments) {
     scales_.assign(part_.elements().size(), 0.0);
-    const auto normals_at = [&](std::size_t s, double t) -> const std::vector<Vec3d>& {
+    const auto normals_at = [&](std::size_t s, double t) -> std::vector<Vec3d> {
       if (source_.place(s, t, positions_)) part_.normals(positions_, normals_);
       return normals_.elements;
     };
     source_.forget();
     for (std::size_t s = 0; s < segments; ++s) {
       const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
-      const std::vector<Vec3d>& end = normals_at(s, 1);
+      const std::vector<Vec3d> end = normals_at(s, 1);
       numbered_blocks(scales_.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t e = first; e < last; ++e) {
           const Vec3d m = 2.0 * middle[e] - 0.5 * (start[e] + end[e]);

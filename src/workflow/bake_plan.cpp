@@ -278,6 +278,7 @@ class Planner {
   [[nodiscard]] double turn_without(const std::vector<std::size_t>& pairs) const {
     double tangent = 0;
     std::vector<BlendTerm> terms;
+    terms.reserve(pairs.size());
     for (const std::size_t n : pairs) {
       terms.push_back(terms_.pair(candidates_[n].product.i, candidates_[n].product.j));
     }

@@ -284,7 +284,7 @@ class SequenceWriter {
         deltas[e] = elements_[e].has_none || max_abs(delta) < kNothing ? Vec3d{} : delta;
       });
       add_key(k, deltas);
-      if (const Status status = step(k + 1, total); !status) return status;
+      if (Status status = step(k + 1, total); !status) return status;
     }
     std::vector<Vec3d> from = normals_.at_key(0), to;
     for (std::size_t s = 0; s < segments; ++s, from.swap(to)) {
@@ -302,7 +302,7 @@ class SequenceWriter {
         names_.push_back("bend " + std::to_string(s));
         add_target(zero_positions_, deltas);
       }
-      if (const Status status = step(normals_.keys() + s + 1, total); !status) return status;
+      if (Status status = step(normals_.keys() + s + 1, total); !status) return status;
     }
     return Success{};
   }
@@ -331,7 +331,7 @@ class SequenceWriter {
         errors[e] = std::max(errors[e], largest_line_error(n, start, ends[e]) + bound);
       });
       add_key(s + 1, deltas);
-      if (const Status status = step(s + 1, normals_.keys() - 1); !status) return status;
+      if (Status status = step(s + 1, normals_.keys() - 1); !status) return status;
     }
     for (const double error : errors)
       bake_.largest_error = std::max(bake_.largest_error, kDegreesPerRadian * std::min(error, std::numbers::pi));

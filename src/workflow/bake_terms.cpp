@@ -15,7 +15,7 @@ std::vector<float> moved_positions(const BlendSet& set, std::size_t target) {
   std::vector<float> positions = set.base;
   const BlendTarget& moved = set.targets[target];
   for (std::size_t n = 0; n < moved.vertices.size(); ++n) {
-    for (std::size_t c = 0; c < 3; ++c) positions[3 * moved.vertices[n] + c] += moved.deltas[3 * n + c];
+    for (std::size_t c = 0; c < 3; ++c) positions[3 * std::size_t{moved.vertices[n]} + c] += moved.deltas[3 * n + c];
   }
   return positions;
 }

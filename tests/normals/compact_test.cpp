@@ -198,7 +198,7 @@ Vec3f kept_as(BlockKind kind, const ControlNormals& c, double t) {
   alignas(64) std::byte block[kTile * 36 + 4096] = {};
   pack_tiles(std::span(&tile, 1), kind, block);
   float xyz[3 * kTile];
-  evaluate_blocks({block, kind, kTile}, CurveWeights::at(t, true), PackedResult{xyz, Reach::kCaches});
+  evaluate_blocks({block, kind, kTile}, CurveWeights::at(t, true), PackedResult{xyz});
   return {xyz[0], xyz[1], xyz[2]};
 }
 

@@ -340,6 +340,8 @@ TEST(ReusedCurves, are_those_that_were_never_used) {
     NormalCurves next = NormalCurves::of_faces(small.segment(0), {}, threads, &curves);
     EXPECT_EQ(curves.size(), 0u);
     EXPECT_EQ(curves.unit_normals(0.5, VectorView<float>{}), 0u);
+    NormalCurves used = NormalCurves::of_faces(large.segment(0));
+    EXPECT_EQ(NormalCurves::of_groups(large.segment(0), NormalGroups{}, {}, threads, &used).bytes(), 0u);
     const NormalCurves moved = std::move(next);
     EXPECT_EQ(everything(moved), everything(NormalCurves::of_faces(small.segment(0))));
   }
@@ -350,12 +352,14 @@ TEST(ReusedCurves, take_scratch_of_any_size_from_the_ones_before) {
   const auto vertices_of = [](const Motion& motion) {
     return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
   };
-  NormalCurves curves;
-  for (const Motion* const motion : {&small, &large, &small, &in_order, &large}) {
-    const Segment segment = motion->segment(0);
-    const NormalGroups groups = vertices_of(*motion);
-    curves = NormalCurves::of_groups(segment, groups, {}, Threads::kOne, &curves);
-    ASSERT_EQ(everything(curves), everything(NormalCurves(all_group_control_normals(segment, groups), {})));
+  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+    NormalCurves curves;
+    for (const Motion* const motion : {&small, &large, &small, &in_order, &large}) {
+      const Segment segment = motion->segment(0);
+      const NormalGroups groups = vertices_of(*motion);
+      curves = NormalCurves::of_groups(segment, groups, {}, threads, &curves);
+      ASSERT_EQ(everything(curves), everything(NormalCurves(all_group_control_normals(segment, groups), {})));
+    }
   }
   EXPECT_GT(lines_per_face(small.topology), 1);
   EXPECT_GT(lines_per_face(large.topology), 1);
@@ -389,9 +393,9 @@ void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
 }
 
 TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
-  if (kSanitizer) GTEST_SKIP() << "slow under a sanitizer; many_t covers the stores";
-  for (const auto& [faces, reach] :
-       {std::pair{std::size_t{1'000'037}, Reach::kShared}, std::pair{std::size_t{1'500'037}, Reach::kMemory}}) {
+  if (kSanitizer) GTEST_SKIP() << "slow under a sanitizer; EvaluateAccess covers the stores";
+  for (const WorkingSet set : {WorkingSet::kSharedCache, WorkingSet::kMemory}) {
+    const std::size_t faces = set == WorkingSet::kSharedCache ? 1'000'037 : 1'500'037;
     SCOPED_TRACE(faces);
     Motion motion = test::integer_grid(50);
     motion.topology = repeated_grid(motion.topology, faces);
@@ -399,8 +403,8 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
     ASSERT_EQ(curves.size(), faces);
     std::size_t blocks = 0;
     for (const auto& [bytes, elements] : curves.byte_counts()) blocks += bytes * elements;
-    EXPECT_EQ(reach_of(blocks, 12 * faces), reach) << blocks;
-    EXPECT_EQ(reach_of(blocks, 4 * faces), reach) << blocks;
+    EXPECT_EQ(working_set_of(blocks, 12 * faces), set) << blocks;
+    EXPECT_EQ(working_set_of(blocks, 4 * faces), set) << blocks;
 
     expect_streamed_as_stored<float>(3 * faces, [&](float* xyz, Threads threads) {
       return curves.unit_normals(0.3, VectorView<float>::packed(xyz, faces), threads);
@@ -416,6 +420,13 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
       std::fill(x + 2 * plane - 1 + faces, x + 3 * plane, 0.0F);
       return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane - 1, faces), threads);
     });
+    const VectorView<float> wide{nullptr, nullptr, nullptr, faces, 4};
+    expect_streamed_as_stored<float>(4 * faces, [&](float* x, Threads threads) {  // every fourth word is left alone
+      for (std::size_t i = 0; i < faces; ++i) x[4 * i + 3] = 0;
+      VectorView<float> view = wide;
+      view.x = x, view.y = x + 1, view.z = x + 2;
+      return curves.unit_normals(0.3, view, threads);
+    });
     expect_streamed_as_stored<Octahedral>(faces, [&](Octahedral* words, Threads threads) {
       return curves.unit_normals(0.3, std::span(words, faces), threads);
     });
@@ -428,8 +439,8 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
 TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
   const auto elements = mixed_elements(70007, 98);
   constexpr std::size_t kManyVectors = 36, kManyOctahedral = 100;
-  EXPECT_EQ(reach_of(0, kManyVectors * 12 * elements.size()), Reach::kShared);
-  EXPECT_EQ(reach_of(0, kManyOctahedral * 4 * elements.size()), Reach::kShared);
+  EXPECT_EQ(working_set_of(0, kManyVectors * 12 * elements.size()), WorkingSet::kSharedCache);
+  EXPECT_EQ(working_set_of(0, kManyOctahedral * 4 * elements.size()), WorkingSet::kSharedCache);
   const std::size_t plane = (elements.size() + 15) / 16 * 16;
   for (const std::int64_t target : supported_targets()) {
     if (kSanitizer && target != current_target()) continue;

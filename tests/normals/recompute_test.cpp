@@ -268,7 +268,7 @@ TEST(Recompute, every_layout_of_the_result_has_the_same_bits_and_nothing_else_is
 }
 
 TEST(Recompute, results_past_the_caches_have_the_same_bits) {
-  // Only those of more than 64 MiB go there: ask the kernel.
+  // Only large ones go there (kStreamFrom): ask the kernel.
   const Motion motion = fixtures::needle_soup(203);
   const Segment segment = motion.segment(0);
   const MovingTriangles triangles{.corners = motion.topology.corners().data(),

@@ -74,10 +74,12 @@ void write_head(Page& page) {
       "were "
       "measured beside it, with as many bytes. The mixture of reads and writes is another one than that of copies, so "
       "that more than 100 % are "
-      "possible. The *bare loops* read and write as an evaluation does, in the same order, and compute next to "
-      "nothing: "
-      "the fastest of several ways to do it. On two cores of a virtual machine they also show what its host allows: "
-      "whether both share a cache and the way to the memory may change from minute to minute.");
+      "possible.");
+  page.bullet(
+      "The *bare loops* make no normals. They read and write what an evaluation does, in the same order, or only write "
+      "as many results as for many t, one array after the other, and compute next to nothing; the fastest of several "
+      "ways to do it counts. On two cores of a virtual machine they also show what its host allows: whether both share "
+      "a cache and the way to the memory may change from minute to minute.");
 }
 
 void write_page(const fs::path& results, const std::string& folder) {

@@ -9,9 +9,10 @@
 
 namespace chronormal {
 
-/// Where one pass reads and writes more bytes than this, results go past the caches if they are packed and aligned to
-/// 64 bytes: in a shared cache of 32 MiB they would push out what is read next, and be pushed out before anybody reads
-/// them. Measured there, with and without a reader after it: better from 20 to 30 MiB on.
+/// Where one pass reads and writes more bytes than this, results go past the caches if all their arrays are aligned to
+/// 64 bytes (those of recompute and of the schemes: if they are packed as well). In a shared cache of 32 MiB they would
+/// push out what is read next, and be pushed out before anybody reads them. Measured there, with and without a reader
+/// after it: better from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
 /// Bytes aligned to 64, not initialised; from 8 MiB on aligned to 2 MiB and, on Linux, marked for huge pages, which

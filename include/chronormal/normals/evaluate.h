@@ -23,7 +23,7 @@
 /// Ownership  the curves own their memory; results go to the caller's.
 /// Threads    const functions may run at the same time. On one thread and at one t they do not allocate or throw. The
 ///            same bits on every instruction set, compiler and number of threads.
-/// Speed      results aligned to 64 bytes, as planes or packed, are fastest; docs/benchmarks.md.
+/// Speed      results aligned to 64 bytes, packed, as planes or in four bytes, are fastest; docs/benchmarks.md.
 #ifndef CHRONORMAL_NORMALS_EVALUATE_H_
 #define CHRONORMAL_NORMALS_EVALUATE_H_
 
@@ -45,7 +45,6 @@
 namespace chronormal {
 
 struct CurveWeights;
-enum class Reach;
 
 /// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians
@@ -135,7 +134,7 @@ class NormalCurves {
   template <class Output>
   std::size_t evaluate_all(double t, const Output& output, Threads threads) const;
   template <class Output>
-  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, Reach reach,
+  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, std::size_t step,
                             Threads threads) const;
   template <class Body>
   std::size_t over_pieces(Threads threads, std::size_t piece, Body body) const;

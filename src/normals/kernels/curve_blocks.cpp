@@ -28,7 +28,7 @@ std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount
     double error = 0;
     for (std::size_t k = 0; k < kCount; ++k) {
       const double exact = weights[k] * scale;
-      rounded[k] = static_cast<std::int32_t>(exact + 0.5);
+      rounded[k] = static_cast<std::int32_t>(std::lround(exact));
       error += std::fabs(rounded[k] - exact);
     }
     if (error * its_scale < smallest_error * scale) {

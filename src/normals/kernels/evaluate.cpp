@@ -188,16 +188,19 @@ struct Quadratic11 {
 
 // Where results go, kLanes vectors at a time.
 
-template <Reach kReach>
-struct Stores {
-  static constexpr bool kStream = kReach != Reach::kCaches;
-  // How many bytes ahead of itself a kernel asks for blocks.
-  static constexpr std::size_t kAhead = kReach == Reach::kCaches ? 2048 : kReach == Reach::kShared ? 16384 : 8192;
+template <Access kAccess>
+struct Accesses {
+  static constexpr bool kStream = kAccess.stream;
+  // How many bytes ahead of itself a kernel asks for blocks; measured where a core has 1 MiB of its own and 32 MiB are
+  // shared.
+  static constexpr std::size_t kAhead = kAccess.working_set == WorkingSet::kCoreCache     ? 2048
+                                        : kAccess.working_set == WorkingSet::kSharedCache ? 16384
+                                                                                          : 8192;
 };
 
-template <Reach kReach>
-struct ToPacked : Stores<kReach> {
-  using Stores<kReach>::kStream;
+template <Access kAccess>
+struct ToPacked : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
   float* xyz;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -209,9 +212,9 @@ struct ToPacked : Stores<kReach> {
   }
 };
 
-template <Reach kReach>
-struct ToPlanes : Stores<kReach> {
-  using Stores<kReach>::kStream;
+template <Access kAccess>
+struct ToPlanes : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
   float *x, *y, *z;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -222,9 +225,9 @@ struct ToPlanes : Stores<kReach> {
   }
 };
 
-template <Reach kReach>
-struct ToOctahedral : Stores<kReach> {
-  using Stores<kReach>::kStream;
+template <Access kAccess>
+struct ToOctahedral : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
   std::uint32_t* bits;
   // The octahedron needs no length of 1, and no square root.
   template <class Kind>
@@ -244,9 +247,9 @@ struct ToOctahedral : Stores<kReach> {
   }
 };
 
-template <Reach kReach>
-struct ToRgb10A2 : Stores<kReach> {
-  using Stores<kReach>::kStream;
+template <Access kAccess>
+struct ToRgb10A2 : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
   std::uint32_t* bits;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -298,16 +301,17 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
   }
 }
 
-template <template <Reach> class To, class... Pointer>
-void ByReach(const BlockSpan& span, const CurveWeights& w, Reach reach, Pointer... to) {
-  switch (reach) {
-    case Reach::kCaches:
-      return ByKind(span, w, To<Reach::kCaches>{{}, to...});
-    case Reach::kShared:
-      return ByKind(span, w, To<Reach::kShared>{{}, to...});
-    case Reach::kMemory:
-      return ByKind(span, w, To<Reach::kMemory>{{}, to...});
+// Stores that stay in the caches slow down reads from a shared one: then it is asked as memory is.
+template <template <Access> class To, class... Pointer>
+void ByAccess(const BlockSpan& span, const CurveWeights& w, Access access, Pointer... to) {
+  constexpr Access kShared{WorkingSet::kSharedCache, true}, kMemory{WorkingSet::kMemory, true};
+  constexpr Access kCached{WorkingSet::kMemory, false};
+  if (access.stream) {
+    if (access.working_set == WorkingSet::kSharedCache) return ByKind(span, w, To<kShared>{{}, to...});
+    return ByKind(span, w, To<kMemory>{{}, to...});
   }
+  if (access.working_set != WorkingSet::kCoreCache) return ByKind(span, w, To<kCached>{{}, to...});
+  ByKind(span, w, To<Access{}>{{}, to...});
 }
 
 // The elements of the last block, if it is filled in part: `part` says how many.
@@ -323,19 +327,19 @@ Tail TailOf(const BlockSpan& span) {
 
 void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult result) {
   const Tail tail = TailOf(span);
-  ByReach<ToPacked>(span, w, result.reach, result.xyz);
+  ByAccess<ToPacked>(span, w, result.access, result.xyz);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPacked<Reach::kCaches>{{}, last});
+  ByKind(tail.block, w, ToPacked<Access{}>{{}, last});
   std::copy_n(last, 3 * tail.part, result.xyz + 3 * tail.first);
 }
 
 void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult result) {
   const Tail tail = TailOf(span);
-  ByReach<ToPlanes>(span, w, result.reach, result.x, result.y, result.z);
+  ByAccess<ToPlanes>(span, w, result.access, result.x, result.y, result.z);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPlanes<Reach::kCaches>{{}, last, last + kTile, last + 2 * kTile});
+  ByKind(tail.block, w, ToPlanes<Access{}>{{}, last, last + kTile, last + 2 * kTile});
   std::copy_n(last, tail.part, result.x + tail.first);
   std::copy_n(last + kTile, tail.part, result.y + tail.first);
   std::copy_n(last + 2 * kTile, tail.part, result.z + tail.first);
@@ -343,19 +347,19 @@ void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult r
 
 void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, OctahedralResult result) {
   const Tail tail = TailOf(span);
-  ByReach<ToOctahedral>(span, w, result.reach, result.bits);
+  ByAccess<ToOctahedral>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToOctahedral<Reach::kCaches>{{}, last});
+  ByKind(tail.block, w, ToOctahedral<Access{}>{{}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
 void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result result) {
   const Tail tail = TailOf(span);
-  ByReach<ToRgb10A2>(span, w, result.reach, result.bits);
+  ByAccess<ToRgb10A2>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToRgb10A2<Reach::kCaches>{{}, last});
+  ByKind(tail.block, w, ToRgb10A2<Access{}>{{}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 

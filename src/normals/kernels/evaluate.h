@@ -17,37 +17,39 @@ struct BlockSpan {
   std::size_t elements = 0;
 };
 
-/// Where the bytes of a whole pass are, and so how a kernel goes about them; measured where a core has 1 MiB of its own
-/// and 32 MiB are shared.
-///
-///     kCaches   results stay in the caches; blocks are asked for 2 KiB ahead
-///     kShared   results go past the caches; blocks 16 KiB ahead, which is up to 1.2 times as fast there as 8
-///     kMemory   results go past the caches; blocks 8 KiB ahead
-enum class Reach { kCaches, kShared, kMemory };
+/// Where all that a pass reads and writes fits.
+enum class WorkingSet { kCoreCache, kSharedCache, kMemory };
 
-/// For a pass over so many bytes of blocks that writes so many bytes.
-constexpr Reach reach_of(std::size_t read, std::size_t written) noexcept {
+/// Of a pass over so many bytes of blocks that writes so many bytes.
+constexpr WorkingSet working_set_of(std::size_t read, std::size_t written) noexcept {
   constexpr std::size_t kLargestShared = std::size_t{40} << 20;
-  if (read + written <= kStreamFrom) return Reach::kCaches;
-  return read <= kLargestShared ? Reach::kShared : Reach::kMemory;
+  if (read + written <= kStreamFrom) return WorkingSet::kCoreCache;
+  return read <= kLargestShared ? WorkingSet::kSharedCache : WorkingSet::kMemory;
 }
 
-/// Where the results of a span go: pointers to that of its first element, aligned to 64 bytes but in kCaches.
+/// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
+/// results go past the caches, for which all their arrays must be aligned to 64 bytes.
+struct Access {
+  WorkingSet working_set = WorkingSet::kCoreCache;
+  bool stream = false;
+};
+
+/// Where the results of a span go: pointers to that of its first element.
 struct PackedResult {
   float* xyz;
-  Reach reach;
+  Access access = {};
 };
 struct PlanesResult {
   float *x, *y, *z;
-  Reach reach;
+  Access access = {};
 };
 struct OctahedralResult {
   std::uint32_t* bits;
-  Reach reach;
+  Access access = {};
 };
 struct Rgb10A2Result {
   std::uint32_t* bits;
-  Reach reach;
+  Access access = {};
 };
 
 /// Writes the unit normals of all elements of a span, at the t of the weights.
