@@ -22,7 +22,7 @@ constexpr std::size_t kPiece = 8192;
 // results go past the caches, as many as let each of these streams be long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
-std::size_t many_times_step(WorkingSet set) { return set == WorkingSet::kCoreCache ? kManyTimes : kManyTimesLarge; }
+std::size_t many_times_step(Access access) { return access.stream ? kManyTimesLarge : kManyTimes; }
 
 float clamped_to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -97,7 +97,7 @@ std::size_t NormalCurves::write_flagged(IndexRange range, double t, const Output
 }
 
 std::size_t NormalCurves::write_flagged(double t, VectorView<float> result) const noexcept {
-  return write_flagged({0, size_}, t, PlanesOutput(result, WorkingSet::kCoreCache));
+  return write_flagged({0, size_}, t, PlanesOutput(result, Access{}));
 }
 
 template <class Output>
@@ -140,33 +140,33 @@ std::size_t NormalCurves::over_pieces(Threads threads, std::size_t piece, Body b
 
 std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
   assert(result.count == size_);
-  return with_output(result, working_set_of(blocks_.size(), size_ * 3 * sizeof(float)),
+  return with_output(result, access_of_pass(blocks_.size(), size_ * 3 * sizeof(float)),
                      [&](const auto& output) { return evaluate_all(t, output, threads); });
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
   assert(result.size() == size_);
-  return evaluate_all(t, OctahedralOutput(result, working_set_of(blocks_.size(), size_ * sizeof(Octahedral))), threads);
+  return evaluate_all(t, OctahedralOutput(result, access_of_pass(blocks_.size(), size_ * sizeof(Octahedral))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Threads threads) const {
   assert(result.size() == size_);
-  return evaluate_all(t, Rgb10A2Output(result, working_set_of(blocks_.size(), size_ * sizeof(Rgb10A2))), threads);
+  return evaluate_all(t, Rgb10A2Output(result, access_of_pass(blocks_.size(), size_ * sizeof(Rgb10A2))), threads);
 }
 
 std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                                        Threads threads) const {
   assert(results.size() == times.size());
-  const WorkingSet set = working_set_of(blocks_.size(), times.size() * size_ * 3 * sizeof(float));
+  const Access access = access_of_pass(blocks_.size(), times.size() * size_ * 3 * sizeof(float));
   if (std::all_of(results.begin(), results.end(), is_packed)) {
     std::vector<PackedOutput> outputs;
-    for (const auto& result : results) outputs.emplace_back(result, set);
-    return evaluate_many<PackedOutput>(times, outputs, many_times_step(set), threads);
+    for (const auto& result : results) outputs.emplace_back(result, access);
+    return evaluate_many<PackedOutput>(times, outputs, many_times_step(access), threads);
   }
   if (std::all_of(results.begin(), results.end(), [](const auto& result) { return result.stride == 1; })) {
     std::vector<PlanesOutput> outputs;
-    for (const auto& result : results) outputs.emplace_back(result, set);
-    return evaluate_many<PlanesOutput>(times, outputs, many_times_step(set), threads);
+    for (const auto& result : results) outputs.emplace_back(result, access);
+    return evaluate_many<PlanesOutput>(times, outputs, many_times_step(access), threads);
   }
   std::size_t without_direction = 0;
   for (std::size_t k = 0; k < times.size(); ++k) without_direction += unit_normals(times[k], results[k], threads);
@@ -177,12 +177,12 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
                                        Threads threads) const {
   assert(results.size() == times.size());
   std::vector<OctahedralOutput> outputs;
-  const WorkingSet set = working_set_of(blocks_.size(), times.size() * size_ * sizeof(Octahedral));
+  const Access access = access_of_pass(blocks_.size(), times.size() * size_ * sizeof(Octahedral));
   for (const auto& result : results) {
     assert(result.size() == size_);
-    outputs.emplace_back(result, set);
+    outputs.emplace_back(result, access);
   }
-  return evaluate_many<OctahedralOutput>(times, outputs, many_times_step(set), threads);
+  return evaluate_many<OctahedralOutput>(times, outputs, many_times_step(access), threads);
 }
 
 void NormalCurves::normals(double t, VectorView<float> result) const noexcept {

@@ -20,15 +20,15 @@ namespace chronormal {
   return view.stride == 3 && view.y == view.x + 1 && view.z == view.x + 2;
 }
 
-/// The access of a pass to results in such arrays: a large one streams if all of them begin at a cache line.
+/// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.
 template <class... Pointer>
-[[nodiscard]] Access access_to(WorkingSet set, Pointer... arrays) {
+[[nodiscard]] Access access_to(Access of_pass, Pointer... arrays) {
   const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
-  return {set, set != WorkingSet::kCoreCache && aligned};
+  return {of_pass.working_set, of_pass.stream && aligned};
 }
 
 struct PackedOutput {
-  PackedOutput(const VectorView<float>& view, WorkingSet set) : result(view), access(access_to(set, view.x)) {}
+  PackedOutput(const VectorView<float>& view, Access of_pass) : result(view), access(access_to(of_pass, view.x)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, access});
@@ -40,8 +40,8 @@ struct PackedOutput {
 };
 
 struct PlanesOutput {
-  PlanesOutput(const VectorView<float>& view, WorkingSet set)
-      : result(view), access(access_to(set, view.x, view.y, view.z)) {}
+  PlanesOutput(const VectorView<float>& view, Access of_pass)
+      : result(view), access(access_to(of_pass, view.x, view.y, view.z)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first, access});
@@ -53,8 +53,8 @@ struct PlanesOutput {
 };
 
 struct OctahedralOutput {
-  OctahedralOutput(std::span<Octahedral> normals, WorkingSet set)
-      : result(normals), access(access_to(set, normals.data())) {}
+  OctahedralOutput(std::span<Octahedral> normals, Access of_pass)
+      : result(normals), access(access_to(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Octahedral) == sizeof(std::uint32_t));
@@ -67,7 +67,8 @@ struct OctahedralOutput {
 };
 
 struct Rgb10A2Output {
-  Rgb10A2Output(std::span<Rgb10A2> normals, WorkingSet set) : result(normals), access(access_to(set, normals.data())) {}
+  Rgb10A2Output(std::span<Rgb10A2> normals, Access of_pass)
+      : result(normals), access(access_to(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     static_assert(sizeof(Rgb10A2) == sizeof(std::uint32_t));
@@ -102,10 +103,10 @@ AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
 /// Calls body(output) with the form that a view has; returns what it returns.
 template <class Body>
-auto with_output(const VectorView<float>& result, WorkingSet set, Body body) {
-  if (is_packed(result)) return body(PackedOutput(result, set));
-  if (result.stride == 1) return body(PlanesOutput(result, set));
-  return body(AnyOutput{set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
+auto with_output(const VectorView<float>& result, Access of_pass, Body body) {
+  if (is_packed(result)) return body(PackedOutput(result, of_pass));
+  if (result.stride == 1) return body(PlanesOutput(result, of_pass));
+  return body(AnyOutput{of_pass.working_set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
 }
 
 }  // namespace chronormal

@@ -112,7 +112,7 @@ std::size_t NormalPlayback::next(VectorView<float> result) noexcept {
     const VectorView<float> part = result.part({first, end - first});
     if (degree == 0) {
       const BlockSpan span{curves_->blocks_.data() + run.offset, static_cast<BlockKind>(run.kind), part.count};
-      with_output(part, WorkingSet::kCoreCache, [&](const auto& output) { output.write(span, weights, 0); });
+      with_output(part, Access{}, [&](const auto& output) { output.write(span, weights, 0); });
       continue;
     }
     const std::size_t whole = is_packed(part) || part.stride == 1 ? part.count / kTile : 0;

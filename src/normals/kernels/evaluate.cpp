@@ -193,7 +193,7 @@ struct Accesses {
   static constexpr bool kStream = kAccess.stream;
   // How many bytes ahead of itself a kernel asks for blocks; measured where a core has 1 MiB of its own and 32 MiB are
   // shared.
-  static constexpr std::size_t kAhead = kAccess.working_set == WorkingSet::kCoreCache     ? 2048
+  static constexpr std::size_t kAhead = kAccess.working_set == WorkingSet::kSmall         ? 2048
                                         : kAccess.working_set == WorkingSet::kSharedCache ? 16384
                                                                                           : 8192;
 };
@@ -301,17 +301,20 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
   }
 }
 
-// Stores that stay in the caches slow down reads from a shared one: then it is asked as memory is.
 template <template <Access> class To, class... Pointer>
 void ByAccess(const BlockSpan& span, const CurveWeights& w, Access access, Pointer... to) {
-  constexpr Access kShared{WorkingSet::kSharedCache, true}, kMemory{WorkingSet::kMemory, true};
-  constexpr Access kCached{WorkingSet::kMemory, false};
-  if (access.stream) {
-    if (access.working_set == WorkingSet::kSharedCache) return ByKind(span, w, To<kShared>{{}, to...});
-    return ByKind(span, w, To<kMemory>{{}, to...});
+  constexpr Access kShared{WorkingSet::kSharedCache, false}, kSharedStream{WorkingSet::kSharedCache, true};
+  constexpr Access kMemory{WorkingSet::kMemory, false}, kMemoryStream{WorkingSet::kMemory, true};
+  switch (access.working_set) {
+    case WorkingSet::kSmall:  // nobody streams these
+      return ByKind(span, w, To<Access{}>{{}, to...});
+    case WorkingSet::kSharedCache:
+      if (access.stream) return ByKind(span, w, To<kSharedStream>{{}, to...});
+      return ByKind(span, w, To<kShared>{{}, to...});
+    case WorkingSet::kMemory:
+      if (access.stream) return ByKind(span, w, To<kMemoryStream>{{}, to...});
+      return ByKind(span, w, To<kMemory>{{}, to...});
   }
-  if (access.working_set != WorkingSet::kCoreCache) return ByKind(span, w, To<kCached>{{}, to...});
-  ByKind(span, w, To<Access{}>{{}, to...});
 }
 
 // The elements of the last block, if it is filled in part: `part` says how many.

@@ -17,22 +17,25 @@ struct BlockSpan {
   std::size_t elements = 0;
 };
 
-/// Where all that a pass reads and writes fits.
-enum class WorkingSet { kCoreCache, kSharedCache, kMemory };
-
-/// Of a pass over so many bytes of blocks that writes so many bytes.
-constexpr WorkingSet working_set_of(std::size_t read, std::size_t written) noexcept {
-  constexpr std::size_t kLargestShared = std::size_t{40} << 20;
-  if (read + written <= kStreamFrom) return WorkingSet::kCoreCache;
-  return read <= kLargestShared ? WorkingSet::kSharedCache : WorkingSet::kMemory;
-}
+/// Where all fits that a pass reads and writes; small: 8 MiB.
+enum class WorkingSet { kSmall, kSharedCache, kMemory };
 
 /// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
 /// results go past the caches, for which all their arrays must be aligned to 64 bytes.
 struct Access {
-  WorkingSet working_set = WorkingSet::kCoreCache;
+  WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
 };
+
+/// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.
+constexpr Access access_of_pass(std::size_t read, std::size_t written) noexcept {
+  constexpr std::size_t kLargestSmall = std::size_t{8} << 20, kLargestShared = std::size_t{40} << 20;
+  const std::size_t all = read + written;
+  const WorkingSet set = all <= kLargestSmall     ? WorkingSet::kSmall
+                         : read <= kLargestShared ? WorkingSet::kSharedCache
+                                                  : WorkingSet::kMemory;
+  return {set, all > kStreamFrom};
+}
 
 /// Where the results of a span go: pointers to that of its first element.
 struct PackedResult {
