@@ -315,7 +315,7 @@ TEST(BakeTraps, of_meshes_that_share_a_sampler_each_gets_its_own) {
   two.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"node", 1}, {"path", "weights"}}}});
   EXPECT_FALSE(test::bake_document(two).ok()) << "a track has weights for all targets";
   two.json["meshes"][1] = Json::object();
-  two.json["meshes"][1]["primitives"] = {other.primitive(two, {other.deltas()})};
+  two.json["meshes"][1]["primitives"] = Json::array({other.primitive(two, {other.deltas()})});
   const Baked shared = baked(two);
   EXPECT_EQ(shared.json()["animations"][0]["samplers"].size(), 2U);
   test::expect_exact(test::track_error(shared, 0, 0));
