@@ -14,7 +14,7 @@ namespace {
 // third, the one that was seen counts as well, and there is one more. Where the data just does not fit into a cache,
 // it takes several passes until what lies in it is what would lie in it after many.
 constexpr int kWarmCalls = 4;
-constexpr double kShort = 0.005, kSlow = 0.15, kVerySlow = 3;
+constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 
 class Collector : public benchmark::BenchmarkReporter {
  public:
