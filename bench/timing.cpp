@@ -73,10 +73,9 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const double seconds = functions[i].seconds > kSlow ? functions[i].seconds : roughly_timed(run);
     const double calls = std::max(1.0, std::ceil(effort.repetition / seconds));
     const int wanted = static_cast<int>(std::min<double>(effort.most, effort.total / (calls * seconds)));
+    const int warm = seconds < kShort ? kWarmCalls : seconds < kSlow ? 1 : 0;
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
-                                 [&run, warm = seconds < kShort  ? kWarmCalls
-                                               : seconds < kSlow ? 1
-                                                                 : 0](benchmark::State& state) {
+                                 [&run, warm](benchmark::State& state) {
                                    // The others have been in the caches.
                                    for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
