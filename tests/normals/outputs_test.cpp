@@ -393,7 +393,6 @@ void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
 }
 
 TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
-  if (kSanitizer) GTEST_SKIP() << "slow under a sanitizer; EvaluateAccess covers the stores";
   for (const WorkingSet set : {WorkingSet::kSharedCache, WorkingSet::kMemory}) {
     const std::size_t faces = set == WorkingSet::kSharedCache ? 1'000'037 : 1'500'037;
     SCOPED_TRACE(faces);
