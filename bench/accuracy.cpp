@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "groups.h"

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <thread>
 
-#include "normals/kernels/targets.h"
+#include "simd/targets.h"
 
 namespace chronormal::bench {
 namespace {

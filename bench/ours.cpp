@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bare_loop.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 

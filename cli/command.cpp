@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/io/make_human_target.h"
-#include "chronormal/io/targets.h"
 #include "cli/text.h"
+#include "io/input/targets.h"
+#include "io/mesh/make_human_target.h"
 
 namespace chronormal::cli {
 namespace {

@@ -9,10 +9,10 @@
 #include "chronormal/io/file.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/io/motion_readers.h"
-#include "chronormal/io/obj.h"
-#include "chronormal/io/readers.h"
 #include "chronormal/io/sequence.h"
+#include "io/cache/motion_readers.h"
+#include "io/mesh/mesh_readers.h"
+#include "io/mesh/obj.h"
 
 namespace chronormal::cli {
 namespace {

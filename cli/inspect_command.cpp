@@ -8,11 +8,11 @@
 
 #include "chronormal/io/file.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/io/motion_readers.h"
-#include "chronormal/io/readers.h"
 #include "cli/command.h"
 #include "cli/inputs.h"
 #include "cli/inspect_report.h"
+#include "io/cache/motion_readers.h"
+#include "io/mesh/mesh_readers.h"
 
 namespace chronormal::cli {
 namespace {

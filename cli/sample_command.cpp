@@ -9,13 +9,13 @@
 
 #include "chronormal/io/file.h"
 #include "chronormal/io/gltf_motion.h"
-#include "chronormal/io/motion_readers.h"
-#include "chronormal/io/obj.h"
-#include "chronormal/io/readers.h"
 #include "chronormal/io/sequence.h"
 #include "chronormal/workflow/sample_files.h"
 #include "cli/command.h"
 #include "cli/inputs.h"
+#include "io/cache/motion_readers.h"
+#include "io/mesh/mesh_readers.h"
+#include "io/mesh/obj.h"
 
 namespace chronormal::cli {
 namespace {

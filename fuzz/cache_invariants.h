@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/position_cache.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/validate.h"
+#include "io/cache/position_cache.h"
 #include "mesh_invariants.h"
 
 namespace chronormal::fuzz {

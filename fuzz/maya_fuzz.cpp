@@ -1,5 +1,5 @@
 // Fuzz target of the reader of Maya's points: whatever the bytes are, the result is an error with a place, or a cache.
-#include "chronormal/io/maya_cache.h"
+#include "io/cache/maya_cache.h"
 
 #include "cache_invariants.h"
 

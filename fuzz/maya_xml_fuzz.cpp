@@ -1,6 +1,6 @@
 // Fuzz target of the reader of Maya's descriptions: whatever the bytes are, the result is an error with a place, or a
 // description that makes sense.
-#include "chronormal/io/maya_cache.h"
+#include "io/cache/maya_cache.h"
 
 #include "cache_invariants.h"
 

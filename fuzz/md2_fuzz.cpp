@@ -1,5 +1,5 @@
 // Fuzz target of the reader of MD2: whatever the bytes are, the result is an error with a place, or a valid motion.
-#include "chronormal/io/md2.h"
+#include "io/cache/md2.h"
 
 #include "cache_invariants.h"
 

@@ -1,5 +1,5 @@
 // Fuzz target of the reader of MDD: whatever the bytes are, the result is an error with a place, or a cache.
-#include "chronormal/io/mdd.h"
+#include "io/cache/mdd.h"
 
 #include "cache_invariants.h"
 

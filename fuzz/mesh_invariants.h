@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/mesh_frame.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/validate.h"
+#include "io/mesh/mesh_frame.h"
 
 namespace chronormal::fuzz {
 

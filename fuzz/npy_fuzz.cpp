@@ -1,5 +1,5 @@
 // Fuzz target of the reader of NumPy arrays: whatever the bytes are, the result is an error with a place, or a cache.
-#include "chronormal/io/npz.h"
+#include "io/cache/npz.h"
 
 #include "cache_invariants.h"
 

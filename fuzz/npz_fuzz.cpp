@@ -1,6 +1,6 @@
 // Fuzz target of the reader of NumPy archives: whatever the bytes are, the result is an error with a place, or a valid
 // motion.
-#include "chronormal/io/npz.h"
+#include "io/cache/npz.h"
 
 #include "cache_invariants.h"
 

@@ -1,6 +1,6 @@
 // Fuzz target of the OBJ reader: whatever the bytes are, the result is an error with a place, or a mesh that is valid
 // and no larger than the bytes can have said. How it is shaded belongs to the same mesh.
-#include "chronormal/io/obj.h"
+#include "io/mesh/obj.h"
 #include "mesh_invariants.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

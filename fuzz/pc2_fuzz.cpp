@@ -1,5 +1,5 @@
 // Fuzz target of the reader of PC2: whatever the bytes are, the result is an error with a place, or a cache.
-#include "chronormal/io/pc2.h"
+#include "io/cache/pc2.h"
 
 #include "cache_invariants.h"
 

@@ -1,6 +1,6 @@
 // Fuzz target of the PLY reader: whatever the bytes are, the result is an error with a place, or a mesh that is valid
 // and no larger than the bytes can have said.
-#include "chronormal/io/ply.h"
+#include "io/mesh/ply.h"
 #include "mesh_invariants.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

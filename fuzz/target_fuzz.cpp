@@ -1,6 +1,6 @@
 // Fuzz target of the reader of MakeHuman targets, as text and gzipped: whatever the bytes are, the result is an error
 // with a place, or deltas that the base can take.
-#include "chronormal/io/make_human_target.h"
+#include "io/mesh/make_human_target.h"
 
 #include <cmath>
 #include <vector>

@@ -3,65 +3,45 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
-#include "chronormal/core/memory.h"        // arrays that are streamed: aligned, in huge pages
-#include "chronormal/core/parallel.h"      // one loop over all cores
-#include "chronormal/core/polynomial.h"    // small polynomials: Bernstein and power form, roots, restriction
-#include "chronormal/core/result.h"        // errors as values: code, place, message
-#include "chronormal/core/trigonometry.h"  // sine, cosine, arc tangent with the same bits everywhere
-#include "chronormal/core/vec3.h"          // three-component vectors over any scalar
-#include "chronormal/core/views.h"         // vectors in the caller's memory, as planes or packed
+#include "chronormal/core/memory.h"      // arrays that are streamed: aligned, in huge pages
+#include "chronormal/core/parallel.h"    // one loop over all cores
+#include "chronormal/core/polynomial.h"  // small polynomials: Bernstein and power form, roots, restriction
+#include "chronormal/core/result.h"      // errors as values: code, place, message
+#include "chronormal/core/vec3.h"        // three-component vectors over any scalar
+#include "chronormal/core/views.h"       // vectors in the caller's memory, as planes or packed
 
 #include "chronormal/motion/blend_set.h"  // a base and targets, with any weights at once
 #include "chronormal/motion/motion.h"     // keyframes, and the straight segments between them
 #include "chronormal/motion/topology.h"   // which vertices make which face
 #include "chronormal/motion/validate.h"   // the check between data from outside and everything that computes
 
-#include "chronormal/normals/blend_normals.h"      // exact normals of blend shapes at any weights
-#include "chronormal/normals/blend_terms.h"        // the quadratic form in the weights, a term at a time
-#include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
-#include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
-#include "chronormal/normals/end_delta.h"          // the best single delta for hosts that can only add one
-#include "chronormal/normals/evaluate.h"           // curves of normals: prepared once, evaluated at the speed of memory
-#include "chronormal/normals/group_normals.h"      // normals of vertices and corners, as sums of those of faces
-#include "chronormal/normals/normal_groups.h"      // which corners share a normal: vertices, creases, split normals
-#include "chronormal/normals/playback.h"           // the same, played at equal steps
-#include "chronormal/normals/polynomial_motion.h"  // vertices on curves: normals of degree 4 and 6
-#include "chronormal/normals/recompute.h"          // the rival: the cross product anew at every t
-#include "chronormal/normals/segment_normals.h"    // the cheaper of the two, by a model of their costs
-#include "chronormal/normals/transform.h"          // rigid and affine motion: normals of meshes that move as a whole
-#include "chronormal/normals/weighting.h"          // area, angle, uniform ...: the weightings that tools use
-#include "chronormal/normals/weighting_fit.h"      // quadratics for those that are none, with a bound for each
-#include "chronormal/normals/weld.h"               // which vertices are one point
+#include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
+#include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
+#include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
+#include "chronormal/normals/group_normals.h"    // normals of vertices and corners, as sums of those of faces
+#include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
+#include "chronormal/normals/normal_groups.h"    // which corners share a normal: vertices, creases, split normals
+#include "chronormal/normals/paths.h"            // vertices on curves: normals of degree 4 and 6
+#include "chronormal/normals/playback.h"         // the same, played at equal steps
+#include "chronormal/normals/recompute.h"        // the rival: the cross product anew at every t
+#include "chronormal/normals/segment_normals.h"  // the cheaper of the two, by a model of their costs
+#include "chronormal/normals/transform.h"        // rigid and affine motion: normals of meshes that move as a whole
+#include "chronormal/normals/weighting.h"        // area, angle, uniform ...: the weightings that tools use
+#include "chronormal/normals/weighting_fit.h"    // quadratics for those that are none, with a bound for each
+#include "chronormal/normals/weld.h"             // which vertices are one point
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
-#include "chronormal/analysis/blend_quality.h"      // hosts that add one delta per target, at any weights
-#include "chronormal/analysis/collapse.h"           // when a normal vanishes inside a segment
-#include "chronormal/analysis/delta_fit.h"          // the deltas that a host should add up, by least squares
-#include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
-#include "chronormal/analysis/surface.h"            // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/quality.h"  // angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
-#include "chronormal/io/builtin_morphs.h"     // morphs that need no file
-#include "chronormal/io/file.h"               // whole files in, and out without ever half a one
-#include "chronormal/io/gltf_document.h"      // glTF 2.0 files: what is in them, and their meshes as arrays
-#include "chronormal/io/gltf_edit.h"          // changes to a glTF file that keep every other byte
-#include "chronormal/io/gltf_motion.h"        // their morph targets and animations as motions
-#include "chronormal/io/make_human_target.h"  // targets of MakeHuman: sparse deltas
-#include "chronormal/io/maya_cache.h"         // Maya point caches: XML with .mc or .mcx
-#include "chronormal/io/md2.h"                // models of Quake II
-#include "chronormal/io/mdd.h"                // the point cache of LightWave
-#include "chronormal/io/mesh_frame.h"         // one keyframe as read from one file
-#include "chronormal/io/motion_files.h"       // motions from files of every format, and back
-#include "chronormal/io/motion_readers.h"     // the lists of motion and cache formats
-#include "chronormal/io/npz.h"                // NumPy arrays
-#include "chronormal/io/obj.h"                // Wavefront OBJ
-#include "chronormal/io/pc2.h"                // the point cache of 3ds Max
-#include "chronormal/io/ply.h"                // PLY: ascii and binary
-#include "chronormal/io/position_cache.h"     // positions over time, and the mesh that gives them faces
-#include "chronormal/io/readers.h"            // the list of mesh formats
-#include "chronormal/io/sequence.h"           // files, patterns and folders as one motion
-#include "chronormal/io/targets.h"            // a base mesh and its morph targets
+#include "chronormal/io/builtin_morphs.h"  // morphs that need no file
+#include "chronormal/io/file.h"            // whole files in, and out without ever half a one
+#include "chronormal/io/gltf_document.h"   // glTF 2.0 files: what is in them, and their meshes as arrays
+#include "chronormal/io/gltf_edit.h"       // changes to a glTF file that keep every other byte
+#include "chronormal/io/gltf_motion.h"     // their morph targets and animations as motions
+#include "chronormal/io/motion_files.h"    // motions from files of every format, and back
+#include "chronormal/io/sequence.h"        // files, patterns and folders as one motion
 
 #include "chronormal/workflow/audit.h"          // what a host shows against what it should
 #include "chronormal/workflow/bake.h"           // right normals written into glTF files

@@ -14,7 +14,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "chronormal/core/trigonometry.h"
+#include "core/trigonometry.h"
 
 #if defined(CHRONORMAL_CORE_TRIGONOMETRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CHRONORMAL_CORE_TRIGONOMETRY_INL_H_

@@ -1,4 +1,4 @@
-#include "chronormal/core/trigonometry.h"
+#include "core/trigonometry.h"
 
 #include "core/trigonometry-inl.h"
 

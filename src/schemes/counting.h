@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "chronormal/core/trigonometry.h"
 #include "chronormal/schemes/scheme.h"
+#include "core/trigonometry.h"
 
 namespace chronormal {
 

@@ -1,8 +1,8 @@
-// The t-variant cross product, eq. 5: exact. Thin: the work is NormalCurves (normals/evaluate.h) and
+// The t-variant cross product, eq. 5: exact. Thin: the work is NormalCurves (normals/normal_curves.h) and
 // NormalPlayback (normals/playback.h).
 
-#include "chronormal/normals/evaluate.h"
-#include "normals/curve_elements.h"
+#include "chronormal/normals/normal_curves.h"
+#include "normals/curves/curve_elements.h"
 #include "schemes/counting.h"
 #include "schemes/makers.h"
 

@@ -1,4 +1,4 @@
-#include "chronormal/analysis/blend_quality.h"
+#include "analysis/blend_quality.h"
 
 #include <gtest/gtest.h>
 

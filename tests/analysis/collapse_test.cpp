@@ -1,4 +1,4 @@
-#include "chronormal/analysis/collapse.h"
+#include "analysis/collapse.h"
 
 #include <gtest/gtest.h>
 

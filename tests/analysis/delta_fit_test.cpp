@@ -1,4 +1,4 @@
-#include "chronormal/analysis/delta_fit.h"
+#include "analysis/delta_fit.h"
 
 #include <gtest/gtest.h>
 

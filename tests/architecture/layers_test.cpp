@@ -1,4 +1,6 @@
-// The folder is the layer: a file includes only its own folder and those above it in the list. Checked by the path.
+// The folder is the layer, and a folder in it is a room. A file includes only what stands above it: its own room, the
+// rooms before that on its floor, and the floors before its own. The path alone decides, so this test needs no list of
+// files. docs/architecture.md draws the same plan.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +16,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kLayers = {"core", "motion", "normals", "schemes", "analysis", "io", "workflow", "cli"};
+struct Floor {
+  std::string name;
+  std::vector<std::string> rooms;
+};
+
+const std::vector<Floor> kFloors = {
+    {"core", {}},
+    {"simd", {}},
+    {"motion", {}},
+    {"normals", {"control", "groups", "curves", "recompute", "blend", "weighting"}},
+    {"schemes", {}},
+    {"analysis", {}},
+    {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
+    {"workflow", {"shading", "sample", "inspect", "audit", "compare", "bake"}},
+    {"cli", {}},
+};
 
 const fs::path kRoot = CHRONORMAL_SOURCE_DIR;
 
@@ -32,16 +49,53 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// The layer of a path below the root, "" for one outside: include/chronormal/LAYER/..., src/LAYER/..., cli/...
-std::string layer_of(std::string path) {
-  for (const std::string prefix : {"include/chronormal/", "src/", "chronormal/"}) {
-    if (path.starts_with(prefix)) {
-      path.erase(0, prefix.size());
-      break;
+// The parts of a path.
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  for (const fs::path& part : fs::path(path)) parts.push_back(part.string());
+  return parts;
+}
+
+// Where a file stands: its floor, and the room there; room 0 is the floor itself, above all of its rooms.
+struct Place {
+  std::size_t floor = 0;
+  std::size_t room = 0;
+
+  auto operator<=>(const Place&) const = default;
+};
+
+// The room of a public header is the one that has its source, src/FLOOR/ROOM/STEM.cpp; without one it is the floor.
+std::string room_of_public_header(const std::string& floor, const fs::path& header) {
+  for (const auto& [name, rooms] : kFloors) {
+    if (name != floor) continue;
+    for (const std::string& room : rooms) {
+      if (fs::exists(kRoot / "src" / floor / room / header.stem().concat(".cpp"))) return room;
     }
   }
-  const std::size_t slash = path.find('/');
-  return slash == std::string::npos ? "" : path.substr(0, slash);
+  return "";
+}
+
+// The place of include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., cli/..., or of these as they are included; nothing
+// for a path that is in no layer, or in a folder that is no room.
+std::optional<Place> place_of(const std::string& path) {
+  std::vector<std::string> parts = parts_of(path);
+  if (!parts.empty() && (parts[0] == "include" || parts[0] == "src")) parts.erase(parts.begin());
+  const bool is_public = !parts.empty() && parts[0] == "chronormal";
+  if (is_public) parts.erase(parts.begin());
+  if (parts.size() < 2) return std::nullopt;
+
+  for (std::size_t f = 0; f < kFloors.size(); ++f) {
+    const auto& [name, rooms] = kFloors[f];
+    if (name != parts[0]) continue;
+    const std::string room = is_public                                   ? room_of_public_header(name, parts[1])
+                             : parts.size() > 2 && parts[1] != "kernels" ? parts[1]
+                                                                         : "";
+    if (room.empty()) return Place{f, 0};
+    const auto found = std::find(rooms.begin(), rooms.end(), room);
+    if (found == rooms.end()) return std::nullopt;
+    return Place{f, static_cast<std::size_t>(found - rooms.begin()) + 1};
+  }
+  return std::nullopt;
 }
 
 // What a line includes in quotes, "" if it does not.
@@ -53,25 +107,19 @@ std::string included_by(const std::string& line) {
   return last == std::string::npos ? "" : line.substr(first + 1, last - first - 1);
 }
 
-std::optional<std::size_t> rank_of(const std::string& layer) {
-  const auto found = std::find(kLayers.begin(), kLayers.end(), layer);
-  if (found == kLayers.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - kLayers.begin());
-}
-
 // What is wrong with the includes of one file; empty if nothing is.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
-  const auto own = rank_of(layer_of(path));
-  if (!own) return {path + ": the folder is no layer"};
+  const auto own = place_of(path);
+  if (!own) return {path + ": the folder is neither a layer nor a room"};
   for (const std::string& line : lines_of(text)) {
     const std::string included = included_by(line);
     if (included.empty()) continue;
-    const auto other = rank_of(layer_of(included));
+    const auto other = place_of(included);
     if (!other)
       found.push_back(path + " includes " + included + ", which is in no layer");
     else if (*other > *own)
-      found.push_back(path + " includes " + included + ", from a layer below it");
+      found.push_back(path + " includes " + included + ", from a layer or room below it");
   }
   return found;
 }
@@ -94,10 +142,19 @@ TEST(Layers, a_planted_violation_is_found) {
   EXPECT_EQ(violations("src/io/x.cpp", "#include \"workflow/x.h\"\n").size(), 1u);
   EXPECT_EQ(violations("src/schemes/x.cpp", "#include \"tests/support/reference.h\"\n").size(), 1u);
   EXPECT_EQ(violations("src/stray/x.cpp", "").size(), 1u);
+  EXPECT_EQ(violations("src/normals/stray/x.cpp", "").size(), 1u);
+  EXPECT_EQ(violations("src/normals/groups/x.cpp", "#include \"normals/curves/outputs.h\"\n").size(), 1u);
+  EXPECT_EQ(violations("src/normals/groups/kernels/x.cpp", "#include \"normals/curves/kernels/pack.h\"\n").size(), 1u);
+  EXPECT_EQ(violations("src/normals/groups/x.cpp", "#include \"chronormal/normals/normal_curves.h\"\n").size(), 1u);
+  EXPECT_EQ(
+      violations("include/chronormal/normals/normal_groups.h", "#include \"chronormal/normals/playback.h\"\n").size(),
+      1u);
+  EXPECT_EQ(violations("src/io/json/x.cpp", "#include \"io/gltf/glb.h\"\n").size(), 1u);
   EXPECT_TRUE(violations("src/schemes/x.cpp", "#include \"schemes/arc.h\"\n#include <vector>\n").empty());
+  EXPECT_TRUE(violations("src/normals/curves/x.cpp", "#include \"normals/groups/corner_sets.h\"\n").empty());
 }
 
-TEST(Layers, every_file_includes_only_its_own_folder_and_those_above) {
+TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
   const auto files = product_files();
   EXPECT_GT(files.size(), 40u);
   for (const fs::path& file : files) {
@@ -107,7 +164,7 @@ TEST(Layers, every_file_includes_only_its_own_folder_and_those_above) {
 }
 
 TEST(Layers, the_reference_includes_no_scheme_and_no_control_normals) {
-  for (const char* file : {"include/chronormal/analysis/reference_normals.h", "src/analysis/reference_normals.cpp",
+  for (const char* file : {"src/analysis/reference_normals.h", "src/analysis/reference_normals.cpp",
                            "include/chronormal/analysis/quality.h", "src/analysis/quality.cpp"}) {
     const std::string text = read(kRoot / file);
     EXPECT_FALSE(text.empty()) << file;
@@ -128,7 +185,7 @@ TEST(Layers, the_umbrella_header_lists_every_public_header_in_the_order_of_the_l
     if (const std::string included = included_by(line); !included.empty()) listed.push_back(included);
   }
   for (std::size_t i = 1; i < listed.size(); ++i)
-    EXPECT_LE(*rank_of(layer_of(listed[i - 1])), *rank_of(layer_of(listed[i]))) << listed[i];
+    EXPECT_LE(place_of(listed[i - 1])->floor, place_of(listed[i])->floor) << listed[i];
 
   std::vector<std::string> there;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "include")) {

@@ -17,7 +17,7 @@
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal {

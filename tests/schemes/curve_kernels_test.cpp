@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "chronormal/core/memory.h"
-#include "chronormal/core/trigonometry.h"
 #include "chronormal/schemes/scheme.h"
-#include "normals/kernels/targets.h"
+#include "core/trigonometry.h"
+#include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal {

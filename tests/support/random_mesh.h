@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chronormal/core/views.h"
-#include "chronormal/io/mesh_frame.h"
+#include "io/mesh/mesh_frame.h"
 
 namespace chronormal::test {
 

@@ -24,7 +24,7 @@
 
 #include "chronormal/core/memory.h"
 #include "chronormal/core/views.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 
 namespace chronormal {
 

@@ -28,7 +28,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
 

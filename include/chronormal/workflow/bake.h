@@ -2,7 +2,7 @@
 ///
 ///     exact      extra morph targets that carry the quadratic terms of eq. 30, driven by products of weights: exact at
 ///                every instant in every host that adds up targets
-///     endpoint   the best single delta per target (normals/end_delta.h): right at the ends, with a stated error
+///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44)
 ///

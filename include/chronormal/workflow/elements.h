@@ -22,7 +22,7 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 
 /// Which normals. Corners share theirs across smooth edges; which edges are hard comes from one of three sources: the
-/// crease angle, or else what a file says (read_obj_shading() in io/obj.h), which the caller keeps alive.
+/// crease angle, or else what a file says (read_obj_shading() in io/mesh/obj.h), which the caller keeps alive.
 struct ElementOptions {
   ElementKind kind = ElementKind::kFaces;
   bool weld = true;           ///< vertices at one point in all keyframes are one, so that seams do not show

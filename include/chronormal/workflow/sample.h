@@ -7,7 +7,7 @@
 ///     neither    of a mesh that stands still: one keyframe and no segment
 ///
 /// Area-weighted normals at times are exact: the control normals of a segment are made once and evaluated in float32
-/// to 1e-6 rad (normals/evaluate.h). Other weightings are no polynomials and are computed anew at each time, and so are
+/// to 1e-6 rad (normals/normal_curves.h). Other weightings are no polynomials and are computed anew at each time, and so are
 /// all normals of weights; both in double, from positions that are not rounded to float32 before.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those
@@ -25,7 +25,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/evaluate.h"
+#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/elements.h"

@@ -14,8 +14,8 @@
 
 #include <hwy/cache_control.h>
 
-#include "normals/kernels/lanes-inl.h"
 #include "schemes/kernels/formulas-inl.h"
+#include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::HWY_NAMESPACE {

@@ -8,9 +8,9 @@
 
 #include <cstddef>
 
-#include "normals/kernels/lanes-inl.h"
 #include "schemes/counting.h"
 #include "schemes/kernels/curve_kernels.h"
+#include "simd/lanes-inl.h"
 
 #if defined(CHRONORMAL_SCHEMES_KERNELS_SCALARS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CHRONORMAL_SCHEMES_KERNELS_SCALARS_INL_H_

@@ -1,0 +1,155 @@
+/// Curves of normals: prepared once per segment, evaluated at any t at the speed of memory.
+///
+/// NormalCurves keeps the control normals of N elements in blocks of 16, each block in the fewest bytes that keep the
+/// tolerance, and one after the other, so that an evaluation is one pass over memory. What a block holds depends on
+/// the largest degree of its elements and on how precise they must be; in bytes for each element
+///
+///     degree 2   36  n0, m, n1 in float32: 16 x of n0, 16 y of n0, ...
+///                20  in int16 against the largest component of the element; or each of n0, m, n1 against its own
+///                    largest component, rounded up to a power of two (5 bits each): for slivers and collapsing faces
+///                12  n0, n1 in 11 bits and m in 10
+///     degree 1   24  n0, n1 in float32;   12 or 20  in int16, likewise
+///     degree 0   12  the unit normal in float32, 16 with its length
+///
+/// Scales are those of the element: a direction needs none, so none is stored. Runs of less than 4 blocks join a
+/// neighbour that can hold them, where both lie within the same 32 blocks.
+///
+/// Accuracy   The direction of every element is within `tolerance` of that of its control normals in double (which
+///            have 2^-50 of their products, so that a needle keeps fewer digits), by a bound and not by measurement
+///            (docs/theory.md, section 13): where n(t) gets small against its control normals, their rounding counts
+///            more, so each element carries a certificate of how small it can get. Where float32 cannot promise 1e-6
+///            rad the element is *flagged* and evaluated in double; flagged_count() tells how many those are.
+/// Lengths    |n(t)| is kept where the tolerance is kExactTolerance, and is lost in compact curves.
+/// Ownership  the curves own their memory; results go to the caller's.
+/// Threads    const functions may run at the same time. On one thread and at one t they do not allocate or throw. The
+///            same bits on every instruction set, compiler and number of threads.
+/// Speed      results aligned to 64 bytes, packed, as planes or in four bytes, are fastest; docs/benchmarks.md.
+#ifndef CHRONORMAL_NORMALS_NORMAL_CURVES_H_
+#define CHRONORMAL_NORMALS_NORMAL_CURVES_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/memory.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/encodings.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+struct CurveWeights;
+
+/// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
+inline constexpr double kExactTolerance = 1e-6;  // radians
+/// A good choice for shading: a twentieth of a degree. Most blocks take 12 or 20 bytes.
+inline constexpr double kCompactTolerance = 1e-3;  // radians
+
+struct CurveOptions {
+  /// The largest angle, in radians, by which a unit normal may be off. At least kExactTolerance, at most 0.2; what is
+  /// beyond counts as these.
+  double tolerance = kExactTolerance;
+};
+
+class NormalCurves {
+ public:
+  NormalCurves() = default;
+  /// Curves can be moved, which leaves empty ones, but not copied.
+  NormalCurves(NormalCurves&& other) noexcept { *this = std::move(other); }
+  NormalCurves& operator=(NormalCurves&& other) noexcept;
+
+  /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
+  explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
+
+  /// The same of all faces of a segment, or of all elements of the groups, straight from positions, without an array
+  /// of control normals in between. (Meshes in no order need more for a while: 32 bytes a vertex, and groups of them
+  /// 128 a face up to half a gigabyte.) Where many segments are prepared one after the other, name the curves of the
+  /// one before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new
+  /// pages; the 32 bytes a vertex are then kept for the next one.
+  ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
+  [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
+                                             Threads threads = Threads::kOne, NormalCurves* reuse = nullptr);
+  [[nodiscard]] static NormalCurves of_groups(const Segment& segment, const NormalGroups& groups,
+                                              const CurveOptions& options = {}, Threads threads = Threads::kOne,
+                                              NormalCurves* reuse = nullptr);
+
+  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
+  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0.
+  /// t in [0, 1]; result must have size() elements
+  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne) const;
+  /// The same in four bytes each; see normals/encodings.h for what becomes of (0, 0, 0).
+  std::size_t unit_normals(double t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
+  std::size_t unit_normals(double t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
+
+  /// Writes the unit normals at many t, reading the curves from memory once: motion blur, or playing a block of frames.
+  /// (Once for each t where results are neither all packed nor all planes.) results[k] is for times[k], and there are
+  /// as many; returns the number of (0, 0, 0) of all of them. Throws std::bad_alloc.
+  std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
+                           Threads threads = Threads::kOne) const;
+  std::size_t unit_normals(std::span<const double> times, std::span<const std::span<Octahedral>> results,
+                           Threads threads = Threads::kOne) const;
+
+  /// Writes n(t) itself: length = 2 x area. A component beyond the range of float becomes the largest float.
+  /// keeps_lengths() must hold; t in [0, 1]; result must have size() elements
+  void normals(double t, VectorView<float> result) const noexcept;
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool keeps_lengths() const noexcept { return keeps_lengths_; }
+  /// How many elements have true degree 0, 1 and 2.
+  [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept { return degree_counts_; }
+  /// How many elements are evaluated in double.
+  [[nodiscard]] std::size_t flagged_count() const noexcept { return flagged_.size(); }
+  /// Memory that is kept, in bytes, but for what fills up the last block, and what is kept for the next `reuse`.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+  /// How many elements are kept in blocks of each number of bytes.
+  struct ByteCount {
+    std::size_t bytes = 0;  ///< for each element
+    std::size_t elements = 0;
+  };
+  [[nodiscard]] std::vector<ByteCount> byte_counts() const;
+
+ private:
+  friend class NormalPlayback;
+  friend class CurveBuilder;
+
+  // Neighbouring blocks of one kind (normals/curves/kernels/curve_blocks.h).
+  struct Run {
+    std::size_t first_block = 0;
+    std::size_t block_count = 0;
+    std::size_t offset = 0;  // of the first block, in blocks_
+    int kind = 0;
+  };
+  template <class Output>
+  std::size_t evaluate_range(IndexRange range, double t, const CurveWeights& weights,
+                             const Output& output) const noexcept;
+  template <class Output>
+  std::size_t write_flagged(IndexRange range, double t, const Output& output) const noexcept;
+  std::size_t write_flagged(double t, VectorView<float> result) const noexcept;
+  template <class Output>
+  std::size_t evaluate_all(double t, const Output& output, Threads threads) const;
+  template <class Output>
+  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, std::size_t step,
+                            Threads threads) const;
+  template <class Body>
+  std::size_t over_pieces(Threads threads, std::size_t piece, Body body) const;
+
+  std::size_t size_ = 0;
+  bool keeps_lengths_ = true;
+  std::array<std::size_t, 3> degree_counts_{};
+  AlignedBytes blocks_;
+  std::vector<Run> runs_;
+  std::vector<std::int16_t> exponents_;  // a block holds n * 2^-exponent; empty where all are 0
+  std::vector<std::size_t> flagged_;     // elements that are evaluated in double, ascending
+  std::vector<ControlNormals> exact_;    // of these
+  AlignedArray<float> scratch_;          // of preparing, for the next one
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_NORMAL_CURVES_H_

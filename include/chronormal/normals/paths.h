@@ -1,0 +1,88 @@
+/// Vertices that do not move on straight lines: normals as polynomials of higher degree.
+///
+/// Inside a segment every vertex moves as a polynomial of degree K in t, given by K + 1 control positions in Bernstein
+/// form; edges have the same degree, and a normal, their cross product, has degree 2 K:
+///
+///     K = 2   position, velocity and acceleration of one keyframe           2 K = 4: five control normals
+///     K = 3   position and velocity of two keyframes (cubic Hermite)         2 K = 6: seven
+///     K = 1   the straight lines of Segment                                  2 K = 2: three, ControlNormals
+///
+/// As with those, areas add up: the area-weighted normal of a vertex is the sum of the control normals of its faces,
+/// exact at every t. The other way is to cut the motion into straight pieces; cut_into_segments() does that to a stated
+/// error, after which everything that takes a Motion applies.
+///
+/// Units      positions: any length L; velocities L / s; accelerations L / s^2; control normals L^2; t in [0, 1].
+/// Threads    pure.
+#ifndef CHRONORMAL_NORMALS_PATHS_H_
+#define CHRONORMAL_NORMALS_PATHS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/polynomial.h"
+#include "chronormal/core/result.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+/// One piece of a motion of degree K. The topology must outlive it.
+template <std::size_t K>
+struct PolynomialSegment {
+  const Topology* topology = nullptr;
+  std::array<std::vector<Vec3d>, K + 1> control;  ///< control positions: control[i][vertex]
+  double start_time = 0;                          ///< seconds, at t = 0
+  double end_time = 1;                            ///< seconds, at t = 1
+};
+
+/// The control normals of one element of a motion of degree K.
+template <std::size_t K>
+using PolynomialNormals = Bernstein<Vec3d, 2 * K>;
+
+/// p + v s + a s^2 / 2 with s = seconds since start_time. Where the next keyframe is somewhere else, the motion jumps.
+/// All views must have as many elements as the topology has vertices
+[[nodiscard]] PolynomialSegment<2> accelerated_segment(const Topology& topology, VectorView<const float> positions,
+                                                       VectorView<const float> velocities,
+                                                       VectorView<const float> accelerations, double start_time,
+                                                       double end_time);
+
+/// The cubic with the given positions and velocities at both ends: the CUBICSPLINE of glTF.
+/// All views must have as many elements as the topology has vertices
+[[nodiscard]] PolynomialSegment<3> hermite_segment(const Topology& topology, VectorView<const float> from,
+                                                   VectorView<const float> from_velocities, VectorView<const float> to,
+                                                   VectorView<const float> to_velocities, double start_time,
+                                                   double end_time);
+
+/// Writes the control normals of a range of faces; (K + 1)^2 cross products per triangle. K = 1, 2 or 3.
+/// result must have faces.count elements
+template <std::size_t K>
+void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange faces,
+                             std::span<PolynomialNormals<K>> result) noexcept;
+
+/// Writes the control normals of a range of elements, sums of those of the faces, in the order of NormalGroups.
+/// of_faces must have those of all faces, result as many elements as the range
+template <std::size_t K>
+void polynomial_group_normals(const NormalGroups& groups, std::span<const PolynomialNormals<K>> of_faces,
+                              IndexRange elements, std::span<PolynomialNormals<K>> result) noexcept;
+
+/// n(t) / |n(t)| in double, with the degenerate cases of unit_normal_at() in control_normals.h: where n(t) = 0 the
+/// limit from before (at t = 0 from after), and whether that from the other side agrees.
+template <std::size_t N>
+[[nodiscard]] UnitNormal unit_normal_at(const std::array<Vec3d, N>& normals, double t) noexcept;
+
+/// Cuts the motion into equally long straight pieces, as few as prove that no vertex is anywhere further than
+/// `distance` from its curve: as many as the root of the largest second difference asks for. Keyframes are float32:
+/// their rounding, 2^-24 of the coordinates, comes on top.
+/// Errors: kUsage for a distance that is not positive, and where it would take more than most_pieces.
+template <std::size_t K>
+[[nodiscard]] Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double distance,
+                                               std::size_t most_pieces = 10000);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_PATHS_H_

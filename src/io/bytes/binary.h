@@ -1,0 +1,66 @@
+/// Numbers as bytes, in either byte order: what the binary formats share. Private to io.
+#ifndef CHRONORMAL_IO_BYTES_BINARY_H_
+#define CHRONORMAL_IO_BYTES_BINARY_H_
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace chronormal::binary {
+
+/// Reads the number whose first byte is at `at`.
+template <class T>
+[[nodiscard]] T load(const char* at, std::endian order) noexcept {
+  std::array<char, sizeof(T)> raw{};
+  std::memcpy(raw.data(), at, sizeof(T));
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<T>(raw);
+}
+
+template <class T>
+void append(std::string& text, T value, std::endian order) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  text.append(raw.data(), raw.size());
+}
+
+/// What is wrong with a coordinate that is to be a float32; nullptr for nothing.
+[[nodiscard]] inline const char* coordinate_fault(double value) noexcept {
+  if (!std::isfinite(value)) return "the coordinate is not a finite number";
+  if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large";
+  return nullptr;
+}
+
+/// Reads count coordinates of the type Real, float or double, from the bytes at `at`, rounded to float32. Returns how
+/// many were read: fewer than count where the next one has a coordinate_fault().
+template <class Real>
+[[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order,
+                                           float* result) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Real value = load<Real>(at + i * sizeof(Real), order);
+    if (coordinate_fault(double{value}) != nullptr) return i;
+    result[i] = static_cast<float>(value);
+  }
+  return count;
+}
+
+/// Whether count items of item_size bytes fit into so many bytes.
+[[nodiscard]] constexpr bool fits(std::uint64_t count, std::uint64_t item_size, std::uint64_t bytes_left) noexcept {
+  return item_size == 0 || count <= bytes_left / item_size;
+}
+
+/// The place of a byte: "NAME, byte N".
+[[nodiscard]] inline std::string place(const std::string& name, std::size_t at) {
+  return name + ", byte " + std::to_string(at);
+}
+
+}  // namespace chronormal::binary
+
+#endif  // CHRONORMAL_IO_BYTES_BINARY_H_

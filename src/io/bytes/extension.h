@@ -1,0 +1,25 @@
+/// The extension of a file name. Private to io.
+#ifndef CHRONORMAL_IO_BYTES_EXTENSION_H_
+#define CHRONORMAL_IO_BYTES_EXTENSION_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace chronormal {
+
+/// In lower case and with the dot (".obj"); empty where there is none.
+[[nodiscard]] inline std::string lower_extension(std::string_view path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
+  const std::size_t dot = path.rfind('.');
+  std::string extension(dot == std::string_view::npos ? std::string_view() : path.substr(dot));
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_BYTES_EXTENSION_H_

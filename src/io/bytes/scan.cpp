@@ -1,0 +1,91 @@
+#include "io/bytes/scan.h"
+
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+namespace chronormal::scan {
+namespace {
+
+// std::from_chars takes no plus sign.
+std::string_view without_plus(std::string_view word) noexcept {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
+  return word;
+}
+
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+// Whether a number that from_chars found out of range is too large (true) or too small (false): by the decimal
+// exponent of its first digit that is not 0. Such numbers are far from 1, so the sign of that exponent decides.
+bool is_large(std::string_view number) noexcept {
+  constexpr std::int64_t kFar = std::int64_t{1} << 40;
+  const std::size_t exponent_at = number.find_first_of("eE");
+  std::int64_t exponent = 0;
+  if (exponent_at != std::string_view::npos) {
+    const std::string_view digits = without_plus(number.substr(exponent_at + 1));
+    if (parse_integer(digits, exponent) == NumberFault::kTooLarge) exponent = digits.front() == '-' ? -kFar : kFar;
+    if (exponent > kFar) exponent = kFar;
+    if (exponent < -kFar) exponent = -kFar;
+  }
+  std::int64_t whole_digits = 0, zeros = 0;  // digits before the point, and zeros before the first other digit
+  bool after_point = false, significant = false;
+  for (const char c : number.substr(0, exponent_at)) {
+    if (c == '.') after_point = true;
+    if (!is_digit(c)) continue;
+    if (!after_point) ++whole_digits;
+    significant = significant || c != '0';
+    if (!significant) ++zeros;
+  }
+  return significant && whole_digits - zeros - 1 + exponent > 0;
+}
+
+}  // namespace
+
+NumberFault parse_float(std::string_view word, float& value) noexcept {
+  word = without_plus(word);
+  const char* const last = word.data() + word.size();
+  const auto [end, code] = std::from_chars(word.data(), last, value);
+  if (code == std::errc::invalid_argument || end != last) return NumberFault::kNotANumber;
+  if (code == std::errc::result_out_of_range) {
+    if (is_large(word)) return NumberFault::kTooLarge;
+    double wide = 0;
+    const bool tiny = std::from_chars(word.data(), last, wide).ec == std::errc::result_out_of_range;
+    value = tiny ? std::copysign(0.0F, word.front() == '-' ? -1.0F : 1.0F) : static_cast<float>(wide);
+    return NumberFault::kNone;
+  }
+  if (std::isfinite(value)) return NumberFault::kNone;
+  const bool spelt = word.find_first_of("nN") != std::string_view::npos;  // nan, inf, infinity
+  return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
+}
+
+NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept {
+  word = without_plus(word);
+  const char* const last = word.data() + word.size();
+  const auto [end, code] = std::from_chars(word.data(), last, value);
+  if (code == std::errc::invalid_argument || end != last) return NumberFault::kNotANumber;
+  return code == std::errc::result_out_of_range ? NumberFault::kTooLarge : NumberFault::kNone;
+}
+
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = "'";
+  for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
+  text += word.size() > kLongest ? "...'" : "'";
+  return text;
+}
+
+std::string describe(NumberFault fault, std::string_view word) {
+  if (word.empty()) return "a number is missing";
+  switch (fault) {
+    case NumberFault::kNotFinite:
+      return quoted(word) + " is not a finite number";
+    case NumberFault::kTooLarge:
+      return quoted(word) + " is too large";
+    case NumberFault::kNotANumber:
+    case NumberFault::kNone:
+      break;
+  }
+  return quoted(word) + " is not a number";
+}
+
+}  // namespace chronormal::scan

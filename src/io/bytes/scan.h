@@ -1,0 +1,80 @@
+/// Lines, words and numbers of text: what the text formats share. Private to io.
+#ifndef CHRONORMAL_IO_BYTES_SCAN_H_
+#define CHRONORMAL_IO_BYTES_SCAN_H_
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace chronormal::scan {
+
+/// Blank inside a line; CR too, so that CRLF needs no care.
+[[nodiscard]] constexpr bool is_blank(char c) noexcept {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// Hands out the lines of a text without their ends, counted from 1.
+class Lines {
+ public:
+  /// separator ends a line: '\n' (which includes CRLF) or '\r'.
+  Lines(std::string_view text, char separator) noexcept : text_(text), separator_(separator) {}
+
+  /// Moves to the next line; false at the end of the text.
+  [[nodiscard]] bool next() noexcept {
+    if (position_ >= text_.size()) return false;
+    const std::size_t end = text_.find(separator_, position_);
+    line_ = text_.substr(position_, end == std::string_view::npos ? end : end - position_);
+    position_ = end == std::string_view::npos ? text_.size() : end + 1;
+    ++number_;
+    return true;
+  }
+
+  [[nodiscard]] std::string_view line() const noexcept { return line_; }
+  [[nodiscard]] std::size_t number() const noexcept { return number_; }
+  [[nodiscard]] std::size_t position() const noexcept { return position_; }  ///< of the byte after the line and its end
+
+ private:
+  std::string_view text_;
+  std::string_view line_;
+  std::size_t position_ = 0;
+  std::size_t number_ = 0;
+  char separator_;
+};
+
+/// Takes the next word off the front of a line; empty at its end.
+[[nodiscard]] inline std::string_view take_word(std::string_view& line) noexcept {
+  std::size_t first = 0;
+  while (first < line.size() && is_blank(line[first])) ++first;
+  std::size_t end = first;
+  while (end < line.size() && !is_blank(line[end])) ++end;
+  const std::string_view word = line.substr(first, end - first);
+  line.remove_prefix(end);
+  return word;
+}
+
+enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
+
+/// Reads the whole word as a float32, rounded to nearest; too small a number becomes a denormal or 0.
+[[nodiscard]] NumberFault parse_float(std::string_view word, float& value) noexcept;
+
+/// Reads the whole word as an integer.
+[[nodiscard]] NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept;
+
+/// The word in quotes, cut short and without control characters: fit for a message.
+[[nodiscard]] std::string quoted(std::string_view word);
+
+/// "'abc' is not a number": what is wrong with a word that did not parse.
+[[nodiscard]] std::string describe(NumberFault fault, std::string_view word);
+
+/// Appends the fewest digits that read back as the same number.
+template <class Number>
+void append_number(std::string& text, Number number) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+}
+
+}  // namespace chronormal::scan
+
+#endif  // CHRONORMAL_IO_BYTES_SCAN_H_

@@ -1,0 +1,52 @@
+/// Zip files: members stored or deflated, with zip64. Private to io.
+///
+/// The directory at the end of the file says where each member is and how large; it is believed only where the member
+/// agrees. (The layout is that of PKWARE's APPNOTE.)
+#ifndef CHRONORMAL_IO_BYTES_ZIP_H_
+#define CHRONORMAL_IO_BYTES_ZIP_H_
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+
+namespace chronormal::zip {
+
+/// An entry of the directory.
+struct Member {
+  std::string_view name;
+  std::uint16_t flags = 0;
+  std::uint16_t method = 0;  ///< 0 stored, 8 deflated
+  std::uint32_t checksum = 0;
+  std::uint64_t packed_size = 0;  ///< bytes in the file
+  std::uint64_t size = 0;         ///< bytes when unpacked
+  std::uint64_t header = 0;       ///< byte of the member's own header
+};
+
+/// Lists the members; views point into file. Errors: kInvalidInput with the place "NAME, byte N": no zip file, a
+/// directory that does not lie inside it, the same name twice.
+[[nodiscard]] Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name);
+
+/// The first `most` bytes of a member, or all where it has fewer: a view into file, or into storage where they had to
+/// be unpacked. The checksum is verified where they are all. Takes no more memory than that, and none for a size that
+/// deflate can not have reached.
+/// Errors: kInvalidInput with the place "NAME, MEMBER": encrypted, another method, data that are damaged or of another
+/// size than the directory says.
+[[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
+                                                   std::string& storage, const std::string& name);
+
+struct Part {
+  std::string_view name;
+  std::string_view bytes;
+};
+
+/// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets from `zip64_from` on take zip64 fields
+/// (tests make it small).
+[[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
+
+}  // namespace chronormal::zip
+
+#endif  // CHRONORMAL_IO_BYTES_ZIP_H_

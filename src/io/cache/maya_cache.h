@@ -1,0 +1,73 @@
+/// Geometry caches of Maya: a description in XML, and the points in .mc (32-bit sizes) or .mcx (64-bit sizes) files.
+///
+///     cache.xml   cache.mc                                           one file
+///     cache.xml   cacheFrame1.mc  cacheFrame2.mc  cacheFrame2Tick125.mc   one file per frame or part of one
+///
+/// A file of points is a tree of chunks in big endian. After a group CACH with the times of start and end come groups
+/// MYCH, one for each time:
+///
+///     TIME  int32 ticks (else the start of the file)
+///     CHNM  name of a channel, SIZE  int32 points, FVCA or DVCA  points x 3 of float32 or float64; any number of these
+///     ...   other chunks, which are passed over
+///
+/// Maya counts 6000 ticks a second; a frame is TimePerFrame ticks of the description, 250 where it does not say (24
+/// frames a second). A cache that is sampled more or less often than once a frame is nothing special.
+///
+/// A channel is the points of one mesh. Which one it is: the one that the caller names; else the one with as many
+/// points as the mesh has vertices, and among several of those the only one whose ChannelInterpretation is "positions".
+///
+/// Threads    pure, but for the files that read_maya_cache() opens.
+#ifndef CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
+#define CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "io/cache/position_cache.h"
+
+namespace chronormal {
+
+constexpr std::int32_t kMayaTicksPerSecond = 6000;
+
+/// What a description says.
+struct MayaCacheDescription {
+  struct Channel {
+    std::string name;
+    std::string interpretation;       ///< "positions", "normals", ...
+    bool is_regular = false;          ///< there is a sample every `step` ticks from start to end
+    std::int32_t step = 0;            ///< > 0 where is_regular
+    std::int32_t start = 0, end = 0;  ///< ticks; start <= end where is_regular
+  };
+
+  bool has_file_per_frame = false;
+  std::string extension;  ///< of the files of points: ".mc" or ".mcx"
+  std::int32_t ticks_per_frame = 250;
+  std::vector<Channel> channels;
+};
+
+/// Reads a description, of which name is the name for messages.
+/// Errors: kInvalidInput with the place "NAME, byte N": no XML, another root, types and formats unknown, numbers that
+/// are none, more than 16 MiB.
+[[nodiscard]] Result<MayaCacheDescription> read_maya_description(std::string_view bytes, const std::string& name);
+
+/// Reads one .mc or .mcx file by itself.
+/// Errors: kInvalidInput with the place "NAME, byte N", followed by channel and point for a coordinate that is not
+/// finite or too large: chunks that do not lie inside the one around them, or are in no order that means something; no
+/// channel that the options choose, or several (the message names them); a channel whose number of points changes.
+[[nodiscard]] Result<PositionCache> read_maya_points(std::string_view bytes, const std::string& name,
+                                                     const CacheOptions& options = {});
+
+/// Reads a description and the files of points beside it, which are those in its own folder that begin with its own
+/// name without ".xml"; nothing else is opened. Samples are sorted by time.
+///
+/// Errors: those of both, with the file name in the place; kFailed for files that can not be opened; kInvalidInput with
+/// the missing time and the file where a regularly sampled channel has not all the samples that the description
+/// declares.
+[[nodiscard]] Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOptions& options = {});
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_CACHE_MAYA_CACHE_H_

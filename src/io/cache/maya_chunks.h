@@ -1,0 +1,42 @@
+/// The chunks of .mc and .mcx files, and the choice of a channel. Private to io.
+#ifndef CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
+#define CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "io/cache/maya_cache.h"
+#include "io/cache/position_cache.h"
+
+namespace chronormal::maya {
+
+/// The points of one channel at one time.
+struct Points {
+  std::string_view channel;  ///< points into the file
+  std::int32_t ticks = 0;
+  std::uint32_t count = 0;
+  bool is_double = false;
+  std::size_t begin = 0;  ///< byte of the first coordinate, of 3 x count that are there
+};
+
+/// Lists all points of a file in its order. Errors: as read_maya_points().
+[[nodiscard]] Result<std::vector<Points>> list_points(std::string_view bytes, const std::string& name);
+
+/// The channel of a list that the options choose. Errors: kInvalidInput with name as the place; the message names the
+/// channels that there are.
+[[nodiscard]] Result<std::string> choose_channel(const std::vector<Points>& list, const CacheOptions& options,
+                                                 const std::vector<MayaCacheDescription::Channel>& described,
+                                                 const std::string& name);
+
+/// Reads the points of one channel from a list, and appends them to the cache; the time is in ticks / 6000. Errors: as
+/// read_maya_points().
+[[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
+                                    const std::string& name, PositionCache& cache);
+
+}  // namespace chronormal::maya
+
+#endif  // CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_

@@ -1,0 +1,138 @@
+#include "io/cache/md2.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "chronormal/motion/validate.h"
+#include "io/bytes/binary.h"
+#include "io/bytes/scan.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::endian kOrder = std::endian::little;
+constexpr std::size_t kHeaderSize = 68, kTriangleSize = 12, kFrameHeaderSize = 40, kNameAt = 24, kNameSize = 16;
+
+// A table of records that lies inside the file.
+struct Table {
+  std::size_t count = 0, begin = 0, record_size = 0;
+
+  [[nodiscard]] std::size_t record(std::size_t i) const { return begin + i * record_size; }
+};
+
+class Md2Reader {
+ public:
+  Md2Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  Result<Motion> read(double frames_per_second) {
+    if (Status status = read_header(); !status) return status.error();
+    Motion motion;
+    std::vector<std::uint32_t> corners;
+    if (Status status = read_corners(corners); !status) return status.error();
+    Result<Topology> topology = Topology::triangles(vertex_count_, std::move(corners));
+    if (!topology) return invalid_input(binary::place(name_, triangles_.begin), topology.error().text());
+    motion.topology = std::move(topology).value();
+    motion.keyframes.resize(frames_.count);
+    for (std::size_t k = 0; k < frames_.count; ++k) {
+      if (Status status = read_frame(k, motion.keyframes[k]); !status) return status.error();
+      motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;
+    }
+    motion.connect_as_sequence();
+    if (Status status = validate(motion); !status)
+      return invalid_input(name_ + ", " + status.error().place, status.error().message);
+    return motion;
+  }
+
+ private:
+  [[nodiscard]] Error error(std::size_t at, std::string message) const {
+    return invalid_input(binary::place(name_, at), std::move(message));
+  }
+  [[nodiscard]] std::int32_t field(std::size_t at) const {
+    return binary::load<std::int32_t>(bytes_.data() + at, kOrder);
+  }
+
+  [[nodiscard]] Status read_header() {
+    if (!bytes_.starts_with("IDP2")) return error(0, "this is not an MD2 file: its first word is not IDP2");
+    if (bytes_.size() < kHeaderSize) return error(bytes_.size(), "the file ends inside its header of 68 bytes");
+    if (field(4) != 8) return error(4, "version " + std::to_string(field(4)) + " of MD2 is unknown; there is only 8");
+    if (field(24) <= 0) return error(24, "the header declares " + std::to_string(field(24)) + " vertices");
+    vertex_count_ = static_cast<std::size_t>(field(24));
+    const std::uint64_t frame_size = kFrameHeaderSize + std::uint64_t{4} * vertex_count_;
+    if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
+      return error(16, "a frame of " + std::to_string(vertex_count_) + " vertices has " + std::to_string(frame_size) +
+                           " bytes, but the header declares " + std::to_string(field(16)));
+    if (Status status = read_table(32, 52, kTriangleSize, 1, "triangles", triangles_); !status) return status;
+    return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frames", frames_);
+  }
+
+  [[nodiscard]] Status read_table(std::size_t count_at, std::size_t begin_at, std::size_t record_size,
+                                  std::int32_t fewest, const std::string& what, Table& table) const {
+    const std::int32_t count = field(count_at), begin = field(begin_at);
+    if (count < fewest)
+      return error(count_at, "the header declares " + std::to_string(count) + " " + what + "; a motion needs " +
+                                 std::to_string(fewest) + " or more");
+    if (begin < 0 || static_cast<std::size_t>(begin) > bytes_.size() ||
+        !binary::fits(static_cast<std::uint64_t>(count), record_size, bytes_.size() - static_cast<std::size_t>(begin)))
+      return error(begin_at, "the header declares " + std::to_string(count) + " " + what + " from byte " +
+                                 std::to_string(begin) + " on, but the file has only " + std::to_string(bytes_.size()) +
+                                 " bytes");
+    table = {static_cast<std::size_t>(count), static_cast<std::size_t>(begin), record_size};
+    return Success{};
+  }
+
+  [[nodiscard]] Status read_corners(std::vector<std::uint32_t>& corners) const {
+    corners.reserve(3 * triangles_.count);
+    for (std::size_t f = 0; f < triangles_.count; ++f) {
+      for (const std::size_t c : {std::size_t{0}, std::size_t{2}, std::size_t{1}}) {
+        const std::size_t at = triangles_.record(f) + 2 * c;
+        const auto vertex = binary::load<std::uint16_t>(bytes_.data() + at, kOrder);
+        if (vertex >= vertex_count_)
+          return invalid_input(binary::place(name_, at) + ", triangle " + std::to_string(f),
+                               "corner " + std::to_string(c) + " names vertex " + std::to_string(vertex) +
+                                   ", but the file has " + std::to_string(vertex_count_));
+        corners.push_back(vertex);
+      }
+    }
+    return Success{};
+  }
+
+  [[nodiscard]] Status read_frame(std::size_t k, Motion::Keyframe& keyframe) const {
+    const std::size_t at = frames_.record(k);
+    std::array<double, 6> scale_and_translate{};
+    for (std::size_t i = 0; i < 6; ++i)
+      scale_and_translate[i] = double{binary::load<float>(bytes_.data() + at + 4 * i, kOrder)};
+    const std::string_view label = bytes_.substr(at + kNameAt, kNameSize);
+    for (const char c : label.substr(0, label.find('\0'))) keyframe.name += c >= ' ' && c <= '~' ? c : '?';
+
+    keyframe.positions.resize(3 * vertex_count_);
+    for (std::size_t i = 0; i < keyframe.positions.size(); ++i) {
+      const std::size_t axis = i % 3, byte_at = at + kFrameHeaderSize + 4 * (i / 3) + axis;
+      const double value =
+          scale_and_translate[axis] * static_cast<double>(binary::load<std::uint8_t>(bytes_.data() + byte_at, kOrder)) +
+          scale_and_translate[3 + axis];
+      if (const char* const fault = binary::coordinate_fault(value))
+        return invalid_input(
+            binary::place(name_, byte_at) + ", frame " + std::to_string(k) + ", vertex " + std::to_string(i / 3),
+            fault);
+      keyframe.positions[i] = static_cast<float>(value);
+    }
+    return Success{};
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  std::size_t vertex_count_ = 0;
+  Table triangles_, frames_;
+};
+
+}  // namespace
+
+Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second) {
+  return Md2Reader(bytes, name).read(frames_per_second);
+}
+
+}  // namespace chronormal

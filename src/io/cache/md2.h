@@ -1,0 +1,36 @@
+/// MD2, the animated models of Quake II. Little endian; a header of 17 int32, of which these are read:
+///
+///     byte  0   "IDP2"            16   bytes of a frame     56   byte of the first frame
+///           4   version: 8        24   vertices, V
+///          32   triangles, F      40   frames, T            52   byte of the first triangle
+///
+///     triangle   3 x uint16 vertices, 3 x uint16 texture coordinates
+///     frame      3 x float32 scale, 3 x float32 translate, 16 characters of name, V x {3 bytes x y z, 1 byte normal}
+///
+/// A position is scale * byte + translate, in double, rounded to float32. All frames are one sequence, whatever clips
+/// their names tell of. Quake counts the corners of a triangle clockwise; they are turned round, so that normals point
+/// outwards.
+///
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_CACHE_MD2_H_
+#define CHRONORMAL_IO_CACHE_MD2_H_
+
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// Reads a motion, of which name is the name for messages; keyframe k is at k / frames_per_second and has the name of
+/// the frame ("stand01"). The result is valid (motion/validate.h).
+///
+/// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame where they are known: another
+/// first word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all
+/// of this before memory is taken), indices of no vertex, coordinates that are not finite or too large for float32.
+[[nodiscard]] Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second = 1);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_CACHE_MD2_H_

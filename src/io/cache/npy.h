@@ -1,0 +1,57 @@
+/// One NumPy array: a header that is a piece of Python, and its elements. Private to io.
+///
+///     "\x93NUMPY"  version 1.0  uint16 length   {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3), }
+///     elements
+#ifndef CHRONORMAL_IO_CACHE_NPY_H_
+#define CHRONORMAL_IO_CACHE_NPY_H_
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+
+namespace chronormal::npy {
+
+enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u' };
+
+/// Longest header that is read; NumPy itself stops at 10,000 bytes unless it is told otherwise.
+constexpr std::size_t kLongestHeader = 65536;
+
+struct Array {
+  Kind kind{};
+  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; floats 4 or 8
+  std::endian order = std::endian::little;
+  bool is_fortran = false;
+  std::vector<std::uint64_t> shape;
+  std::size_t data_begin = 0;  ///< byte of the first element
+  std::string_view data;       ///< the elements; set by the caller, which has them
+
+  [[nodiscard]] std::uint64_t element_count() const noexcept {
+    std::uint64_t count = 1;
+    for (const std::uint64_t length : shape) count *= length;
+    return count;
+  }
+  /// The element that is so many items after the first.
+  [[nodiscard]] double real(std::size_t item) const noexcept;           ///< kFloat
+  [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< else; negative: 2^64 - 1
+  [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger
+
+  /// "(2, 3, 3) of '<f4'": for messages.
+  [[nodiscard]] std::string text() const;
+};
+
+/// Reads the header of an array of total_size bytes, of which start are the first (all, or kLongestHeader + 12).
+/// Afterwards the elements of shape, none of whose products overflow, are exactly what follows data_begin. Errors:
+/// kInvalidInput with place: the message says what.
+[[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place);
+
+/// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
+[[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
+
+}  // namespace chronormal::npy
+
+#endif  // CHRONORMAL_IO_CACHE_NPY_H_

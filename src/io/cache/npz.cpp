@@ -1,0 +1,235 @@
+#include "io/cache/npz.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "io/bytes/binary.h"
+#include "io/bytes/zip.h"
+#include "io/cache/npy.h"
+
+namespace chronormal {
+namespace {
+
+using npy::Array;
+using npy::Kind;
+
+constexpr std::endian kOrder = std::endian::little;  // of what is written
+
+std::string element_place(const std::string& place, std::initializer_list<std::size_t> indices) {
+  std::string text = place + "[";
+  for (const std::size_t index : indices) text += (text.back() == '[' ? "" : ", ") + std::to_string(index);
+  return text + "]";
+}
+
+// One sample of an array (T, V, 3). Positions of float32 in C order are common, and copied in one go.
+Result<PositionCache> read_positions(const Array& array, const std::string& place) {
+  if (array.kind != Kind::kFloat || array.shape.size() != 3 || array.shape[2] != 3 || array.element_count() == 0)
+    return invalid_input(place,
+                         "positions must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+  const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
+  PositionCache cache;
+  cache.vertex_count = vertices;
+  cache.samples.resize(samples);
+  const std::size_t coordinates = 3 * vertices;
+  for (std::size_t k = 0; k < samples; ++k) {
+    std::vector<float>& positions = cache.samples[k].positions;
+    positions.resize(coordinates);
+    const auto item = [&](std::size_t i) {
+      return array.is_fortran ? k + samples * (i / 3 + vertices * (i % 3)) : k * coordinates + i;
+    };
+    std::size_t read = 0;
+    const char* const row = array.data.data() + k * coordinates * array.item_size;
+    if (!array.is_fortran && array.item_size == sizeof(float)) {
+      read = binary::load_coordinates<float>(row, coordinates, array.order, positions.data());
+    } else if (!array.is_fortran) {
+      read = binary::load_coordinates<double>(row, coordinates, array.order, positions.data());
+    } else {
+      for (; read < coordinates && binary::coordinate_fault(array.real(item(read))) == nullptr; ++read)
+        positions[read] = static_cast<float>(array.real(item(read)));
+    }
+    if (read < coordinates)
+      return invalid_input(element_place(place, {k, read / 3, read % 3}),
+                           binary::coordinate_fault(array.real(item(read))));
+  }
+  return cache;
+}
+
+Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const std::string& place) {
+  if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3 || array.element_count() == 0)
+    return invalid_input(place, "faces must be (faces, 3) of integers, but are " + array.text());
+  constexpr std::uint64_t kMostCorners = std::numeric_limits<std::uint32_t>::max();
+  if (array.element_count() > kMostCorners) return invalid_input(place, "the mesh has more than 4,294,967,295 corners");
+  const auto faces = static_cast<std::size_t>(array.shape[0]), corners = static_cast<std::size_t>(array.shape[1]);
+  std::vector<std::uint32_t> indices(faces * corners);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::size_t f = i / corners, c = i % corners;
+    const std::uint64_t vertex = array.vertex(array.is_fortran ? f + faces * c : i);
+    if (vertex >= vertex_count)
+      return invalid_input(element_place(place, {f, c}),
+                           "the face names a vertex that is not there: vertices are counted from 0 to " +
+                               std::to_string(vertex_count - 1));
+    indices[i] = static_cast<std::uint32_t>(vertex);
+  }
+  if (corners == 3) return Topology::triangles(vertex_count, std::move(indices));
+  std::vector<std::uint32_t> offsets(faces + 1);
+  for (std::size_t f = 0; f <= faces; ++f) offsets[f] = static_cast<std::uint32_t>(f * corners);
+  return Topology::polygons(vertex_count, std::move(offsets), std::move(indices));
+}
+
+Status read_times(const Array& array, PositionCache& cache, const std::string& place) {
+  if (array.shape.size() != 1 || array.shape[0] != cache.samples.size())
+    return invalid_input(place, "times must be a number for each of the " + std::to_string(cache.samples.size()) +
+                                    " keyframes, but are " + array.text());
+  for (std::size_t k = 0; k < cache.samples.size(); ++k) {
+    double& time = cache.samples[k].time;
+    if (array.kind == Kind::kFloat) time = array.real(k);
+    if (array.kind == Kind::kInteger) time = static_cast<double>(array.integer(k));
+    if (array.kind == Kind::kUnsigned) time = static_cast<double>(array.vertex(k));
+    if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is not a finite number");
+  }
+  return Success{};
+}
+
+void set_regular_times(PositionCache& cache, double frames_per_second) {
+  for (std::size_t k = 0; k < cache.samples.size(); ++k)
+    cache.samples[k].time = static_cast<double>(k) / frames_per_second;
+}
+
+// The arrays of an archive, one at a time.
+class Archive {
+ public:
+  Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members)
+      : bytes_(bytes), name_(name), members_(std::move(members)) {}
+
+  [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
+  [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
+
+  // Reads the array of that name into storage_, or finds it in the file; good until the next call.
+  [[nodiscard]] Result<Array> read(std::string_view array) {
+    const zip::Member* const member = find(array);
+    if (member == nullptr) return invalid_input(place(array), "the file has no array of this name");
+    Result<std::string_view> start = zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
+    if (!start) return start.error();
+    Result<Array> result = npy::read_header(start.value(), member->size, place(array));
+    if (!result) return result;
+    const Result<std::string_view> all =
+        start.value().size() == member->size
+            ? start
+            : zip::read_member(bytes_, *member, std::numeric_limits<std::uint64_t>::max(), storage_, name_);
+    if (!all) return all.error();
+    result.value().data = all.value().substr(result.value().data_begin);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] const zip::Member* find(std::string_view array) const {
+    for (const zip::Member& member : members_) {
+      if (member.name.starts_with(array) && member.name.substr(array.size()) == ".npy") return &member;
+    }
+    return nullptr;
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  std::vector<zip::Member> members_;
+  std::string storage_;
+};
+
+}  // namespace
+
+Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+  Result<Array> array = npy::read_header(bytes, bytes.size(), name + ", header");
+  if (!array) return array.error();
+  array.value().data = bytes.substr(array.value().data_begin);
+  Result<PositionCache> cache = read_positions(array.value(), name + ", positions");
+  if (cache) set_regular_times(cache.value(), options.frames_per_second);
+  return cache;
+}
+
+Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second) {
+  Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);
+  if (!members) return members.error();
+  Archive archive(bytes, name, std::move(members).value());
+
+  const Result<Array> positions = archive.read("positions");
+  if (!positions) return positions.error();
+  Result<PositionCache> cache = read_positions(positions.value(), archive.place("positions"));
+  if (!cache) return cache.error();
+
+  const Result<Array> faces = archive.read("faces");
+  if (!faces) return faces.error();
+  Result<Topology> topology = read_faces(faces.value(), cache.value().vertex_count, archive.place("faces"));
+  if (!topology) return topology.error();
+
+  set_regular_times(cache.value(), frames_per_second);
+  if (archive.has("times")) {
+    const Result<Array> times = archive.read("times");
+    if (!times) return times.error();
+    if (Status status = read_times(times.value(), cache.value(), archive.place("times")); !status)
+      return status.error();
+  }
+  return motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name);
+}
+
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_header("<f4", shape)) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t length : shape) count *= length;
+  bytes_.reserve(bytes_.size() + sizeof(float) * count);
+}
+
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values)
+    : bytes_(npy::write_header("<f8", shape)) {
+  for (const double value : values) binary::append(bytes_, value, kOrder);
+}
+
+void NpyBytes::append(std::span<const float> values) {
+  for (const float value : values) binary::append(bytes_, value, kOrder);
+}
+
+Result<std::string> write_npy_faces(const Topology& topology) {
+  const std::size_t faces = topology.face_count(), corners = faces == 0 ? 3 : topology.face(0).size();
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (topology.face(f).size() != corners)
+      return Error{ErrorCode::kUsage, "",
+                   "an array of faces has as many corners in every row, but face 0 has " + std::to_string(corners) +
+                       " and face " + std::to_string(f) + " has " + std::to_string(topology.face(f).size()) +
+                       "; triangulate the mesh"};
+  }
+  std::string bytes = npy::write_header(topology.vertex_count() <= 0x80000000U ? "<i4" : "<u4", {faces, corners});
+  bytes.reserve(bytes.size() + 4 * topology.corner_count());
+  for (const std::uint32_t vertex : topology.corners()) binary::append(bytes, vertex, kOrder);
+  return bytes;
+}
+
+std::string write_npz(std::span<const NpzMember> members) {
+  std::vector<std::string> names;
+  for (const NpzMember& member : members) names.push_back(std::string(member.name) + ".npy");
+  std::vector<zip::Part> parts;
+  for (std::size_t i = 0; i < members.size(); ++i) parts.push_back({names[i], members[i].npy});
+  return zip::write(parts);
+}
+
+Result<std::string> write_npz(const Motion& motion) {
+  if (Status status = check_is_sequence(motion); !status) return status.error();
+  const Result<std::string> faces = write_npy_faces(motion.topology);
+  if (!faces) return faces.error();
+  NpyBytes positions({motion.keyframes.size(), motion.topology.vertex_count(), 3});
+  std::vector<double> times;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    positions.append(keyframe.positions);
+    times.push_back(keyframe.time);
+  }
+  const NpyBytes time_array({times.size()}, times);
+  const std::array<NpzMember, 3> members = {
+      {{"positions", positions.bytes()}, {"faces", faces.value()}, {"times", time_array.bytes()}}};
+  return write_npz(members);
+}
+
+}  // namespace chronormal

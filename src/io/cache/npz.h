@@ -1,0 +1,80 @@
+/// NumPy arrays: a whole motion in one .npz, or positions alone in a .npy.
+///
+///     np.savez("walk.npz", positions=p, faces=f, times=t)
+///
+///     positions   (T, V, 3)   float32 or float64         T keyframes of V vertices
+///     faces       (F, 3)      any integer type           vertices counted from 0; (F, 4) are quads, and so on
+///     times       (T,)        any float or integer type  seconds; optional, else keyframe k is at k /
+///     frames_per_second
+///
+/// C and Fortran order, both byte orders, versions 1 to 3 of the array header; zip members stored or deflated
+/// (savez_compressed), zip64. Other arrays in the file are passed over. float64 positions are rounded to float32.
+///
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_CACHE_NPZ_H_
+#define CHRONORMAL_IO_CACHE_NPZ_H_
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "io/cache/position_cache.h"
+
+namespace chronormal {
+
+/// Reads a motion, of which name is the name for messages; the result is valid (motion/validate.h).
+///
+/// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
+/// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
+/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, times that
+/// do not ascend. Sizes that disagree between directory, member and array header are refused before memory is taken.
+/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are.
+[[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1);
+
+/// Reads a .npy file of positions (T, V, 3), as above; sample k is at k / options.frames_per_second.
+/// Errors: as read_npz().
+[[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
+                                             const CacheOptions& options = {});
+
+/// Writes positions (float32), faces (int32, or uint32 for more than 2^31 vertices) and times (float64), stored, so
+/// that the arrays can be mapped. The same motion gives the same bytes. Errors: kUsage without a place: blend shapes,
+/// and faces of different numbers of corners, which no (F, k) array holds.
+[[nodiscard]] Result<std::string> write_npz(const Motion& motion);
+
+/// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.
+class NpyBytes {
+ public:
+  /// An array of float32.
+  explicit NpyBytes(const std::vector<std::uint64_t>& shape);
+  /// A whole array.
+  NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
+
+  void append(std::span<const float> values);
+
+  /// The file, once all elements of the shape are there.
+  [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
+  [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// The faces of a mesh as write_npz() has them. Errors: kUsage for faces of different numbers of corners.
+[[nodiscard]] Result<std::string> write_npy_faces(const Topology& topology);
+
+struct NpzMember {
+  std::string_view name;  ///< of the array: "normals"
+  std::string_view npy;   ///< the bytes of its .npy file
+};
+
+/// Writes a .npz file of arrays, stored.
+[[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_CACHE_NPZ_H_

@@ -1,0 +1,67 @@
+#include "io/cache/pc2.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "io/cache/point_cache_body.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::string_view kFirstWord("POINTCACHE2\0", 12);
+constexpr std::size_t kHeaderSize = 32;
+constexpr std::endian kOrder = std::endian::little;
+
+}  // namespace
+
+Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+  if (!bytes.starts_with(kFirstWord))
+    return invalid_input(binary::place(name, 0), "this is not a PC2 file: its first word is not POINTCACHE2");
+  if (bytes.size() < kHeaderSize)
+    return invalid_input(binary::place(name, bytes.size()), "the file ends inside its header of 32 bytes");
+  if (const auto version = binary::load<std::int32_t>(bytes.data() + 12, kOrder); version != 1)
+    return invalid_input(binary::place(name, 12),
+                         "version " + std::to_string(version) + " of PC2 is unknown; there is only 1");
+  const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 16, kOrder),
+                                   binary::load<std::int32_t>(bytes.data() + 28, kOrder)};
+  const double first = double{binary::load<float>(bytes.data() + 20, kOrder)};
+  const double step = double{binary::load<float>(bytes.data() + 24, kOrder)};
+  if (!std::isfinite(first)) return invalid_input(binary::place(name, 20), "the first frame is not a finite number");
+  if (!std::isfinite(step) || !(step > 0))
+    return invalid_input(binary::place(name, 24), "the frames between two samples must be finite and above 0");
+  if (Status status = point_cache::check_counts(bytes, name, counts, kHeaderSize, 0); !status) return status.error();
+
+  Result<PositionCache> cache = point_cache::read_positions(bytes, name, counts, kHeaderSize, kOrder);
+  if (!cache) return cache;
+  for (std::size_t k = 0; k < cache.value().samples.size(); ++k)
+    cache.value().samples[k].time = (first + static_cast<double>(k) * step) / options.frames_per_second;
+  return cache;
+}
+
+Result<std::string> write_pc2(const Motion& motion, double frames_per_second) {
+  if (Status status = point_cache::check_writable(motion); !status) return status.error();
+  const std::size_t last = motion.keyframes.size() - 1;
+  const auto frame_of = [&](std::size_t k) { return motion.keyframes[k].time * frames_per_second; };
+  const auto first = static_cast<float>(frame_of(0));
+  const auto step = static_cast<float>((frame_of(last) - frame_of(0)) / static_cast<double>(last));
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double frame = double{first} + static_cast<double>(k) * double{step};
+    if (!(std::fabs(frame - frame_of(k)) <= 1e-3 * double{step}))
+      return Error{ErrorCode::kUsage, "",
+                   "PC2 holds keyframes at equal steps of time, but keyframe " + std::to_string(k) +
+                       " is not at one; write .mdd or .npz"};
+  }
+
+  std::string bytes(kFirstWord);
+  bytes.reserve(kHeaderSize + 12 * motion.topology.vertex_count() * motion.keyframes.size());
+  binary::append(bytes, std::int32_t{1}, kOrder);
+  binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kOrder);
+  binary::append(bytes, first, kOrder);
+  binary::append(bytes, step, kOrder);
+  binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kOrder);
+  point_cache::append_positions(bytes, motion, kOrder);
+  return bytes;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,40 @@
+/// PC2, the point cache of 3ds Max that most programs know. Little endian:
+///
+///     byte  0   "POINTCACHE2" and a zero byte
+///          12   int32    version: 1
+///          16   int32    vertices, V
+///          20   float32  first frame
+///          24   float32  frames from one sample to the next
+///          28   int32    samples, S
+///          32   float32  S x V x 3 coordinates
+///
+/// Sample k is at the frame first + k * step, which is that many frames / frames_per_second in seconds.
+///
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_CACHE_PC2_H_
+#define CHRONORMAL_IO_CACHE_PC2_H_
+
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "io/cache/position_cache.h"
+
+namespace chronormal {
+
+/// Reads a PC2 file, of which name is the name for messages.
+///
+/// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex for a coordinate that is not
+/// finite: another first word or version, no vertices or samples, more or fewer bytes than the header declares (refused
+/// before memory is taken), a first frame that is not finite, a step that is not above 0.
+[[nodiscard]] Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name,
+                                             const CacheOptions& options = {});
+
+/// Writes the positions of a motion. PC2 keeps no list of times: they must be at equal steps, to a thousandth of one.
+/// Errors: kUsage without a place: times at other steps, blend shapes, more than 2^31 - 1 vertices or keyframes.
+[[nodiscard]] Result<std::string> write_pc2(const Motion& motion, double frames_per_second = 1);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_CACHE_PC2_H_

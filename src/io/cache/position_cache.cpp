@@ -1,0 +1,60 @@
+#include "io/cache/position_cache.h"
+
+#include <utility>
+
+#include "chronormal/motion/validate.h"
+#include "io/bytes/scan.h"
+
+namespace chronormal {
+namespace {
+
+std::string number(double value) {
+  std::string text;
+  scan::append_number(text, value);
+  return text;
+}
+
+}  // namespace
+
+Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
+                                 const std::string& cache_name) {
+  if (cache.vertex_count != faces.vertex_count())
+    return invalid_input(cache_name, "it has " + std::to_string(cache.vertex_count) +
+                                         (cache.vertex_count == 1 ? " vertex" : " vertices") + ", but the mesh " +
+                                         mesh_name + " has " + std::to_string(faces.vertex_count()));
+  if (cache.samples.size() < 2)
+    return invalid_input(cache_name,
+                         "a motion needs two samples or more, but it has " + std::to_string(cache.samples.size()));
+  for (std::size_t k = 1; k < cache.samples.size(); ++k) {
+    const double before = cache.samples[k - 1].time, time = cache.samples[k].time;
+    if (!(before < time))
+      return invalid_input(cache_name + ", sample " + std::to_string(k),
+                           "its time, " + number(time) + " s, is not after that of sample " + std::to_string(k - 1) +
+                               ", " + number(before) + " s");
+  }
+
+  Motion motion;
+  motion.topology = std::move(faces);
+  motion.keyframes.reserve(cache.samples.size());
+  for (PositionCache::Sample& sample : cache.samples)
+    motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
+  motion.connect_as_sequence();
+  if (Status status = validate(motion); !status)
+    return invalid_input(cache_name + ", " + status.error().place, status.error().message);
+  return motion;
+}
+
+Status check_is_sequence(const Motion& motion) {
+  const auto misuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
+  bool is_sequence = motion.keyframes.size() > 1 && motion.segments.size() == motion.keyframes.size() - 1;
+  for (std::size_t s = 0; is_sequence && s < motion.segments.size(); ++s)
+    is_sequence = motion.segments[s].from == s && motion.segments[s].to == s + 1;
+  if (!is_sequence) return misuse("this format holds one sequence of two keyframes or more, which the motion is not");
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    if (keyframe.positions.size() != 3 * motion.topology.vertex_count())
+      return misuse("a keyframe has another number of coordinates than the vertices need");
+  }
+  return Success{};
+}
+
+}  // namespace chronormal

@@ -1,0 +1,58 @@
+/// Positions of vertices at several times, without faces: what point caches hold, and how a mesh gives them their
+/// faces.
+///
+///     mesh (faces, V vertices)  +  cache (V vertices at 11 times)  =  motion of 11 keyframes and 10 segments
+///
+/// Vertex v of the cache is vertex v of the mesh: a cache does not say so, and programs that renumber vertices when
+/// they export a mesh break it without a trace. The positions of the mesh itself are not used.
+///
+/// Shapes     V = vertices; positions are (V, 3).
+/// Units      times: seconds.
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
+#define CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/motion/topology.h"
+
+namespace chronormal {
+
+/// What a cache reader returns: at least one vertex and one sample, finite times and positions. The times need not
+/// ascend.
+struct PositionCache {
+  struct Sample {
+    double time = 0;               ///< seconds
+    std::vector<float> positions;  ///< (V, 3)
+  };
+
+  std::size_t vertex_count = 0;
+  std::vector<Sample> samples;
+};
+
+/// What a cache reader may need to know; most formats need little of it.
+struct CacheOptions {
+  double frames_per_second = 1;  ///< finite and > 0; for formats whose times are frames (PC2, npy)
+  std::size_t vertex_count = 0;  ///< of the mesh, to choose among the channels of a Maya cache; 0 where it is not known
+  std::string channel;           ///< which channel of a Maya cache; empty: by vertex_count
+};
+
+/// Gives the samples of a cache the faces of a mesh, as a sequence; every keyframe takes the name of the cache. The
+/// result is valid (motion/validate.h).
+///
+/// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
+/// fewer than two samples, times that do not ascend (the place has the sample).
+[[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
+                                               const std::string& cache_name);
+
+/// Whether all keyframes of a motion can stand in a file that has one list of them: its segments join neighbours, and
+/// every keyframe has 3 x vertex_count coordinates. Errors: kUsage without a place.
+[[nodiscard]] Status check_is_sequence(const Motion& motion);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_CACHE_POSITION_CACHE_H_

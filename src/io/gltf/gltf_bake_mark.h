@@ -1,0 +1,19 @@
+/// Reads extras.chronormal of a mesh: what a bake wrote there. Private to io.
+#ifndef CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
+#define CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "chronormal/io/gltf_document.h"
+
+namespace chronormal::gltf {
+
+/// Sets mesh.mark where there is one, or mesh.mark_fault where there is one that makes no sense. Extras are anyone's:
+/// they never make a file unreadable. pointer is that of the mesh, name that of the file; mesh has its target_count.
+void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
+                    GltfMesh& mesh);
+
+}  // namespace chronormal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_

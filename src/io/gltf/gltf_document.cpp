@@ -1,0 +1,232 @@
+#include "chronormal/io/gltf_document.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "io/gltf/glb.h"
+#include "io/gltf/gltf_bytes.h"
+#include "io/gltf/gltf_document_state.h"
+#include "io/gltf/gltf_draco.h"
+#include "io/gltf/gltf_model.h"
+
+namespace chronormal {
+
+namespace {
+
+// The triangles of a list, strip or fan (section 3.7.2.1 of the specification): every second one of a strip is turned
+// round, so that all face the same side. Indices left over make no triangle.
+std::vector<std::uint32_t> to_triangles(int mode, std::vector<std::uint32_t> elements) {
+  if (mode == 4) {
+    elements.resize(elements.size() - elements.size() % 3);
+    return elements;
+  }
+  std::vector<std::uint32_t> corners;
+  const std::size_t count = elements.size() < 3 ? 0 : elements.size() - 2;
+  corners.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mode == 5)
+      corners.insert(corners.end(), {elements[i], elements[i + 1 + i % 2], elements[i + 2 - i % 2]});
+    else
+      corners.insert(corners.end(), {elements[i + 1], elements[i + 2], elements[0]});
+  }
+  return corners;
+}
+
+std::vector<std::uint32_t> all_vertices(std::size_t count) {
+  std::vector<std::uint32_t> elements(count);
+  for (std::size_t i = 0; i < count; ++i) elements[i] = static_cast<std::uint32_t>(i);
+  return elements;
+}
+
+}  // namespace
+
+GltfDocument::GltfDocument(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+GltfDocument::GltfDocument(GltfDocument&&) noexcept = default;
+GltfDocument& GltfDocument::operator=(GltfDocument&&) noexcept = default;
+GltfDocument::~GltfDocument() = default;
+
+const std::string& GltfDocument::name() const noexcept { return state_->name; }
+const std::vector<GltfMesh>& GltfDocument::meshes() const noexcept { return state_->model.meshes; }
+const std::vector<GltfNode>& GltfDocument::nodes() const noexcept { return state_->model.nodes; }
+const std::vector<GltfAnimation>& GltfDocument::animations() const noexcept { return state_->model.animations; }
+const std::vector<std::string>& GltfDocument::extensions() const noexcept { return state_->model.extensions; }
+
+AffineTransform GltfDocument::world_transform(std::size_t node) const noexcept {
+  const auto& transforms = state_->model.transforms;
+  AffineTransform result;
+  for (std::optional<std::uint32_t> at = static_cast<std::uint32_t>(node); at; at = nodes()[*at].parent) {
+    const auto found = std::lower_bound(transforms.begin(), transforms.end(), *at,
+                                        [](const auto& entry, std::size_t index) { return entry.first < index; });
+    if (found != transforms.end() && found->first == *at) result = composed(found->second, result);
+  }
+  return result;
+}
+
+bool GltfDocument::recognises(std::string_view first_bytes) noexcept {
+  if (is_glb(first_bytes)) return true;
+  if (first_bytes.starts_with("\xEF\xBB\xBF")) first_bytes.remove_prefix(3);
+  const std::size_t first = first_bytes.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && first_bytes[first] == '{';
+}
+
+Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptions& options) {
+  Result<FileBytes> file = FileBytes::open(path);
+  if (!file) return file.error();
+  std::optional<std::string> folder;
+  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
+  const std::string name = path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
+  return read(std::move(file).value(), name, folder, options);
+}
+
+Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
+                                        const std::optional<std::string>& folder, const GltfOptions& options) {
+  Result<GltfDocument> document = read(file.bytes(), name, folder, options);
+  // The bytes stay where they are when the file moves: mapped, or in a string that is too long to lie in its object.
+  if (document) document.value().state_->file = std::move(file);
+  return document;
+}
+
+Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
+                                        const std::optional<std::string>& folder, const GltfOptions& options) {
+  gltf::Origin origin{name, folder, std::nullopt, options.allow_external};
+  GlbChunks chunks{bytes, 0, std::nullopt, {}};
+  if (is_glb(bytes)) {
+    Result<GlbChunks> found = read_glb(bytes, name);
+    if (!found) return found.error();
+    chunks = found.value();
+  }
+  origin.bin = chunks.bin;
+  Result<gltf::Model> model = gltf::parse_model(chunks.json, name, chunks.json_offset, bytes.size());
+  if (!model) return model.error();
+  return GltfDocument(std::make_unique<State>(chunks, std::move(model).value(), std::move(origin), options.most_bytes));
+}
+
+Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const {
+  const GltfPrimitive& declared = meshes()[mesh].primitives[primitive];
+  const gltf::PrimitiveSource& source = state_->model.sources[mesh][primitive];
+  gltf::Bytes& bytes = state_->bytes;
+  const std::string pointer = gltf::primitive_pointer(mesh, primitive);
+  const std::size_t vertex_count = declared.vertex_count, targets = wanted.targets ? declared.targets.size() : 0;
+  if (Status status = state_->check_size(mesh, primitive, targets, wanted.shading); !status) return status.error();
+
+  GltfGeometry geometry;
+  if (source.draco) {
+    const Result<gltf::View> view = bytes.view(source.draco->view);
+    if (!view) return view.error();
+    Result<GltfGeometry> decoded = gltf::decode_draco(view.value().bytes, state_->model, source, wanted.shading,
+                                                      bytes.place(pointer + "/extensions/KHR_draco_mesh_compression"));
+    if (!decoded) return decoded;
+    geometry = std::move(decoded).value();
+    if (source.indices && geometry.corners.size() != declared.element_count)
+      return invalid_input(bytes.place(pointer + "/indices"),
+                           "the accessor declares " + std::to_string(declared.element_count) +
+                               " indices, but the compressed mesh has " + std::to_string(geometry.corners.size()));
+  } else {
+    if (source.indices) {
+      Result<std::vector<std::uint32_t>> indices = bytes.indices(*source.indices, vertex_count);
+      if (!indices) return indices.error();
+      geometry.corners = to_triangles(declared.mode, std::move(indices).value());
+    } else {
+      geometry.corners = to_triangles(declared.mode, all_vertices(vertex_count));
+    }
+  }
+
+  // A compressed mesh may hold all of the attributes or some.
+  if (Status status =
+          state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
+      !status)
+    return status.error();
+  geometry.targets.resize(targets);
+  for (std::size_t k = 0; k < targets; ++k) {
+    GltfGeometry::Target& target = geometry.targets[k];
+    if (Status status =
+            state_->read(source.targets[k], wanted.shading, target.positions, target.normals, target.tangents);
+        !status)
+      return status.error();
+  }
+  state_->release(vertex_count * (targets + 1));
+  return geometry;
+}
+
+Result<GltfGeometry::Target> GltfDocument::target(std::size_t mesh, std::size_t primitive, std::size_t index,
+                                                  bool shading) const {
+  const GltfPrimitive& declared = meshes()[mesh].primitives[primitive];
+  if (Status status = state_->check_size(mesh, primitive, declared.targets.size(), shading); !status)
+    return status.error();
+  GltfGeometry::Target target;
+  const gltf::Attributes& attributes = state_->model.sources[mesh][primitive].targets[index];
+  if (Status status = state_->read(attributes, shading, target.positions, target.normals, target.tangents); !status)
+    return status.error();
+  state_->release(declared.vertex_count);
+  return target;
+}
+
+Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, std::size_t targets,
+                                       bool shading) const {
+  const std::size_t vertices = model.meshes[mesh].primitives[primitive].vertex_count, per_vertex = shading ? 40 : 12;
+  if (vertices <= most_bytes / per_vertex / (targets + 1)) return Success{};
+  return invalid_input(bytes.place(gltf::primitive_pointer(mesh, primitive)),
+                       "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
+                           " targets would take more than " + std::to_string(most_bytes) + " bytes");
+}
+
+Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
+                                 std::vector<float>& normals, std::vector<float>& tangents) {
+  const auto read_one = [this](const std::optional<std::size_t>& accessor, std::vector<float>& result) -> Status {
+    if (!accessor || !result.empty()) return Success{};
+    Result<std::vector<float>> floats = bytes.floats(*accessor);
+    if (!floats) return floats.error();
+    result = std::move(floats).value();
+    return Success{};
+  };
+  if (Status status = read_one(attributes.position, positions); !status) return status;
+  if (!shading) return Success{};
+  if (Status status = read_one(attributes.normal, normals); !status) return status;
+  return read_one(attributes.tangent, tangents);
+}
+
+void GltfDocument::State::release(std::size_t vertices) const noexcept {
+  constexpr std::size_t kMany = std::size_t{1} << 16;  // fewer are not worth the calls
+  if (vertices < kMany) return;
+  if (file) file->release();
+  bytes.release();
+}
+
+Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) const {
+  const gltf::TrackSource& source = state_->model.track_sources[animation][track];
+  Result<std::vector<float>> times = state_->bytes.floats(source.input);
+  if (!times) return times.error();
+  if (times.value().front() < 0)
+    return invalid_input(state_->bytes.accessor_place(source.input), "the time of the first key is negative");
+  for (std::size_t k = 1; k < times.value().size(); ++k) {
+    if (!(times.value()[k - 1] < times.value()[k]))
+      return invalid_input(state_->bytes.accessor_place(source.input),
+                           "the time of key " + std::to_string(k) + " is not after that of the one before");
+  }
+  Result<std::vector<float>> values = state_->bytes.floats(source.output);
+  if (!values) return values.error();
+  return GltfKeys{{times.value().begin(), times.value().end()}, {values.value().begin(), values.value().end()}};
+}
+
+Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_index) const {
+  const std::vector<GltfAnimation>& all = animations();
+  const auto named = std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == name_or_index; });
+  if (named != all.end() && !name_or_index.empty()) return static_cast<std::size_t>(named - all.begin());
+  std::size_t index = 0;
+  const char* const end = name_or_index.data() + name_or_index.size();
+  const auto [stop, code] = std::from_chars(name_or_index.data(), end, index);
+  if (code == std::errc() && stop == end && index < all.size()) return index;
+
+  constexpr std::size_t kMostNamed = 20;
+  std::string message = "there is no animation '" + name_or_index + "'";
+  if (all.empty()) message += ", the file has none";
+  for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i)
+    message.append(i == 0 ? "; there are " : ", ").append(std::to_string(i)).append(" ").append(all[i].name);
+  if (all.size() > kMostNamed) message += ", ...";
+  return Error{ErrorCode::kUsage, name(), message};
+}
+
+}  // namespace chronormal

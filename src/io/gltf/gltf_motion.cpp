@@ -1,0 +1,426 @@
+#include "chronormal/io/gltf_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "chronormal/motion/validate.h"
+#include "io/bytes/binary.h"
+#include "io/gltf/gltf_model.h"
+#include "io/gltf/gltf_weights.h"
+
+namespace chronormal {
+namespace {
+
+using gltf::WeightCurve;
+
+// A face that speaks for a quarter of an hour needs some 200,000 at the usual tolerance.
+constexpr std::size_t kMostPieces = 250000;
+
+// The primitives of a motion, one after the other, and what moves them.
+class Assembly {
+ public:
+  Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
+
+  // Adds the primitives with faces of a mesh.
+  void add_mesh(std::optional<std::size_t> node, std::size_t mesh) {
+    const std::vector<GltfPrimitive>& primitives = document_.meshes()[mesh].primitives;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      if (!primitives[p].has_faces()) continue;
+      result_.parts.push_back({node, mesh, p, vertex_count_, primitives[p].vertex_count, 0, 0});
+      vertex_count_ += primitives[p].vertex_count;
+      const bool moves = world_ && node && !document_.nodes()[*node].has_skin;
+      transforms_.push_back(moves ? document_.world_transform(*node) : AffineTransform());
+    }
+  }
+
+  // Adds the meshes that `wanted` names, in the world as often as nodes carry them.
+  template <class Wanted>
+  void add_meshes(const Wanted& wanted) {
+    if (world_) {
+      for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
+        if (const auto mesh = document_.nodes()[n].mesh; mesh && wanted(*mesh)) add_mesh(n, *mesh);
+      }
+    } else {
+      for (std::size_t m = 0; m < document_.meshes().size(); ++m) {
+        if (wanted(m)) add_mesh(std::nullopt, m);
+      }
+    }
+  }
+
+  [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
+  [[nodiscard]] const std::vector<GltfPart>& parts() const noexcept { return result_.parts; }
+
+  // Whether so many keyframes can be had, with what they are made from: targets, corners, and other_bytes of weights.
+  [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
+    constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kBytesPerCorner = 2 * sizeof(std::uint32_t);
+    constexpr std::size_t kBytesPerKeyframe = 128;  // with its segment and its place on the heap
+    std::size_t left = most_bytes;
+    bool enough = true;
+    const auto take = [&](std::size_t count, std::size_t size) {
+      enough = enough && binary::fits(count, size, left);
+      if (enough) left -= count * size;
+    };
+    take(other_bytes, 1);
+    take(keyframes, kBytesPerKeyframe);
+    for (const GltfPart& part : parts()) {
+      const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
+      const std::size_t copies = keyframes + primitive.targets.size() + 1;  // fewer than 2^40 each
+      take(copies, kBytesPerVertex * part.vertex_count);
+      take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));
+    }
+    if (!enough)
+      return invalid_input(document_.name(), std::to_string(keyframes) + " keyframes of " +
+                                                 std::to_string(vertex_count_) + " vertices would take more than " +
+                                                 std::to_string(most_bytes) + " bytes of memory");
+    if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
+      return invalid_input(document_.name(), "indices of 32 bits cannot name so many vertices");
+    return Success{};
+  }
+
+  // Reads geometry and faces of all parts.
+  [[nodiscard]] Status read(bool with_targets) {
+    std::vector<std::uint32_t> corners;
+    std::uint32_t body = 0;  // a mesh, as one node carries it
+    for (std::size_t p = 0; p < parts().size(); ++p) {
+      GltfPart& part = result_.parts[p];
+      Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
+      if (!geometry) return geometry.error();
+      const bool new_body = p > 0 && (part.mesh != parts()[p - 1].mesh || part.node != parts()[p - 1].node);
+      body += new_body ? 1 : 0;
+      result_.motion.body_of_vertex.insert(result_.motion.body_of_vertex.end(), part.vertex_count, body);
+      part.first_face = corners.size() / 3;
+      part.face_count = geometry.value().corners.size() / 3;
+      if (normal_matrix(transforms_[p]).mirrored) {
+        for (std::size_t c = 0; c + 2 < geometry.value().corners.size(); c += 3)
+          std::swap(geometry.value().corners[c + 1], geometry.value().corners[c + 2]);
+      }
+      for (const std::uint32_t vertex : geometry.value().corners)
+        corners.push_back(static_cast<std::uint32_t>(part.first_vertex + vertex));
+      geometry.value().corners = {};
+      geometries_.push_back(std::move(geometry).value());
+    }
+    if (corners.empty()) return invalid_input(document_.name(), "the meshes have no faces");
+    Result<Topology> topology = Topology::triangles(vertex_count_, std::move(corners));
+    if (!topology) return invalid_input(document_.name(), topology.error().text());
+    result_.motion.topology = std::move(topology).value();
+    return Success{};
+  }
+
+  [[nodiscard]] const GltfGeometry& geometry(std::size_t part) const { return geometries_[part]; }
+  [[nodiscard]] const AffineTransform& transform(std::size_t part) const { return transforms_[part]; }
+
+  // Adds a keyframe; weights(part) gives the weights of the targets of a part, as a span.
+  template <class Weights>
+  [[nodiscard]] Status add_keyframe(double time, std::string name, const Weights& weights) {
+    Motion::Keyframe keyframe;
+    keyframe.time = time;
+    keyframe.name = std::move(name);
+    keyframe.positions.reserve(3 * vertex_count_);
+    for (std::size_t p = 0; p < parts().size(); ++p) {
+      const GltfGeometry& geometry = geometries_[p];
+      std::vector<double> sums(geometry.positions.begin(), geometry.positions.end());
+      const std::span<const double> part_weights = weights(p);
+      for (std::size_t k = 0; k < geometry.targets.size(); ++k) {
+        const std::vector<float>& deltas = geometry.targets[k].positions;
+        const double weight = part_weights[k];
+        if (weight == 0) continue;
+        for (std::size_t i = 0; i < deltas.size(); ++i) sums[i] += weight * static_cast<double>(deltas[i]);
+      }
+      for (std::size_t i = 0; world_ && i + 2 < sums.size(); i += 3) {
+        const Vec3d placed = transforms_[p]({sums[i], sums[i + 1], sums[i + 2]});
+        sums[i] = placed.x;
+        sums[i + 1] = placed.y;
+        sums[i + 2] = placed.z;
+      }
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (const char* const fault = binary::coordinate_fault(sums[i]))
+          return invalid_input(document_.name() + ", " + gltf::primitive_pointer(parts()[p].mesh, parts()[p].primitive),
+                               std::string("at keyframe ") + std::to_string(result_.motion.keyframes.size()) +
+                                   ", vertex " + std::to_string(i / 3) + ": " + fault);
+        keyframe.positions.push_back(static_cast<float>(sums[i]));
+      }
+    }
+    result_.motion.keyframes.push_back(std::move(keyframe));
+    return Success{};
+  }
+
+  [[nodiscard]] Motion& motion() noexcept { return result_.motion; }
+  void set_curve_error(double error) noexcept { result_.curve_error = error; }
+
+  [[nodiscard]] Result<GltfMotion> finish() {
+    if (Status status = validate(result_.motion); !status)
+      return invalid_input(std::string(document_.name()).append(", ").append(status.error().place),
+                           status.error().message);
+    return std::move(result_);
+  }
+  [[nodiscard]] GltfMotion finish_without_motion() { return std::move(result_); }
+
+ private:
+  const GltfDocument& document_;
+  bool world_;
+  GltfMotion result_;
+  std::size_t vertex_count_ = 0;
+  std::vector<GltfGeometry> geometries_;     // beside parts
+  std::vector<AffineTransform> transforms_;  // beside parts
+};
+
+std::string target_name(const GltfDocument& document, std::size_t target) {
+  for (const GltfMesh& mesh : document.meshes()) {
+    if (target < mesh.target_names.size()) return mesh.target_names[target];
+  }
+  return "target " + std::to_string(target);
+}
+
+Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOptions& options) {
+  Assembly assembly(document, options.world);
+  assembly.add_meshes([&](std::size_t mesh) { return document.meshes()[mesh].target_count > 0; });
+  std::size_t target_count = 0;
+  for (const GltfPart& part : assembly.parts())
+    target_count = std::max(target_count, document.meshes()[part.mesh].target_count);
+  if (assembly.empty() || !has_moving_targets(document))
+    return invalid_input(document.name(), "no mesh with faces has morph targets that move it, so that nothing moves");
+  if (Status status = assembly.check_memory(target_count + 1, options.most_bytes); !status) return status.error();
+  if (Status status = assembly.read(true); !status) return status.error();
+
+  std::vector<double> weights(target_count, 0.0);
+  const auto same_for_all = [&](std::size_t) { return std::span<const double>(weights); };
+  if (Status status = assembly.add_keyframe(0, "base", same_for_all); !status) return status.error();
+  for (std::size_t k = 0; k < target_count; ++k) {
+    weights[k] = 1;
+    if (Status status = assembly.add_keyframe(1, target_name(document, k), same_for_all); !status)
+      return status.error();
+    weights[k] = 0;
+    assembly.motion().segments.push_back({0, k + 1});
+  }
+  return assembly.finish();
+}
+
+// One animation: the curves of the nodes that it drives, and the pieces of time between their keys.
+class AnimationReader {
+ public:
+  AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)
+      : document_(document), animation_(animation), options_(options), assembly_(document, options.world) {}
+
+  Result<GltfMotion> read() {
+    if (Status status = read_curves(); !status) return status.error();
+    if (Status status = find_times(); !status) return status.error();
+    if (Status status = assembly_.check_memory(2 * keys_.size(), options_.most_bytes, weight_bytes_); !status)
+      return status.error();
+    if (Status status = assembly_.read(true); !status) return status.error();
+    measure();
+    if (Status status = cut(); !status) return status.error();
+    for (std::size_t piece = 0; piece + 1 < pieces_.size(); ++piece) {
+      if (Status status = add_segment(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
+    }
+    return assembly_.finish();
+  }
+
+ private:
+  Status read_curves() {
+    const std::vector<GltfTrack>& tracks = document_.animations()[animation_].tracks;
+    std::vector<std::size_t> order(tracks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return tracks[a].node < tracks[b].node; });
+    for (const std::size_t t : order) {
+      const GltfTrack& track = tracks[t];
+      const std::size_t mesh = document_.nodes()[track.node].mesh.value();
+      const std::size_t first_part = assembly_.parts().size();
+      assembly_.add_mesh(track.node, mesh);
+      if (assembly_.parts().size() == first_part) continue;
+      const auto known = curve_of_track_.find(track.same_keys_as);
+      if (known == curve_of_track_.end()) {
+        const std::size_t target_count = document_.meshes()[mesh].target_count;
+        const std::size_t per_key = target_count * (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1);
+        const std::size_t bytes_per_key = (1 + per_key) * (sizeof(double) + sizeof(float));
+        const bool enough = binary::fits(track.key_count, bytes_per_key, options_.most_bytes);
+        weight_bytes_ = enough ? weight_bytes_ + track.key_count * bytes_per_key : options_.most_bytes + 1;
+        if (Status status = assembly_.check_memory(0, options_.most_bytes, weight_bytes_); !status) return status;
+        Result<GltfKeys> keys = document_.keys(animation_, t);
+        if (!keys) return keys.error();
+        curve_of_track_.emplace(track.same_keys_as, curves_.size());
+        curves_.emplace_back(std::move(keys).value(), track.interpolation, target_count);
+      }
+      curve_of_part_.resize(assembly_.parts().size(), curve_of_track_.at(track.same_keys_as));
+    }
+    if (assembly_.empty())
+      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                           "the animation gives no weights to morph targets of a mesh with faces");
+    return Success{};
+  }
+
+  Status find_times() {
+    for (const WeightCurve& curve : curves_) keys_.insert(keys_.end(), curve.times().begin(), curve.times().end());
+    std::sort(keys_.begin(), keys_.end());
+    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    if (keys_.size() < 2)
+      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                           "all weights have a single key, so that nothing moves");
+    return Success{};
+  }
+
+  // The largest way that a weight of 1 moves a vertex, of every target of every part; and the size of the whole.
+  void measure() {
+    double low[3], high[3];
+    std::fill_n(low, 3, std::numeric_limits<double>::infinity());
+    std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
+    for (std::size_t p = 0; p < assembly_.parts().size(); ++p) {
+      const GltfGeometry& geometry = assembly_.geometry(p);
+      const AffineTransform& transform = assembly_.transform(p);
+      const auto vector = [](const std::vector<float>& values, std::size_t at) {
+        return Vec3d{double{values[at]}, double{values[at + 1]}, double{values[at + 2]}};
+      };
+      for (std::size_t at = 0; at + 2 < geometry.positions.size(); at += 3) {
+        const Vec3d position = transform(vector(geometry.positions, at));
+        const double coordinates[] = {position.x, position.y, position.z};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], coordinates[axis]);
+          high[axis] = std::max(high[axis], coordinates[axis]);
+        }
+      }
+      std::vector<double>& reach = reach_.emplace_back();
+      for (const GltfGeometry::Target& target : geometry.targets) {
+        double longest = 0;
+        for (std::size_t at = 0; at + 2 < target.positions.size(); at += 3) {
+          const Vec3d way = transform(vector(target.positions, at)) - transform.offset;
+          longest = std::max(longest, std::hypot(way.x, way.y, way.z));
+        }
+        reach.push_back(longest);
+        size_ = std::max(size_, longest);
+      }
+    }
+    // A base that is a point has the size of its targets.
+    size_ = std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
+  }
+
+  // A bound of the acceleration of any vertex between two neighbouring keys.
+  [[nodiscard]] double acceleration(double from, double to) const {
+    double largest = 0;
+    std::vector<double> bounds;
+    for (std::size_t p = 0; p < assembly_.parts().size(); ++p) {
+      bounds.resize(reach_[p].size());
+      curves_[curve_of_part_[p]].curvature(from, to, bounds);
+      double sum = 0;
+      for (std::size_t k = 0; k < bounds.size(); ++k) sum += bounds[k] * reach_[p][k];
+      largest = std::max(largest, sum);
+    }
+    return largest;
+  }
+
+  // A chord of a curve is never farther from it than h^2 / 8 times the largest acceleration.
+  Status cut() {
+    const double tolerance = options_.curve_tolerance * size_;
+    double curve_error = 0;
+    for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
+      const double from = keys_[k], duration = keys_[k + 1] - from, a = acceleration(from, keys_[k + 1]);
+      const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
+      if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces)))
+        return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                             "the cubic splines bend too much: they would be cut into more than " +
+                                 std::to_string(kMostPieces) + " straight pieces");
+      const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const std::size_t keyframes = 2 * (pieces_.size() + count);
+      if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
+      for (std::size_t i = 0; i < count; ++i)
+        pieces_.push_back(from + duration * (static_cast<double>(i) / static_cast<double>(count)));
+      const double h = duration / static_cast<double>(count);
+      curve_error = std::max(curve_error, h * h * a / 8);
+    }
+    pieces_.push_back(keys_.back());
+    assembly_.set_curve_error(curve_error);
+    return Success{};
+  }
+
+  // Weights of all parts at a time, part after part.
+  [[nodiscard]] std::vector<std::vector<double>> weights_at(double time, bool just_before) const {
+    std::vector<std::vector<double>> weights(assembly_.parts().size());
+    for (std::size_t p = 0; p < weights.size(); ++p) {
+      weights[p].resize(reach_[p].size());
+      curves_[curve_of_part_[p]].at(time, just_before, weights[p]);
+    }
+    return weights;
+  }
+
+  // A segment between two times, from the keyframe before it where the weights do not jump there.
+  Status add_segment(double from, double to) {
+    Motion& motion = assembly_.motion();
+    for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {
+      std::vector<std::vector<double>> weights = weights_at(time, just_before);
+      if (!just_before && !motion.keyframes.empty() && weights == last_weights_) continue;
+      last_weights_ = std::move(weights);
+      const auto of_part = [&](std::size_t p) { return std::span<const double>(last_weights_[p]); };
+      if (Status status = assembly_.add_keyframe(time, "", of_part); !status) return status;
+    }
+    motion.segments.push_back({motion.keyframes.size() - 2, motion.keyframes.size() - 1});
+    return Success{};
+  }
+
+  const GltfDocument& document_;
+  std::size_t animation_;
+  const GltfMotionOptions& options_;
+  Assembly assembly_;
+  std::vector<WeightCurve> curves_;
+  std::map<std::size_t, std::size_t> curve_of_track_;  // by same_keys_as
+  std::vector<std::size_t> curve_of_part_;
+  std::size_t weight_bytes_ = 0;
+  std::vector<double> keys_, pieces_;       // times
+  std::vector<std::vector<double>> reach_;  // by part and target
+  double size_ = 0;                         // diagonal of the bounding box
+  std::vector<std::vector<double>> last_weights_;
+};
+
+}  // namespace
+
+Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const GltfMotion& motion) {
+  const auto corners = motion.motion.topology.corners();
+  std::vector<float> result;
+  for (const GltfPart& part : motion.parts) {
+    const Result<GltfGeometry> geometry = document.geometry(part.mesh, part.primitive, {true, false});
+    if (!geometry) return geometry.error();
+    const std::vector<float>& normals = geometry.value().normals;
+    if (normals.empty()) continue;
+    result.resize(3 * corners.size(), 0.0F);
+    for (std::size_t c = 3 * part.first_face; c < 3 * (part.first_face + part.face_count); ++c) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        result[3 * c + axis] = normals[3 * (corners[c] - part.first_vertex) + axis];
+    }
+  }
+  return result;
+}
+
+bool has_moving_targets(const GltfDocument& document) noexcept {
+  for (const GltfMesh& mesh : document.meshes()) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      const auto& targets = primitive.targets;
+      if (primitive.has_faces() &&
+          std::any_of(targets.begin(), targets.end(), [](const auto& t) { return t.positions; }))
+        return true;
+    }
+  }
+  return false;
+}
+
+Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMotionOptions& options) {
+  if (options.animation.empty()) return read_targets(document, options);
+  const Result<std::size_t> animation = document.find_animation(options.animation);
+  if (!animation) return animation.error();
+  return AnimationReader(document, animation.value(), options).read();
+}
+
+Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options) {
+  Assembly assembly(document, options.world);
+  assembly.add_meshes([](std::size_t) { return true; });
+  if (assembly.empty()) return invalid_input(document.name(), "there is no mesh with faces");
+  if (Status status = assembly.check_memory(1, options.most_bytes); !status) return status.error();
+  if (Status status = assembly.read(true); !status) return status.error();
+  const auto default_weights = [&](std::size_t p) {
+    return std::span<const double>(document.meshes()[assembly.parts()[p].mesh].weights);
+  };
+  if (Status status = assembly.add_keyframe(0, document.name(), default_weights); !status) return status.error();
+  return assembly.finish_without_motion();
+}
+
+}  // namespace chronormal

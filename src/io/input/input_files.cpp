@@ -1,0 +1,127 @@
+#include "io/input/input_files.h"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "io/mesh/mesh_readers.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Takes the digits at the front of text, without leading zeros.
+std::string_view take_number(std::string_view& text) {
+  std::size_t end = 0;
+  while (end < text.size() && is_digit(text[end])) ++end;
+  std::string_view number = text.substr(0, end);
+  text.remove_prefix(end);
+  while (!number.empty() && number.front() == '0') number.remove_prefix(1);
+  return number;
+}
+
+// Whether a stands before b when runs of digits count as numbers of any size; ties are broken by plain order.
+bool stands_before(const std::string& a, const std::string& b) {
+  std::string_view rest_a = a, rest_b = b;
+  while (!rest_a.empty() && !rest_b.empty()) {
+    if (is_digit(rest_a.front()) && is_digit(rest_b.front())) {
+      const std::string_view number_a = take_number(rest_a), number_b = take_number(rest_b);
+      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+      if (number_a != number_b) return number_a < number_b;
+      continue;
+    }
+    if (rest_a.front() != rest_b.front()) return rest_a.front() < rest_b.front();
+    rest_a.remove_prefix(1);
+    rest_b.remove_prefix(1);
+  }
+  if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
+  return a < b;
+}
+
+Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
+  glob_t matches{};
+  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
+  std::vector<std::string> files;
+  for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
+  ::globfree(&matches);
+  if (files.empty()) return Error{ErrorCode::kFailed, pattern, "no file of this name, and none that matches it"};
+  return files;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> find_input_files(std::span<const std::string> inputs,
+                                                  const FolderLister& list_folder) {
+  std::vector<std::string> files;
+  bool has_stdin = false;
+  for (const std::string& input : inputs) {
+    if (input == "-") {
+      if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input can be given only once"};
+      has_stdin = true;
+      files.push_back(input);
+      continue;
+    }
+    std::error_code code;
+    const std::filesystem::file_status status = std::filesystem::status(input, code);
+    const bool is_missing = status.type() == std::filesystem::file_type::not_found;
+    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
+      files.push_back(input);
+      continue;
+    }
+    const bool is_pattern = input.find_first_of("*?[") != std::string::npos;
+    if (!std::filesystem::exists(status) && !(is_missing && is_pattern))
+      return Error{ErrorCode::kFailed, input, code ? code.message() : "no such file or folder"};
+    Result<std::vector<std::string>> found = is_missing ? match_pattern(input) : list_folder(input);
+    if (!found) return found.error();
+    std::sort(found.value().begin(), found.value().end(), stands_before);
+    std::move(found.value().begin(), found.value().end(), std::back_inserter(files));
+  }
+  return files;
+}
+
+std::string file_name_of(const std::string& path) {
+  return path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
+}
+
+Result<MeshFrame> read_mesh_file(const std::string& path, const std::string& place) {
+  const Result<FileBytes> file = FileBytes::open(path);
+  if (!file) {
+    Error error = file.error();
+    error.place = place;
+    return error;
+  }
+  const std::string_view bytes = file.value().bytes();
+  const Result<const MeshReader*> reader = choose_mesh_reader(bytes, file_name_of(path));
+  if (!reader) return invalid_input(place, reader.error().message);
+  return reader.value()->read(bytes, place);
+}
+
+Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
+                           const std::string& place) {
+  const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* what) {
+    return invalid_input(place, "it has " + std::to_string(count) + " " + what + ", but " + first_name + " has " +
+                                    std::to_string(first_count) + std::string(kTopologyMustNotChange));
+  };
+  if (other.vertex_count() != first.vertex_count())
+    return counts_differ(other.vertex_count(), first.vertex_count(), "vertices");
+  if (other.face_count() != first.face_count()) return counts_differ(other.face_count(), first.face_count(), "faces");
+  if (other == first) return Success{};
+  for (std::size_t f = 0; f < first.face_count(); ++f) {
+    const auto a = first.face(f), b = other.face(f);
+    if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
+      return invalid_input(
+          place, "face " + std::to_string(f) + " differs from " + first_name + std::string(kTopologyMustNotChange));
+  }
+  return Success{};
+}
+
+}  // namespace chronormal

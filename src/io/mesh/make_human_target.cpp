@@ -1,0 +1,171 @@
+#include "io/mesh/make_human_target.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "io/bytes/binary.h"
+#include "io/bytes/extension.h"
+#include "io/bytes/scan.h"
+
+namespace chronormal {
+namespace {
+
+using scan::NumberFault;
+
+// Ends what inflateInit2() began.
+struct Inflater {
+  z_stream stream{};
+  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16: gzip, and nothing else
+
+  Inflater() = default;
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+  ~Inflater() {
+    if (is_ready) (void)::inflateEnd(&stream);
+  }
+};
+
+// Unpacks all members of a gzip file, but no more than `most` bytes: memory grows with what comes out.
+Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const std::string& name) {
+  constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max(), kFirstRoom = 16384;
+  Inflater inflater;
+  if (!inflater.is_ready) return Error{ErrorCode::kFailed, name, "there is no memory to unpack the file"};
+  z_stream& stream = inflater.stream;
+  std::string text;
+  std::size_t done = 0, handed_over = 0;
+  const auto error = [&](std::string message) {
+    return invalid_input(binary::place(name, handed_over - stream.avail_in), std::move(message));
+  };
+
+  for (;;) {
+    if (stream.avail_in == 0) {
+      const std::string_view part = packed.substr(handed_over, kMostAtOnce);
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));  // zlib only reads it
+      stream.avail_in = static_cast<uInt>(part.size());
+      handed_over += part.size();
+    }
+    // One byte more than allowed has room, so that it can be seen.
+    if (done == text.size()) text.resize(std::min(most + 1, std::max(kFirstRoom, 2 * done)));
+    const auto room = static_cast<uInt>(std::min(text.size() - done, kMostAtOnce));
+    stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
+    stream.avail_out = room;
+    const int code = ::inflate(&stream, Z_NO_FLUSH);
+    done += room - stream.avail_out;
+
+    if (done > most)
+      return error("the file unpacks to more than " + std::to_string(most) +
+                   " bytes, which no target of this base needs");
+    if (code == Z_OK) continue;
+    if (code == Z_BUF_ERROR) return error("the gzip data end early");  // there was room, so it wants more input
+    if (code != Z_STREAM_END) {
+      std::string message = "the gzip data are damaged";
+      if (stream.msg != nullptr) message.append(" (").append(stream.msg).append(")");
+      return error(std::move(message));
+    }
+    if (stream.avail_in == 0 && handed_over == packed.size()) break;
+    (void)::inflateReset(&stream);  // another member
+  }
+  text.resize(done);
+  return text;
+}
+
+class TargetReader {
+ public:
+  TargetReader(std::string_view text, const std::string& name, VectorView<const float> base)
+      : name_(name), lines_(text, text.find('\n') == std::string_view::npos ? '\r' : '\n'), base_(base) {}
+
+  Result<MakeHumanTarget> read() {
+    has_delta_.assign(base_.count, false);
+    while (lines_.next()) {
+      if (Status status = read_line(lines_.line()); !status) return status.error();
+    }
+    return std::move(target_);
+  }
+
+ private:
+  [[nodiscard]] Status read_line(std::string_view line);
+  [[nodiscard]] Result<std::uint32_t> read_vertex(std::string_view word);
+  [[nodiscard]] Error error(std::string message) const {
+    return invalid_input(name_ + ", line " + std::to_string(lines_.number()), std::move(message));
+  }
+
+  const std::string& name_;
+  scan::Lines lines_;
+  VectorView<const float> base_;
+  std::vector<bool> has_delta_;  // of each vertex
+  MakeHumanTarget target_;
+};
+
+Status TargetReader::read_line(std::string_view line) {
+  const std::string_view first = scan::take_word(line);
+  if (first.empty() || first.starts_with('#')) return Success{};
+  const Result<std::uint32_t> vertex = read_vertex(first);
+  if (!vertex) return vertex.error();
+
+  const Vec3f position = base_[vertex.value()];
+  const std::array<float, 3> from = {position.x, position.y, position.z};
+  std::array<float, 3> delta{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto axis_error = [&](const std::string& message) {
+      return error(std::string(1, "xyz"[axis]) + " of the delta of vertex " + std::to_string(vertex.value()) + ": " +
+                   message);
+    };
+    std::string_view word = scan::take_word(line);
+    if (word.starts_with('#')) word = {};
+    const NumberFault fault = scan::parse_float(word, delta[axis]);
+    if (fault != NumberFault::kNone) return axis_error(scan::describe(fault, word));
+    if (!std::isfinite(from[axis] + delta[axis])) return axis_error("base and delta together are too large");
+  }
+  const std::string_view rest = scan::take_word(line);
+  if (!rest.empty() && !rest.starts_with('#'))
+    return error("after the delta of vertex " + std::to_string(vertex.value()) + " stands " + scan::quoted(rest) +
+                 ", but a line is one index and three numbers");
+
+  has_delta_[vertex.value()] = true;
+  target_.vertices.push_back(vertex.value());
+  target_.deltas.insert(target_.deltas.end(), delta.begin(), delta.end());
+  return Success{};
+}
+
+Result<std::uint32_t> TargetReader::read_vertex(std::string_view word) {
+  std::int64_t index = 0;
+  const NumberFault fault = scan::parse_integer(word, index);
+  if (fault == NumberFault::kNotANumber)
+    return error(scan::quoted(word) + " is not an index; a line is one index and three numbers");
+  const bool is_vertex =
+      fault == NumberFault::kNone && index >= 0 && static_cast<std::uint64_t>(index) < std::uint64_t{base_.count};
+  if (!is_vertex)
+    return error(scan::quoted(word) + " is no vertex of the base, which has " + std::to_string(base_.count) +
+                 ", counted from 0");
+  const auto vertex = static_cast<std::uint32_t>(index);
+  if (has_delta_[vertex]) return error("vertex " + std::to_string(vertex) + " has a delta already");
+  return vertex;
+}
+
+}  // namespace
+
+bool is_make_human_target(std::string_view file_name) {
+  if (lower_extension(file_name) == ".gz") file_name.remove_suffix(3);
+  return lower_extension(file_name) == ".target";
+}
+
+Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
+                                               VectorView<const float> base) {
+  if (bytes.empty()) return invalid_input(name + ", line 1", "the file is empty");
+  std::string unpacked;
+  if (bytes.starts_with("\x1F\x8B")) {
+    Result<std::string> text = unpack_gzip(bytes, most_target_bytes(base.count), name);
+    if (!text) return text.error();
+    unpacked = std::move(text).value();
+    bytes = unpacked;
+  }
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  return TargetReader(bytes, name, base).read();
+}
+
+}  // namespace chronormal

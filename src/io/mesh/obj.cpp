@@ -1,0 +1,355 @@
+#include "io/mesh/obj.h"
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "io/bytes/scan.h"
+#include "io/mesh/polygon_builder.h"
+
+namespace chronormal {
+namespace {
+
+using scan::NumberFault;
+
+std::string_view without_byte_order_mark(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  return bytes;
+}
+
+// Takes the next word of a statement; empty at its end or where a comment begins. Inside a word, # is not a comment:
+// 1.#QNAN is a number that some programs write, and must not be read as 1.
+std::string_view take_word(std::string_view& line) {
+  const std::string_view word = scan::take_word(line);
+  if (!word.starts_with('#')) return word;
+  line = {};
+  return {};
+}
+
+bool has_comment(std::string_view line) {
+  for (std::string_view word = scan::take_word(line); !word.empty(); word = scan::take_word(line)) {
+    if (word.starts_with('#')) return true;
+  }
+  return false;
+}
+
+// How the faces are shaded, as far as the file was read.
+struct Shading {
+  std::vector<float> normals;                   // (vn, 3)
+  std::vector<std::uint32_t> normal_of_corner;  // its index plus 1; 0 for none
+  bool has_normals = false;                     // some corner has one
+  std::map<std::string, std::uint32_t, std::less<>> groups;
+  std::vector<std::uint32_t> group_of_face;
+  std::uint32_t group = 0;  // of the faces that follow
+  bool has_groups = false;  // there was an s
+
+  [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
+};
+
+class ObjReader {
+ public:
+  /// Passes over what is in Shading where shading is null.
+  ObjReader(std::string_view bytes, const std::string& name, Shading* shading)
+      : name_(name), lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'), shading_(shading) {}
+
+  Result<MeshFrame> read();
+
+ private:
+  [[nodiscard]] std::string_view whole_statement();
+  [[nodiscard]] Status read_statement(std::string_view line);
+  [[nodiscard]] Status read_vertex(std::string_view numbers);
+  [[nodiscard]] Status read_face(std::string_view corners);
+  [[nodiscard]] Status read_corner(std::string_view word);
+  [[nodiscard]] Status resolve(std::int64_t index, std::string_view word);
+  [[nodiscard]] Status read_normal(std::string_view numbers);
+  [[nodiscard]] Status read_group(std::string_view line);
+  [[nodiscard]] Status resolve_normal(std::string_view word);
+
+  [[nodiscard]] Error error(std::string message) const { return error_in_line(statement_line_, std::move(message)); }
+  [[nodiscard]] Error error_in_line(std::size_t line, std::string message) const {
+    return invalid_input(name_ + ", line " + std::to_string(line), std::move(message));
+  }
+  [[nodiscard]] static std::string corner_name(std::size_t face, std::size_t corner) {
+    return "corner " + std::to_string(corner) + " of face " + std::to_string(face);
+  }
+  [[nodiscard]] std::string open_corner() const { return corner_name(faces_.face_count(), faces_.open_corners()); }
+  [[nodiscard]] std::size_t vertex_count() const { return positions_.size() / 3; }
+  [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
+    return " names vertex " + std::to_string(index) + ", but the file has " + std::to_string(vertex_count()) +
+           (vertex_count() == 1 ? " vertex" : " vertices");
+  }
+  [[nodiscard]] std::string unknown_normal(std::int64_t index) const {
+    return " names normal " + std::to_string(index) + ", but the file has " + std::to_string(shading_->normal_count()) +
+           (shading_->normal_count() == 1 ? " normal" : " normals");
+  }
+
+  const std::string& name_;
+  scan::Lines lines_;
+  std::size_t statement_line_ = 0;  // where the statement begins that is being read
+  std::string joined_;              // a statement of several lines
+  std::vector<float> positions_;
+  PolygonBuilder faces_;
+  // The largest positive index so far: whether it names a vertex is known only at the end.
+  struct Largest {
+    std::int64_t index = 0;
+    std::size_t line = 0;
+    std::size_t face = 0;
+    std::size_t corner = 0;
+  };
+  Largest largest_, largest_normal_;
+  Shading* shading_;
+};
+
+Result<MeshFrame> ObjReader::read() {
+  while (lines_.next()) {
+    statement_line_ = lines_.number();
+    if (Status status = read_statement(whole_statement()); !status) return status.error();
+  }
+  const std::size_t last_line = lines_.number() == 0 ? 1 : lines_.number();
+  if (positions_.empty()) return error_in_line(last_line, "the file ends without a vertex (a line that begins with v)");
+  if (faces_.face_count() == 0)
+    return error_in_line(last_line, "the file ends without a face (a line that begins with f)");
+  if (largest_.index > static_cast<std::int64_t>(vertex_count()))
+    return error_in_line(largest_.line, corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
+  if (shading_ != nullptr && largest_normal_.index > static_cast<std::int64_t>(shading_->normal_count()))
+    return error_in_line(largest_normal_.line, corner_name(largest_normal_.face, largest_normal_.corner) +
+                                                   unknown_normal(largest_normal_.index));
+
+  Result<Topology> topology = faces_.build(vertex_count());
+  if (!topology) return error_in_line(last_line, topology.error().text());
+  positions_.shrink_to_fit();
+  return MeshFrame{std::move(topology).value(), std::move(positions_)};
+}
+
+// The current line, and those that continue it.
+std::string_view ObjReader::whole_statement() {
+  const auto is_continued = [](std::string_view& line) {
+    std::string_view body = line;
+    while (!body.empty() && body.back() == '\r') body.remove_suffix(1);
+    if (!body.ends_with('\\') || has_comment(body)) return false;
+    body.remove_suffix(1);
+    line = body;
+    return true;
+  };
+
+  std::string_view line = lines_.line();
+  if (!is_continued(line)) return line;
+  joined_ = line;
+  bool continued = true;
+  while (continued && lines_.next()) {
+    line = lines_.line();
+    continued = is_continued(line);
+    joined_ += ' ';
+    joined_ += line;
+  }
+  return joined_;
+}
+
+Status ObjReader::read_statement(std::string_view line) {
+  const std::string_view keyword = take_word(line);
+  if (keyword == "v") return read_vertex(line);
+  if (keyword == "f") return read_face(line);
+  if (shading_ == nullptr) return Success{};
+  if (keyword == "vn") return read_normal(line);
+  if (keyword == "s") return read_group(line);
+  return Success{};
+}
+
+Status ObjReader::read_vertex(std::string_view numbers) {
+  std::array<float, 3> position{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string_view word = take_word(numbers);
+    const NumberFault fault = scan::parse_float(word, position[axis]);
+    if (fault != NumberFault::kNone)
+      return error(std::string(1, "xyz"[axis]) + " of vertex " + std::to_string(vertex_count()) + ": " +
+                   scan::describe(fault, word));
+  }
+  for (std::string_view word = take_word(numbers); !word.empty(); word = take_word(numbers)) {
+    float unused = 0;
+    const NumberFault fault = scan::parse_float(word, unused);
+    if (fault == NumberFault::kNotANumber)
+      return error("after the position of vertex " + std::to_string(vertex_count()) + ": " +
+                   scan::describe(fault, word));
+  }
+  positions_.insert(positions_.end(), position.begin(), position.end());
+  return Success{};
+}
+
+Status ObjReader::read_face(std::string_view corners) {
+  for (std::string_view word = take_word(corners); !word.empty(); word = take_word(corners)) {
+    if (Status status = read_corner(word); !status) return status;
+  }
+  if (faces_.open_corners() < 3)
+    return error("face " + std::to_string(faces_.face_count()) + " has " + std::to_string(faces_.open_corners()) +
+                 " corners, but a face needs three or more");
+  faces_.end_face();
+  if (shading_ != nullptr) shading_->group_of_face.push_back(shading_->group);
+  return Success{};
+}
+
+// One of v, v/vt, v//vn, v/vt/vn.
+Status ObjReader::read_corner(std::string_view word) {
+  const std::size_t first_slash = word.find('/');
+  std::int64_t index = 0;
+  const std::string_view vertex = word.substr(0, first_slash);
+  const NumberFault fault = scan::parse_integer(vertex, index);
+  if (fault == NumberFault::kNotANumber) return error(open_corner() + ": " + scan::quoted(word) + " is not an index");
+  if (fault == NumberFault::kTooLarge)
+    return error(open_corner() + ": " + scan::quoted(vertex) + " is more than a mesh can have");
+
+  std::size_t slash = first_slash;
+  std::string_view normal;
+  for (int part = 0; slash != std::string_view::npos; ++part) {
+    const std::size_t next = word.find('/', slash + 1);
+    const std::string_view text = word.substr(slash + 1, next == std::string_view::npos ? next : next - slash - 1);
+    std::int64_t unused = 0;
+    if (part == 2 || (!text.empty() && scan::parse_integer(text, unused) == NumberFault::kNotANumber))
+      return error(open_corner() + ": " + scan::quoted(word) + " is not of the form v, v/vt, v//vn or v/vt/vn");
+    if (part == 1) normal = text;
+    slash = next;
+  }
+  if (shading_ != nullptr) {
+    if (Status status = resolve_normal(normal); !status) return status;
+  }
+  return resolve(index, word);
+}
+
+Status ObjReader::resolve(std::int64_t index, std::string_view word) {
+  const auto count = static_cast<std::int64_t>(vertex_count());
+  if (index == 0) return error(open_corner() + ": " + scan::quoted(word) + ": vertices are counted from 1, not from 0");
+  if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
+  if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
+  const std::int64_t vertex = index < 0 ? count + index : index - 1;
+  // What does not fit in 32 bits is refused at the end, by largest_.
+  if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
+    return error("the mesh has more than 4,294,967,295 corners");
+  return Success{};
+}
+
+Status ObjReader::read_normal(std::string_view numbers) {
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string_view word = take_word(numbers);
+    float component = 0;
+    const NumberFault fault = scan::parse_float(word, component);
+    if (fault != NumberFault::kNone)
+      return error(std::string(1, axis) + " of normal " + std::to_string(shading_->normal_count()) + ": " +
+                   scan::describe(fault, word));
+    shading_->normals.push_back(component);
+  }
+  return Success{};
+}
+
+// Groups are told apart by their words; 01 is 1.
+Status ObjReader::read_group(std::string_view line) {
+  const std::string_view word = take_word(line);
+  if (word.empty()) return error("a smoothing group is missing: a number, a name, or off");
+  shading_->has_groups = true;
+  std::int64_t number = 0;
+  const bool is_number = scan::parse_integer(word, number) == NumberFault::kNone;
+  if (word == "off" || (is_number && number == 0)) {
+    shading_->group = 0;
+    return Success{};
+  }
+  const auto next = static_cast<std::uint32_t>(shading_->groups.size() + 1);
+  shading_->group =
+      shading_->groups.try_emplace(is_number ? std::to_string(number) : std::string(word), next).first->second;
+  return Success{};
+}
+
+// The normal of the corner that comes next; an empty word for none.
+Status ObjReader::resolve_normal(std::string_view word) {
+  std::int64_t index = 0;
+  if (!word.empty()) {
+    const auto count = static_cast<std::int64_t>(shading_->normal_count());
+    if (scan::parse_integer(word, index) == NumberFault::kTooLarge ||
+        index > std::int64_t{std::numeric_limits<std::uint32_t>::max()})
+      return error(open_corner() + ": " + scan::quoted(word) + " is more normals than a mesh can have");
+    if (index == 0) return error(open_corner() + ": normals are counted from 1, not from 0");
+    if (index < -count) return error(open_corner() + unknown_normal(index) + " so far");
+    if (index > largest_normal_.index)
+      largest_normal_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
+    if (index < 0) index += count + 1;
+    shading_->has_normals = true;
+  }
+  shading_->normal_of_corner.push_back(static_cast<std::uint32_t>(index));
+  return Success{};
+}
+
+void append_vectors(std::string& text, std::string_view keyword, VectorView<const float> vectors) {
+  for (std::size_t i = 0; i < vectors.count; ++i) {
+    const Vec3f vector = vectors[i];
+    text += keyword;
+    for (const float component : {vector.x, vector.y, vector.z}) {
+      text += ' ';
+      scan::append_number(text, component);
+    }
+    text += '\n';
+  }
+}
+
+// normal_of_corner may be empty: then corners are vertices alone.
+void append_faces(std::string& text, const Topology& topology, std::span<const std::uint32_t> normal_of_corner) {
+  std::size_t corner = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    text += 'f';
+    for (const std::uint32_t vertex : topology.face(f)) {
+      text += ' ';
+      scan::append_number(text, std::uint64_t{vertex} + 1);
+      if (!normal_of_corner.empty()) {
+        text += "//";
+        scan::append_number(text, std::uint64_t{normal_of_corner[corner++]} + 1);
+      }
+    }
+    text += '\n';
+  }
+}
+
+}  // namespace
+
+Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name) {
+  return ObjReader(without_byte_order_mark(bytes), name, nullptr).read();
+}
+
+Result<ObjShading> read_obj_shading(std::string_view bytes, const std::string& name) {
+  Shading read;
+  Result<MeshFrame> mesh = ObjReader(without_byte_order_mark(bytes), name, &read).read();
+  if (!mesh) return mesh.error();
+  ObjShading shading;
+  shading.topology = std::move(mesh.value().topology);
+  if (read.has_groups) shading.group_of_face = std::move(read.group_of_face);
+  if (read.has_normals) {
+    shading.normal_of_corner.reserve(3 * read.normal_of_corner.size());
+    for (const std::uint32_t index : read.normal_of_corner) {
+      for (std::size_t k = 0; k < 3; ++k)
+        shading.normal_of_corner.push_back(index == 0 ? 0.0F : read.normals[3 * (std::size_t{index} - 1) + k]);
+    }
+  }
+  return shading;
+}
+
+std::string write_obj(const Topology& topology, VectorView<const float> positions) {
+  assert(positions.count == topology.vertex_count());
+  std::string text;
+  text.reserve(32 * positions.count + 8 * topology.corner_count());
+  append_vectors(text, "v", positions);
+  append_faces(text, topology, {});
+  return text;
+}
+
+std::string write_obj(const Topology& topology, VectorView<const float> positions, VectorView<const float> normals,
+                      std::span<const std::uint32_t> normal_of_corner) {
+  assert(positions.count == topology.vertex_count() && normal_of_corner.size() == topology.corner_count());
+  std::string text;
+  text.reserve(32 * (positions.count + normals.count) + 16 * topology.corner_count());
+  append_vectors(text, "v", positions);
+  append_vectors(text, "vn", normals);
+  append_faces(text, topology, normal_of_corner);
+  return text;
+}
+
+}  // namespace chronormal

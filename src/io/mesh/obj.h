@@ -1,0 +1,73 @@
+/// Wavefront OBJ, the polygons of it.
+///
+///     v 0 0 0                a vertex: x y z, then any numbers (w, or a colour), which are checked and left out
+///     v 1 0 0 \              a line that ends in a backslash goes on in the next one
+///       0.5 0.5 0.5
+///     v 0 1 0 # comment      a comment ends the line (and is not continued by a backslash)
+///     f 1/1/1 2//2 -1        a face of three or more corners: v, v/vt, v//vn or v/vt/vn
+///
+/// Vertices are counted from 1; -1 is the vertex before the face. A positive index may name a vertex that follows
+/// later. Texture indices must be integers and are left out; so is every other statement (vt, vp, g, o, usemtl, mtllib,
+/// l, p, and words unknown). Lines end in LF, CRLF or CR; a byte order mark is passed over.
+///
+/// How the mesh is shaded is left out too, unless it is asked for by read_obj_shading():
+///
+///     vn 0 0 1               a normal, counted as vertices are; f names it after the last slash
+///     s 1                    a smoothing group, for the faces that follow: a number or a name; off and 0 are none
+///
+/// Shapes     V = vertices; positions are (V, 3).
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_MESH_OBJ_H_
+#define CHRONORMAL_IO_MESH_OBJ_H_
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "io/mesh/mesh_frame.h"
+
+namespace chronormal {
+
+/// Reads the mesh of an OBJ file, of which name is the name for messages.
+///
+/// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, no number, glued to something
+/// else, not finite or too large for float32 (too small becomes 0); faces of fewer than 3 corners; the index 0 and
+/// indices of no vertex; a file without vertices or without faces. Messages count vertices, faces and corners from 0,
+/// and quote indices as the file has them. A file that was cut off inside its last number, or between two faces, is
+/// still an OBJ file: it is read as the mesh that it describes.
+/// Cost: one pass; memory in proportion to the numbers that are there, whatever the indices say.
+[[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name);
+
+/// How a file says that its mesh is to be shaded.
+struct ObjShading {
+  Topology topology;  ///< that of read_obj()
+  /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none, and
+  /// before the first s. Empty where the file has no s.
+  std::vector<std::uint32_t> group_of_face;
+  /// (corners, 3): the normal of each corner as the file has it, of any length, and (0, 0, 0) for a corner without one.
+  /// Empty where no corner of the file has a normal.
+  std::vector<float> normal_of_corner;
+};
+
+/// Reads how the mesh of an OBJ file is shaded.
+///
+/// Errors: those of read_obj(), and in the same way: vn that are not three finite numbers; a corner with the normal
+/// index 0, or one of no vn; s without a word after it.
+[[nodiscard]] Result<ObjShading> read_obj_shading(std::string_view bytes, const std::string& name);
+
+/// Writes vertices and faces as the text of an OBJ file. Coordinates have the fewest digits that read back as the
+/// same float32. positions must have as many elements as the topology has vertices.
+[[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions);
+
+/// The same with normals: vn, and corners of the form v//vn. normal_of_corner must have an index of a normal for each
+/// corner of the topology.
+[[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
+                                    VectorView<const float> normals, std::span<const std::uint32_t> normal_of_corner);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_MESH_OBJ_H_

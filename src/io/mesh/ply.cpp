@@ -1,0 +1,399 @@
+#include "io/mesh/ply.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "io/bytes/scan.h"
+#include "io/mesh/ply_header.h"
+#include "io/mesh/polygon_builder.h"
+
+namespace chronormal {
+namespace {
+
+using ply::Element;
+using ply::Header;
+using ply::Property;
+using ply::Role;
+using ply::Scalar;
+
+// A source hands out the values of the body one after the other, in either encoding. Its functions return false where
+// the value is not there or is not one; message() and place() then say what and where.
+
+class AsciiSource {
+ public:
+  AsciiSource(std::string_view bytes, const Header& header)
+      : left_(bytes.size() - header.body_begin),
+        lines_(bytes.substr(header.body_begin), header.separator),
+        header_lines_(header.line_count) {}
+
+  // The fewest bytes of a row: each value is a digit and a separator. The last row may have no line end.
+  [[nodiscard]] static std::size_t fewest_bytes(const Property& property) {
+    return property.role == Role::kIndices ? 2 * 4 : 2;
+  }
+  [[nodiscard]] std::size_t bytes_left() const { return left_ - lines_.position() + 1; }
+
+  [[nodiscard]] bool begin_row() {
+    do {
+      if (!lines_.next()) return fail("the file ends here, before this row");
+      row_ = lines_.line();
+      next_ = scan::take_word(row_);
+    } while (next_.empty());
+    return true;
+  }
+  [[nodiscard]] bool end_row() {
+    if (!next_.empty()) return fail(scan::quoted(next_) + " is more than the header declares for a row");
+    return true;
+  }
+
+  [[nodiscard]] bool skip(Scalar, std::uint64_t count) {
+    for (; count > 0; --count) {
+      if (take().empty()) return fail("the row has fewer values than the header declares");
+    }
+    return true;
+  }
+  [[nodiscard]] bool integer(Scalar, std::int64_t& value) {
+    const std::string_view word = take();
+    return check(scan::parse_integer(word, value), word);
+  }
+  [[nodiscard]] bool coordinate(Scalar, float& value) {
+    const std::string_view word = take();
+    return check(scan::parse_float(word, value), word);
+  }
+
+  [[nodiscard]] std::string place() const {
+    return "line " + std::to_string(header_lines_ + std::max<std::size_t>(lines_.number(), 1));
+  }
+  [[nodiscard]] const std::string& message() const { return message_; }
+
+ private:
+  std::string_view take() { return std::exchange(next_, scan::take_word(row_)); }
+  bool check(scan::NumberFault fault, std::string_view word) {
+    return fault == scan::NumberFault::kNone || fail(scan::describe(fault, word));
+  }
+  bool fail(std::string message) {
+    message_ = std::move(message);
+    return false;
+  }
+
+  std::size_t left_;
+  scan::Lines lines_;
+  std::size_t header_lines_;
+  std::string_view row_;   // what follows next_ in the line
+  std::string_view next_;  // the word that take() returns; empty at the end of the line
+  std::string message_;
+};
+
+class BinarySource {
+ public:
+  BinarySource(std::string_view bytes, const Header& header)
+      : bytes_(bytes),
+        position_(header.body_begin),
+        is_swapped_((header.encoding == PlyEncoding::kBinaryBigEndian) != (std::endian::native == std::endian::big)) {}
+
+  [[nodiscard]] static std::size_t fewest_bytes(const Property& property) {
+    if (!property.is_list) return ply::byte_size(property.type);
+    return ply::byte_size(property.count_type) +
+           (property.role == Role::kIndices ? 3 * ply::byte_size(property.type) : 0);
+  }
+  [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - position_; }
+
+  [[nodiscard]] bool begin_row() { return true; }
+  [[nodiscard]] bool end_row() { return true; }
+
+  [[nodiscard]] bool skip(Scalar type, std::uint64_t count) {
+    if (count > bytes_left() / ply::byte_size(type)) return fail_at_end();
+    position_ += static_cast<std::size_t>(count) * ply::byte_size(type);
+    return true;
+  }
+  [[nodiscard]] bool integer(Scalar type, std::int64_t& value) {
+    double unused = 0;
+    return load(type, value, unused);
+  }
+  [[nodiscard]] bool coordinate(Scalar type, float& value) {
+    std::int64_t whole = 0;
+    double real = 0;
+    if (!load(type, whole, real)) return false;
+    if (ply::is_integer(type)) {
+      value = static_cast<float>(whole);
+      return true;
+    }
+    if (!std::isfinite(real)) return fail("the coordinate is not a finite number", type);
+    if (std::fabs(real) > std::numeric_limits<float>::max()) return fail("the coordinate is too large", type);
+    value = static_cast<float>(real);
+    return true;
+  }
+
+  [[nodiscard]] std::string place() const { return "byte " + std::to_string(position_); }
+  [[nodiscard]] const std::string& message() const { return message_; }
+
+ private:
+  template <class T>
+  [[nodiscard]] T take() {
+    std::array<char, sizeof(T)> raw{};
+    std::memcpy(raw.data(), bytes_.data() + position_, sizeof(T));
+    if (is_swapped_) std::reverse(raw.begin(), raw.end());
+    position_ += sizeof(T);
+    return std::bit_cast<T>(raw);
+  }
+
+  // Reads one value into whole or, for the types of fractions, into real.
+  [[nodiscard]] bool load(Scalar type, std::int64_t& whole, double& real) {
+    if (ply::byte_size(type) > bytes_left()) return fail_at_end();
+    switch (type) {
+      case Scalar::kInt8:
+        whole = std::int64_t{take<std::int8_t>()};
+        break;
+      case Scalar::kUint8:
+        whole = take<std::uint8_t>();
+        break;
+      case Scalar::kInt16:
+        whole = take<std::int16_t>();
+        break;
+      case Scalar::kUint16:
+        whole = take<std::uint16_t>();
+        break;
+      case Scalar::kInt32:
+        whole = take<std::int32_t>();
+        break;
+      case Scalar::kUint32:
+        whole = take<std::uint32_t>();
+        break;
+      case Scalar::kFloat32:
+        real = take<float>();
+        break;
+      case Scalar::kFloat64:
+        real = take<double>();
+        break;
+    }
+    return true;
+  }
+  bool fail_at_end() {
+    message_ =
+        "the file ends before the data that its header declares: " + std::to_string(bytes_left()) + " bytes are left";
+    return false;
+  }
+  // Sets the place back to the value that was just read.
+  bool fail(std::string message, Scalar type) {
+    message_ = std::move(message);
+    position_ -= ply::byte_size(type);
+    return false;
+  }
+
+  std::string_view bytes_;
+  std::size_t position_;
+  bool is_swapped_;
+  std::string message_;
+};
+
+template <class Source>
+class BodyReader {
+ public:
+  BodyReader(std::string_view bytes, const std::string& name, const Header& header)
+      : name_(name), header_(header), source_(bytes, header) {}
+
+  Result<MeshFrame> read() {
+    for (std::size_t e = 0; e < header_.elements.size(); ++e) {
+      if (Status status = read_element(e); !status) return status.error();
+    }
+    Result<Topology> topology = faces_.build(vertex_count());
+    if (!topology) return invalid_input(name_ + ", " + source_.place(), topology.error().text());
+    return MeshFrame{std::move(topology).value(), std::move(positions_)};
+  }
+
+ private:
+  [[nodiscard]] std::size_t vertex_count() const {
+    return static_cast<std::size_t>(header_.elements[header_.vertex_element].count);
+  }
+
+  [[nodiscard]] Status read_element(std::size_t e) {
+    const Element& element = header_.elements[e];
+    if (element.properties.empty()) return Success{};  // takes no space, however many there are
+    if (Status status = check_count(element); !status) return status;
+    // The count now is in proportion to the size of the file.
+    if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
+    if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      if (!read_row(e))
+        return invalid_input(name_ + ", " + source_.place() + ", " + row_name(element, row),
+                             message_.empty() ? source_.message() : message_);
+    }
+    return Success{};
+  }
+
+  [[nodiscard]] Status check_count(const Element& element) const {
+    std::size_t row_bytes = 0;
+    for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
+    if (element.count <= source_.bytes_left() / row_bytes) return Success{};
+    return invalid_input(name_ + ", " + source_.place(), "the header declares " + std::to_string(element.count) +
+                                                             " elements " + scan::quoted(element.name) +
+                                                             ", for which the file is too short");
+  }
+
+  [[nodiscard]] bool read_row(std::size_t e) {
+    std::array<float, 3> position{};
+    if (!source_.begin_row()) return false;
+    for (const Property& property : header_.elements[e].properties) {
+      switch (property.role) {
+        case Role::kX:
+        case Role::kY:
+        case Role::kZ:
+          if (!source_.coordinate(property.type, position[static_cast<std::size_t>(property.role)])) return false;
+          break;
+        case Role::kIndices:
+          if (!read_face(property)) return false;
+          break;
+        case Role::kOther:
+          if (!skip(property)) return false;
+          break;
+      }
+    }
+    if (!source_.end_row()) return false;
+    if (e == header_.vertex_element) positions_.insert(positions_.end(), position.begin(), position.end());
+    return true;
+  }
+
+  [[nodiscard]] bool read_length(const Property& property, std::int64_t& length) {
+    if (!source_.integer(property.count_type, length)) return false;
+    return length >= 0 || fail("a list has the length " + std::to_string(length));
+  }
+
+  [[nodiscard]] bool skip(const Property& property) {
+    if (!property.is_list) return source_.skip(property.type, 1);
+    std::int64_t length = 0;
+    return read_length(property, length) && source_.skip(property.type, static_cast<std::uint64_t>(length));
+  }
+
+  [[nodiscard]] bool read_face(const Property& property) {
+    std::int64_t corner_count = 0;
+    if (!read_length(property, corner_count)) return false;
+    if (corner_count < 3)
+      return fail("the face has " + std::to_string(corner_count) + " corners, but a face needs three or more");
+    for (std::int64_t c = 0; c < corner_count; ++c) {
+      std::int64_t vertex = 0;
+      if (!source_.integer(property.type, vertex)) return false;
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count())
+        return fail("corner " + std::to_string(c) + " names vertex " + std::to_string(vertex) + ", but the file has " +
+                    std::to_string(vertex_count()) + (vertex_count() == 1 ? " vertex" : " vertices"));
+      if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
+        return fail("the mesh has more than 4,294,967,295 corners");
+    }
+    faces_.end_face();
+    return true;
+  }
+
+  [[nodiscard]] static std::string row_name(const Element& element, std::uint64_t row) {
+    const bool is_ours = element.name == "vertex" || element.name == "face";
+    return (is_ours ? std::string(element.name) : scan::quoted(element.name)) + " " + std::to_string(row);
+  }
+  bool fail(std::string message) {
+    message_ = std::move(message);
+    return false;
+  }
+
+  const std::string& name_;
+  const Header& header_;
+  Source source_;
+  std::string message_;  // of an error that is not the source's
+  std::vector<float> positions_;
+  PolygonBuilder faces_;
+};
+
+// The numbers of a file, one after the other, in one of the encodings.
+class RowWriter {
+ public:
+  RowWriter(std::string& bytes, PlyEncoding encoding)
+      : bytes_(bytes),
+        is_ascii_(encoding == PlyEncoding::kAscii),
+        swap_((encoding == PlyEncoding::kBinaryBigEndian) != (std::endian::native == std::endian::big)) {}
+
+  template <class T>
+  void add(T value) {
+    if (is_ascii_) {
+      scan::append_number(bytes_, value);
+      bytes_ += ' ';
+      return;
+    }
+    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    if (swap_) std::reverse(raw.begin(), raw.end());
+    bytes_.append(raw.data(), raw.size());
+  }
+  void add(const Vec3f& vector) {
+    for (const float component : {vector.x, vector.y, vector.z}) add(component);
+  }
+  void end_row() {
+    if (is_ascii_) bytes_.back() = '\n';
+  }
+
+ private:
+  std::string& bytes_;
+  bool is_ascii_, swap_;
+};
+
+}  // namespace
+
+Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
+  const Result<Header> header = ply::read_header(bytes, name);
+  if (!header) return header.error();
+  if (header.value().encoding == PlyEncoding::kAscii)
+    return BodyReader<AsciiSource>(bytes, name, header.value()).read();
+  return BodyReader<BinarySource>(bytes, name, header.value()).read();
+}
+
+std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {
+  return write_ply(topology, positions, {}, encoding);
+}
+
+std::string write_ply(const Topology& topology, VectorView<const float> positions, const PlyNormals& normals,
+                      PlyEncoding encoding) {
+  const bool has_vertex_normals = normals.of_vertices.count > 0, has_face_normals = normals.of_faces.count > 0;
+  assert(positions.count == topology.vertex_count());
+  assert(!has_vertex_normals || normals.of_vertices.count == topology.vertex_count());
+  assert(!has_face_normals || normals.of_faces.count == topology.face_count());
+  std::size_t most_corners = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f)
+    most_corners = std::max(most_corners, topology.face(f).size());
+  const bool is_short = most_corners <= 255;  // lengths of lists fit in uchar, the usual type
+  const char* const index_type = positions.count <= 0x80000000U ? "int" : "uint";
+  const char* const encoding_name = encoding == PlyEncoding::kAscii                ? "ascii"
+                                    : encoding == PlyEncoding::kBinaryLittleEndian ? "binary_little_endian"
+                                                                                   : "binary_big_endian";
+  const char* const normal_properties = "\nproperty float nx\nproperty float ny\nproperty float nz";
+
+  std::string bytes = std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " +
+                      std::to_string(positions.count) + "\nproperty float x\nproperty float y\nproperty float z" +
+                      (has_vertex_normals ? normal_properties : "") + "\nelement face " +
+                      std::to_string(topology.face_count()) + "\nproperty list " + (is_short ? "uchar " : "uint ") +
+                      index_type + " vertex_indices" + (has_face_normals ? normal_properties : "") + "\nend_header\n";
+  if (encoding != PlyEncoding::kAscii)
+    bytes.reserve(bytes.size() + 12 * (positions.count + normals.of_vertices.count + normals.of_faces.count) +
+                  4 * (topology.corner_count() + topology.face_count()));
+
+  RowWriter row(bytes, encoding);
+  for (std::size_t v = 0; v < positions.count; ++v) {
+    row.add(positions[v]);
+    if (has_vertex_normals) row.add(normals.of_vertices[v]);
+    row.end_row();
+  }
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const auto face = topology.face(f);
+    if (is_short && encoding != PlyEncoding::kAscii) {
+      row.add(static_cast<std::uint8_t>(face.size()));
+    } else {
+      row.add(static_cast<std::uint32_t>(face.size()));
+    }
+    for (const std::uint32_t vertex : face) row.add(vertex);
+    if (has_face_normals) row.add(normals.of_faces[f]);
+    row.end_row();
+  }
+  return bytes;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,66 @@
+/// PLY, the Stanford polygon format: ascii, and binary of both endians.
+///
+///     ply
+///     format ascii 1.0
+///     comment lines of comment and obj_info may stand anywhere
+///     element vertex 3                         elements in any order
+///     property float x                         x, y, z of any scalar type; other properties are passed over
+///     property float y
+///     property float z
+///     element face 1
+///     property list uchar int vertex_indices   or vertex_index; integer types, counted from 0
+///     end_header
+///     0 0 0                                    ascii: one line for each row of an element
+///     1 0 0
+///     0 1 0
+///     3 0 1 2
+///
+/// Elements other than vertex and face are passed over, but must be there. What follows the last element is left out.
+/// Header lines end in LF, CRLF or CR. Scalar types: char uchar short ushort int uint float double, and int8 uint8
+/// int16 uint16 int32 uint32 float32 float64. double is rounded to float32.
+///
+/// Shapes     V = vertices; positions are (V, 3).
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_MESH_PLY_H_
+#define CHRONORMAL_IO_MESH_PLY_H_
+
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "io/mesh/mesh_frame.h"
+
+namespace chronormal {
+
+enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
+
+/// Reads the mesh of a PLY file, of which name is the name for messages.
+///
+/// Errors: kInvalidInput with the place "NAME, line N" (header, ascii) or "NAME, byte N" (binary), followed by element
+/// and row where they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
+/// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
+/// bytes (refused before memory is taken); data that end early; coordinates that are no number, not finite or too large
+/// for float32; faces of fewer than 3 corners; indices of no vertex; in ascii, rows that are too short or too long.
+/// A file cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose
+/// digits and still be a number.
+/// Cost: one pass; memory in proportion to the size of the file.
+[[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name);
+
+/// Writes a PLY file with float x, y, z and one list of indices for each face. In ascii, coordinates have the fewest
+/// digits that read back as the same float32. positions must have as many elements as the topology has vertices.
+[[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding);
+
+/// Normals for a file, as properties float nx, ny, nz; none where there are none.
+struct PlyNormals {
+  VectorView<const float> of_vertices;  ///< one for each vertex, after x, y, z
+  VectorView<const float> of_faces;     ///< one for each face, after its indices
+};
+
+/// The same with normals.
+[[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
+                                    const PlyNormals& normals, PlyEncoding encoding);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_MESH_PLY_H_

@@ -1,0 +1,222 @@
+#include "io/mesh/ply_header.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "io/bytes/scan.h"
+
+namespace chronormal::ply {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+std::optional<Scalar> find_scalar(std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, Scalar>, 16> kNames = {{{"char", Scalar::kInt8},
+                                                                           {"int8", Scalar::kInt8},
+                                                                           {"uchar", Scalar::kUint8},
+                                                                           {"uint8", Scalar::kUint8},
+                                                                           {"short", Scalar::kInt16},
+                                                                           {"int16", Scalar::kInt16},
+                                                                           {"ushort", Scalar::kUint16},
+                                                                           {"uint16", Scalar::kUint16},
+                                                                           {"int", Scalar::kInt32},
+                                                                           {"int32", Scalar::kInt32},
+                                                                           {"uint", Scalar::kUint32},
+                                                                           {"uint32", Scalar::kUint32},
+                                                                           {"float", Scalar::kFloat32},
+                                                                           {"float32", Scalar::kFloat32},
+                                                                           {"double", Scalar::kFloat64},
+                                                                           {"float64", Scalar::kFloat64}}};
+  for (const auto& [name, type] : kNames) {
+    if (name == word) return type;
+  }
+  return std::nullopt;
+}
+
+// A file with old Macintosh line ends has a CR after the first word and no LF.
+char find_separator(std::string_view bytes) {
+  return bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
+}
+
+class HeaderReader {
+ public:
+  HeaderReader(std::string_view bytes, const std::string& name) : name_(name), lines_(bytes, find_separator(bytes)) {
+    header_.separator = find_separator(bytes);
+  }
+
+  Result<Header> read();
+
+ private:
+  using Words = std::vector<std::string_view>;
+
+  [[nodiscard]] Status read_statement(const Words& words);
+  [[nodiscard]] Status read_format(const Words& words);
+  [[nodiscard]] Status read_element(const Words& words);
+  [[nodiscard]] Status read_property(const Words& words);
+  [[nodiscard]] Status assign_role(Property& property);
+  [[nodiscard]] Status check_elements();
+
+  [[nodiscard]] Error error(std::string message) const {
+    return invalid_input(name_ + ", line " + std::to_string(std::max<std::size_t>(lines_.number(), 1)),
+                         std::move(message));
+  }
+
+  const std::string& name_;
+  scan::Lines lines_;
+  Header header_;
+  bool has_format_ = false;
+  std::set<std::string_view> element_names_;
+  std::set<std::string_view> property_names_;  // of the last element
+};
+
+Result<Header> HeaderReader::read() {
+  Words words;
+  const auto next_words = [&] {
+    if (!lines_.next()) return false;
+    words.clear();
+    std::string_view rest = lines_.line();
+    for (std::string_view word = scan::take_word(rest); !word.empty(); word = scan::take_word(rest))
+      words.push_back(word);
+    return true;
+  };
+
+  if (!next_words() || words.size() != 1 || words[0] != "ply")
+    return error("this is not a PLY file: its first line is not the word ply");
+  while (next_words()) {
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "end_header") {
+      if (words.size() != 1) return error("there is more than one word in the line end_header");
+      if (!has_format_) return error("the header has no format");
+      header_.body_begin = lines_.position();
+      header_.line_count = lines_.number();
+      if (Status status = check_elements(); !status) return status.error();
+      return std::move(header_);
+    }
+    if (Status status = read_statement(words); !status) return status.error();
+  }
+  return error("the file ends before the line end_header");
+}
+
+Status HeaderReader::read_statement(const Words& words) {
+  if (words[0] == "format") return read_format(words);
+  if (!has_format_) return error("a line that begins with format must come before " + scan::quoted(words[0]));
+  if (words[0] == "element") return read_element(words);
+  if (words[0] == "property") return read_property(words);
+  return error(scan::quoted(words[0]) + " is not a word of a PLY header");
+}
+
+Status HeaderReader::read_format(const Words& words) {
+  if (has_format_) return error("the format is declared twice");
+  if (words.size() != 3) return error("this must read: format ENCODING 1.0");
+  if (words[1] == "ascii") {
+    header_.encoding = PlyEncoding::kAscii;
+  } else if (words[1] == "binary_little_endian") {
+    header_.encoding = PlyEncoding::kBinaryLittleEndian;
+  } else if (words[1] == "binary_big_endian") {
+    header_.encoding = PlyEncoding::kBinaryBigEndian;
+  } else {
+    return error("the encoding " + scan::quoted(words[1]) +
+                 " is unknown; it can be ascii, binary_little_endian or binary_big_endian");
+  }
+  if (words[2] != "1.0") return error("version " + scan::quoted(words[2]) + " of PLY is unknown; there is only 1.0");
+  has_format_ = true;
+  return Success{};
+}
+
+Status HeaderReader::read_element(const Words& words) {
+  if (words.size() != 3) return error("this must read: element NAME COUNT");
+  Element element;
+  element.name = words[1];
+  const char* const last = words[2].data() + words[2].size();
+  const auto [end, code] = std::from_chars(words[2].data(), last, element.count);
+  if (code != std::errc{} || end != last)
+    return error(scan::quoted(words[2]) + " is not a possible number of " + scan::quoted(words[1]) + " elements");
+  if (!element_names_.insert(element.name).second)
+    return error("the element " + scan::quoted(element.name) + " is declared twice");
+  property_names_.clear();
+  header_.elements.push_back(std::move(element));
+  return Success{};
+}
+
+Status HeaderReader::read_property(const Words& words) {
+  if (header_.elements.empty()) return error("a property must follow its element");
+  const bool is_list = words.size() > 1 && words[1] == "list";
+  if (words.size() != (is_list ? 5 : 3))
+    return error("this must read: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
+
+  Property property;
+  property.is_list = is_list;
+  property.name = words.back();
+  const std::string_view type_word = words[words.size() - 2];
+  const std::optional<Scalar> type = find_scalar(type_word);
+  if (!type) return error("the type " + scan::quoted(type_word) + " is unknown");
+  property.type = *type;
+  if (is_list) {
+    const std::optional<Scalar> count_type = find_scalar(words[2]);
+    if (!count_type) return error("the type " + scan::quoted(words[2]) + " is unknown");
+    if (!is_integer(*count_type))
+      return error("the length of a list can not be of the type " + scan::quoted(words[2]) + ": it is an integer");
+    property.count_type = *count_type;
+  }
+  if (!property_names_.insert(property.name).second)
+    return error("the property " + scan::quoted(property.name) + " is declared twice");
+  if (Status status = assign_role(property); !status) return status;
+  header_.elements.back().properties.push_back(property);
+  return Success{};
+}
+
+Status HeaderReader::assign_role(Property& property) {
+  const Element& element = header_.elements.back();
+  if (element.name == "vertex" && property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z') {
+    if (property.is_list) return error("the coordinate " + scan::quoted(property.name) + " is a list");
+    property.role = static_cast<Role>(property.name[0] - 'x');
+  }
+  if (element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+    if (!property.is_list || !is_integer(property.type))
+      return error("the property " + scan::quoted(property.name) + " must be a list of integers");
+    for (const Property& other : element.properties) {
+      if (other.role == Role::kIndices) return error("both vertex_indices and vertex_index are declared");
+    }
+    property.role = Role::kIndices;
+  }
+  return Success{};
+}
+
+// What a mesh needs is there.
+Status HeaderReader::check_elements() {
+  header_.vertex_element = header_.face_element = kNone;
+  bool has_strips = false;
+  for (std::size_t e = 0; e < header_.elements.size(); ++e) {
+    if (header_.elements[e].name == "vertex") header_.vertex_element = e;
+    if (header_.elements[e].name == "face") header_.face_element = e;
+    has_strips = has_strips || header_.elements[e].name == "tristrips";
+  }
+  const auto has_role = [&](std::size_t e, Role role) {
+    const std::vector<Property>& properties = header_.elements[e].properties;
+    return std::any_of(properties.begin(), properties.end(), [&](const Property& p) { return p.role == role; });
+  };
+
+  if (header_.vertex_element == kNone || header_.elements[header_.vertex_element].count == 0)
+    return error("the file has no vertices");
+  for (const Role role : {Role::kX, Role::kY, Role::kZ}) {
+    if (!has_role(header_.vertex_element, role))
+      return error(std::string("the vertices have no property ") + "xyz"[static_cast<std::size_t>(role)]);
+  }
+  if (header_.face_element == kNone || header_.elements[header_.face_element].count == 0) {
+    if (has_strips) return error("the file has triangle strips, which are not supported; write it with faces");
+    return error("the file has no faces");
+  }
+  if (!has_role(header_.face_element, Role::kIndices)) return error("the faces have no property vertex_indices");
+  return Success{};
+}
+
+}  // namespace
+
+Result<Header> read_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
+
+}  // namespace chronormal::ply

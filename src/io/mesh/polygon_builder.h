@@ -1,0 +1,61 @@
+/// Collects the faces of a mesh while a file is read. Private to io.
+#ifndef CHRONORMAL_IO_MESH_POLYGON_BUILDER_H_
+#define CHRONORMAL_IO_MESH_POLYGON_BUILDER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/topology.h"
+
+namespace chronormal {
+
+/// Keeps no offsets until the first face that is not a triangle: most meshes never need them.
+class PolygonBuilder {
+ public:
+  static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();
+
+  void reserve_triangles(std::size_t count) { corners_.reserve(3 * count); }
+
+  /// Adds a corner to the face that is being built; false where the mesh has too many to be counted in 32 bits.
+  [[nodiscard]] bool add_corner(std::uint32_t vertex) {
+    if (corners_.size() >= kMaxCorners) return false;
+    corners_.push_back(vertex);
+    return true;
+  }
+
+  /// Corners of the face that is being built.
+  [[nodiscard]] std::size_t open_corners() const noexcept { return corners_.size() - face_begin_; }
+  /// Faces that were ended: the index of the face that is being built.
+  [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
+
+  void end_face() {
+    if (open_corners() != 3 && offsets_.empty()) {
+      for (std::size_t f = 0; f <= face_count_; ++f) offsets_.push_back(static_cast<std::uint32_t>(3 * f));
+    }
+    if (!offsets_.empty()) offsets_.push_back(static_cast<std::uint32_t>(corners_.size()));
+    face_begin_ = corners_.size();
+    ++face_count_;
+  }
+
+  /// Makes the topology; the builder is used up. Errors: those of Topology::polygons().
+  [[nodiscard]] Result<Topology> build(std::size_t vertex_count) {
+    corners_.shrink_to_fit();
+    offsets_.shrink_to_fit();
+    if (offsets_.empty()) return Topology::triangles(vertex_count, std::move(corners_));
+    return Topology::polygons(vertex_count, std::move(offsets_), std::move(corners_));
+  }
+
+ private:
+  std::vector<std::uint32_t> offsets_;
+  std::vector<std::uint32_t> corners_;
+  std::size_t face_begin_ = 0;
+  std::size_t face_count_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_MESH_POLYGON_BUILDER_H_

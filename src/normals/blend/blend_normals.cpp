@@ -1,0 +1,128 @@
+#include "chronormal/normals/blend_normals.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "normals/blend/blend_call.h"
+#include "normals/blend/blend_scratch.h"
+#include "normals/blend/blend_storage.h"
+
+namespace chronormal {
+
+std::string_view name_of(BlendPath path) noexcept {
+  switch (path) {
+    case BlendPath::kTerms:
+      return "terms";
+    case BlendPath::kTouched:
+      return "touched";
+    case BlendPath::kWhole:
+      return "whole";
+  }
+  return "";
+}
+
+BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options) {
+  return BlendStorage(set, nullptr, options.max_bytes).cost();
+}
+
+BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups, const BlendNormalsOptions& options) {
+  return BlendStorage(set, &groups, options.max_bytes).cost();
+}
+
+struct BlendNormals::Parts {
+  Parts(BlendSet the_set, std::optional<NormalGroups> the_groups, const BlendNormalsOptions& the_options)
+      : set(std::move(the_set)),
+        groups(std::move(the_groups)),
+        options(the_options),
+        storage(set, groups ? &*groups : nullptr, options.max_bytes),
+        base(make_blend_base(set, storage.terms())),
+        scratch(set, shape()) {
+    storage.fill();
+  }
+
+  [[nodiscard]] BlendShape shape() const {
+    return {storage.terms().size(), set.topology.face_count(), set.topology.vertex_count(), set.targets.size()};
+  }
+  [[nodiscard]] BlendSource source() const { return {set, groups ? &*groups : nullptr, storage, base, options.forced}; }
+
+  BlendSet set;
+  std::optional<NormalGroups> groups;  // nothing: faces
+  BlendNormalsOptions options;
+  BlendStorage storage;
+  BlendBase base;
+  BlendScratch scratch;
+};
+
+BlendNormals::BlendNormals(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
+BlendNormals::BlendNormals(BlendNormals&&) noexcept = default;
+BlendNormals& BlendNormals::operator=(BlendNormals&&) noexcept = default;
+BlendNormals::~BlendNormals() = default;
+
+BlendNormals BlendNormals::of_faces(BlendSet set, const BlendNormalsOptions& options) {
+  return BlendNormals(std::make_unique<Parts>(std::move(set), std::nullopt, options));
+}
+
+BlendNormals BlendNormals::of_groups(BlendSet set, NormalGroups groups, const BlendNormalsOptions& options) {
+  return BlendNormals(std::make_unique<Parts>(std::move(set), std::move(groups), options));
+}
+
+BlendEvaluation BlendNormals::unit_normals(std::span<const double> weights, VectorView<float> result, Threads threads) {
+  assert(weights.size() == set().targets.size() && result.count == size());
+  return evaluate(parts_->source(), weights, parts_->scratch, result, threads);
+}
+
+std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> weights,
+                                                        std::span<const VectorView<float>> results, Threads threads) {
+  const std::size_t targets = set().targets.size();
+  assert(weights.size() == results.size() * targets);
+  std::vector<BlendEvaluation> done(results.size());
+  const BlendSource source = parts_->source();
+  // Each thread takes every so many rows, with scratch of its own.
+  const std::size_t hands = threads == Threads::kOne ? 1 : std::min(thread_count(), results.size());
+  std::vector<BlendScratch> scratch;
+  for (std::size_t hand = 1; hand < hands; ++hand) scratch.emplace_back(set(), parts_->shape());
+  const auto work = [&](std::size_t hand) {
+    BlendScratch& own = hand == 0 ? parts_->scratch : scratch[hand - 1];
+    for (std::size_t row = hand; row < results.size(); row += hands)
+      done[row] = evaluate(source, weights.subspan(row * targets, targets), own, results[row], Threads::kOne);
+  };
+  if (hands <= 1)
+    work(0);
+  else
+    parallel_for(hands, work);
+  return done;
+}
+
+BlendChoice BlendNormals::choose(std::span<const double> weights) const {
+  assert(weights.size() == set().targets.size());
+  const BlendShape shape = parts_->shape();
+  BlendScratch scratch({}, {shape.elements, 0, 0, shape.targets});
+  return choose_path(parts_->source(), weights, scratch);
+}
+
+Status BlendNormals::add_target(BlendTarget target) {
+  if (Status status = validate(target, set().topology, set().targets.size()); !status) return status;
+  parts_->set.targets.push_back(std::move(target));
+  parts_->storage.target_added();
+  parts_->scratch.is_active.resize(set().targets.size());
+  parts_->scratch.active.reserve(set().targets.size());
+  return Success{};
+}
+
+void BlendNormals::remove_target(std::size_t k) {
+  assert(k < set().targets.size());
+  parts_->set.targets.erase(parts_->set.targets.begin() + static_cast<std::ptrdiff_t>(k));
+  parts_->storage.target_removed(k);
+  parts_->scratch.is_active.resize(set().targets.size());
+}
+
+std::size_t BlendNormals::size() const noexcept { return parts_->storage.terms().size(); }
+const BlendSet& BlendNormals::set() const noexcept { return parts_->set; }
+const BlendCost& BlendNormals::cost() const noexcept { return parts_->storage.cost(); }
+
+std::size_t BlendNormals::bytes() const noexcept {
+  return parts_->storage.bytes() + base_bytes(parts_->shape()) + scratch_bytes(parts_->shape());
+}
+
+}  // namespace chronormal

@@ -1,0 +1,59 @@
+#include "normals/blend/blend_scratch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normals/blend/blend_storage.h"
+#include "normals/blend/blend_terms.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+
+std::size_t bits_bytes(std::size_t count) { return words_of(count) * sizeof(std::uint64_t); }
+
+}  // namespace
+
+BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms) {
+  BlendBase base;
+  const std::size_t count = terms.size();
+  base.sums.resize(kLanes * count);
+  base.units.resize(3 * count);
+  base.zeros = IndexBits(count);
+  const BlendTerm normals = terms.base_term();
+  for (std::size_t e = 0; e < count; ++e) {
+    const Vec3d n = normals.values[e];
+    double* const sum = base.sums.data() + kLanes * e;
+    sum[0] = n.x, sum[1] = n.y, sum[2] = n.z, sum[3] = normals.noise[e] / kFloatHalfEpsilon;
+    const Vec3f u = to_float(unit(n));
+    float* const to = base.units.data() + 3 * e;
+    to[0] = u.x, to[1] = u.y, to[2] = u.z;
+    if (n == Vec3d{}) base.zeros.set(e);
+  }
+  for (const float coordinate : set.base) base.reach = std::max(base.reach, std::fabs(static_cast<double>(coordinate)));
+  return base;
+}
+
+std::size_t base_bytes(const BlendShape& shape) noexcept {
+  return shape.elements * (kLanes * sizeof(double) + 3 * sizeof(float)) + bits_bytes(shape.elements);
+}
+
+BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
+    : sums(kLanes * shape.elements),
+      positions(set.base.begin(), set.base.end()),
+      normals(shape.faces),
+      touched(shape.elements),
+      again(shape.elements),
+      faces(shape.faces),
+      is_active(shape.targets) {
+  active.reserve(shape.targets);
+}
+
+std::size_t scratch_bytes(const BlendShape& shape) noexcept {
+  return shape.elements * kLanes * sizeof(double) + shape.vertices * 3 * sizeof(double) +
+         shape.faces * sizeof(BlendedFace) + 2 * bits_bytes(shape.elements) + bits_bytes(shape.faces) +
+         shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
+}
+
+}  // namespace chronormal

@@ -1,0 +1,54 @@
+/// What BlendNormals keeps beside its terms: normals of the base, and memory to work in.
+#ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
+#define CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/blend_set.h"
+#include "normals/blend/index_bits.h"
+
+namespace chronormal {
+
+class BlendTerms;
+
+struct BlendShape {
+  std::size_t elements = 0, faces = 0, vertices = 0, targets = 0;
+};
+
+struct BlendBase {
+  std::vector<double> sums;  ///< n_b, and its bound in the unit of blend_storage.h: four for each element
+  std::vector<float> units;  ///< of length 1, three for each element
+  IndexBits zeros;           ///< elements whose unit is (0, 0, 0)
+  double reach = 0;          ///< the largest absolute coordinate
+};
+
+[[nodiscard]] BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms);
+[[nodiscard]] std::size_t base_bytes(const BlendShape& shape) noexcept;
+
+/// The normal of a face at some weights, and how far it may be off.
+struct BlendedFace {
+  Vec3d normal;
+  double noise = 0;
+};
+
+struct BlendScratch {
+  BlendScratch(const BlendSet& set, const BlendShape& shape);
+
+  std::vector<double> sums;           ///< of terms, as those of the base
+  std::vector<double> positions;      ///< (V, 3), those of the base between two calls
+  std::vector<BlendedFace> normals;   ///< of faces
+  IndexBits touched;                  ///< elements that active targets touch
+  IndexBits again;                    ///< elements that are made from positions
+  IndexBits faces;                    ///< faces of these
+  std::vector<std::uint32_t> active;  ///< targets
+  std::vector<bool> is_active;
+};
+
+[[nodiscard]] std::size_t scratch_bytes(const BlendShape& shape) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_

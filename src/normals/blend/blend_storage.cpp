@@ -1,0 +1,239 @@
+#include "normals/blend/blend_storage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "normals/blend/blend_scratch.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kLanes * sizeof(float);  // of an element
+constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kLanes * sizeof(float);
+
+// A little more than enough, so that the rounding of a bound to float32, and values near the end of its range, are in
+// it.
+constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
+
+std::size_t bytes_of(const StoredTerm& term) {
+  return term.elements.capacity() * sizeof(std::uint32_t) + term.lanes.capacity() * sizeof(float);
+}
+
+std::size_t bytes_of_lists(const StoredTarget& target) {
+  return target.elements.bytes() + target.faces.bytes() + target.pairs.capacity() * sizeof(StoredPair);
+}
+
+// A power of two that takes the largest value below 1.
+double scale_of(double largest) {
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return std::ldexp(1.0, exponent);
+}
+
+double largest_of(const BlendTerm& term) {
+  double largest = 0;
+  for (const Vec3d& value : term.values) largest = std::max(largest, max_abs(value));
+  return largest;
+}
+
+void put(const Vec3d& value, double noise, double scale, float* lanes) {
+  const double bound = (length(value) + noise / kFloatHalfEpsilon) / scale * kMargin + kSmallestBound;
+  lanes[0] = static_cast<float>(value.x / scale);
+  lanes[1] = static_cast<float>(value.y / scale);
+  lanes[2] = static_cast<float>(value.z / scale);
+  lanes[3] = static_cast<float>(bound);
+}
+
+// Puts the values of a term into the lanes from `first` on, `stride` for each of the elements, which have all of its.
+void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, StoredTerm& stored) {
+  std::size_t e = 0;
+  for (std::size_t i = 0; i < term.elements.size(); ++i) {
+    while (stored.elements[e] != term.elements[i]) ++e;
+    put(term.values[i], term.noise[i], stored.scale, stored.lanes.data() + stride * e + first);
+  }
+}
+
+}  // namespace
+
+// A term that might be stored.
+struct BlendStorage::Candidate {
+  std::size_t bytes;
+  std::size_t target;
+  std::size_t pair;  // which of those of the target; kNone: its own
+
+  static constexpr std::size_t kNone = ~std::size_t{0};
+};
+
+BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes)
+    : set_(set), groups_(groups), max_bytes_(max_bytes), terms_(groups ? BlendTerms(set, *groups) : BlendTerms(set)) {
+  targets_.reserve(set.targets.size());
+  for (std::size_t i = 0; i < set.targets.size(); ++i) targets_.push_back(listed(i));
+  const auto counts = terms_.pair_elements();
+  std::size_t count = targets_.size();
+  for (const auto& of_target : counts) count += of_target.size();
+  std::vector<Candidate> candidates;
+  candidates.reserve(count);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    candidates.push_back({kTargetBytes * targets_[i].element_count, i, Candidate::kNone});
+    targets_[i].pairs.reserve(counts[i].size());
+    for (const auto& [other, elements] : counts[i]) {
+      candidates.push_back({kPairBytes * elements, i, targets_[i].pairs.size()});
+      targets_[i].pairs.push_back({other, elements, {}});
+    }
+  }
+  choose(std::move(candidates));
+}
+
+StoredTarget BlendStorage::listed(std::size_t i) const {
+  StoredTarget target;
+  const std::vector<std::uint32_t> elements = terms_.elements(i);
+  IndexBits touched(terms_.size()), faces(set_.topology.face_count());
+  for (const std::uint32_t e : elements) {
+    touched.set(e);
+    if (groups_ == nullptr) {
+      faces.set(e);
+      continue;
+    }
+    for (const std::uint32_t f : groups_->faces(e)) faces.set(f);
+  }
+  target.elements = touched.sparse();
+  target.faces = faces.sparse();
+  target.element_count = elements.size();
+  target.moved_faces = terms_.faces(i).size();
+  for (const std::uint32_t f : terms_.faces(i)) target.moved_corners += set_.topology.face(f).size();
+  for (const float d : set_.targets[i].deltas) target.reach = std::max(target.reach, std::fabs(static_cast<double>(d)));
+  return target;
+}
+
+// Small ones first: targets, and then pairs of those that are stored.
+void BlendStorage::choose(std::vector<Candidate> candidates) {
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    const bool a_is_pair = a.pair != Candidate::kNone, b_is_pair = b.pair != Candidate::kNone;
+    return std::tuple(a_is_pair, a.bytes, a.target, a.pair) < std::tuple(b_is_pair, b.bytes, b.target, b.pair);
+  });
+  update_cost();
+  std::size_t bytes = cost_.bytes;
+  for (const Candidate& candidate : candidates) {
+    if (bytes > max_bytes_ || candidate.bytes > max_bytes_ - bytes) continue;
+    StoredTarget& target = targets_[candidate.target];
+    if (candidate.pair == Candidate::kNone) {
+      target.term.is_stored = true;
+    } else {
+      StoredPair& pair = target.pairs[candidate.pair];
+      if (!target.term.is_stored || !targets_[pair.other].term.is_stored) continue;
+      pair.term.is_stored = true;
+    }
+    bytes += candidate.bytes;
+  }
+  update_cost();
+}
+
+void BlendStorage::fill() {
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (targets_[i].term.is_stored) fill_target(i);
+    for (StoredPair& pair : targets_[i].pairs) {
+      if (pair.term.is_stored) fill_pair(i, pair);
+    }
+  }
+}
+
+void BlendStorage::fill_target(std::size_t i) {
+  StoredTerm& stored = targets_[i].term;
+  stored.elements.reserve(targets_[i].element_count);
+  for (std::size_t k = 0; k < targets_[i].elements.places.size(); ++k) {
+    for_bits(targets_[i].elements.masks[k], targets_[i].elements.places[k],
+             [&](std::size_t e) { stored.elements.push_back(static_cast<std::uint32_t>(e)); });
+  }
+  const BlendTerm linear = terms_.linear(i), square = terms_.pair(i, i);
+  stored.scale = scale_of(std::max(largest_of(linear), largest_of(square)));
+  stored.lanes.resize(2 * kLanes * stored.elements.size());
+  put_all(linear, 0, 2 * kLanes, stored);
+  put_all(square, kLanes, 2 * kLanes, stored);
+}
+
+void BlendStorage::fill_pair(std::size_t i, StoredPair& pair) {
+  const BlendTerm term = terms_.pair(i, pair.other);
+  StoredTerm& stored = pair.term;
+  stored.elements.assign(term.elements.begin(), term.elements.end());
+  stored.scale = scale_of(largest_of(term));
+  stored.lanes.resize(kLanes * stored.elements.size());
+  put_all(term, 0, kLanes, stored);
+}
+
+void BlendStorage::target_added() {
+  terms_.target_added();
+  const std::size_t k = targets_.size();
+  targets_.push_back(listed(k));
+  std::vector<Candidate> candidates = {{kTargetBytes * targets_[k].element_count, k, Candidate::kNone}};
+  for (const auto& [other, elements] : terms_.pair_elements(k)) {
+    candidates.push_back({kPairBytes * elements, other, targets_[other].pairs.size()});
+    targets_[other].pairs.push_back({static_cast<std::uint32_t>(k), elements, {}});
+  }
+  choose(std::move(candidates));
+  if (targets_[k].term.is_stored) fill_target(k);
+  for (std::size_t i = 0; i < k; ++i) {
+    if (targets_[i].pairs.empty() || targets_[i].pairs.back().other != k) continue;
+    if (StoredPair& pair = targets_[i].pairs.back(); pair.term.is_stored) fill_pair(i, pair);
+  }
+}
+
+void BlendStorage::target_removed(std::size_t k) {
+  terms_.target_removed(k);
+  targets_.erase(targets_.begin() + static_cast<std::ptrdiff_t>(k));
+  for (StoredTarget& target : targets_) {
+    std::erase_if(target.pairs, [k](const StoredPair& pair) { return pair.other == k; });
+    for (StoredPair& pair : target.pairs) pair.other -= pair.other > k ? 1 : 0;
+  }
+  update_cost();
+}
+
+std::size_t BlendStorage::list_bytes() const noexcept {
+  std::size_t bytes = terms_.bytes() + targets_.capacity() * sizeof(StoredTarget);
+  for (const StoredTarget& target : targets_) bytes += bytes_of_lists(target);
+  return bytes;
+}
+
+std::size_t BlendStorage::bytes() const noexcept {
+  std::size_t bytes = list_bytes();
+  for (const StoredTarget& target : targets_) {
+    bytes += bytes_of(target.term);
+    for (const StoredPair& pair : target.pairs) bytes += bytes_of(pair.term);
+  }
+  return bytes;
+}
+
+void BlendStorage::update_cost() {
+  cost_ = {};
+  const BlendShape shape = {terms_.size(), set_.topology.face_count(), set_.topology.vertex_count(),
+                            set_.targets.size()};
+  std::size_t terms = 0, largest_work = 0;
+  for (const StoredTarget& target : targets_) {
+    cost_.target_elements += target.element_count;
+    if (target.term.is_stored) {
+      ++cost_.stored_targets;
+      terms += kTargetBytes * target.element_count;
+      // The linear term is kept while the square one is made.
+      largest_work = std::max(largest_work, 2 * terms_.term_bytes(target.moved_faces, target.moved_corners));
+    }
+    for (const StoredPair& pair : target.pairs) {
+      const StoredTarget& other = targets_[pair.other];
+      ++cost_.overlapping_pairs;
+      cost_.pair_elements += pair.elements;
+      if (!pair.term.is_stored) continue;
+      ++cost_.stored_pairs;
+      terms += kPairBytes * pair.elements;
+      largest_work = std::max(largest_work, terms_.term_bytes(std::min(target.moved_faces, other.moved_faces),
+                                                              std::min(target.moved_corners, other.moved_corners)));
+    }
+  }
+  cost_.least_bytes = list_bytes() + base_bytes(shape) + scratch_bytes(shape);
+  cost_.bytes = cost_.least_bytes + terms;
+  const std::size_t counting =
+      terms_.counting_bytes(cost_.overlapping_pairs) + (cost_.overlapping_pairs + targets_.size()) * sizeof(Candidate);
+  cost_.peak_bytes = std::max(cost_.bytes + largest_work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
+}
+
+}  // namespace chronormal

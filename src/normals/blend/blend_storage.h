@@ -1,0 +1,83 @@
+/// The terms of a quadratic form in the weights, as BlendNormals keeps them: float32, sparse, as many as may be.
+#ifndef CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
+#define CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/motion/blend_set.h"
+#include "chronormal/normals/blend_normals.h"
+#include "chronormal/normals/normal_groups.h"
+#include "normals/blend/blend_terms.h"
+#include "normals/blend/index_bits.h"
+
+namespace chronormal {
+
+/// Bounds of rounding are kept in this unit, that of float32.
+inline constexpr double kFloatHalfEpsilon = 0x1p-24;
+
+/// Coefficients at some elements, `scale` times what stands there: for a target A and C_ii, for a pair C_ij. A
+/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatHalfEpsilon of it.
+struct StoredTerm {
+  bool is_stored = false;
+  double scale = 1;
+  std::vector<std::uint32_t> elements;  ///< ascending
+  std::vector<float> lanes;             ///< four for each coefficient of each element
+};
+
+struct StoredPair {
+  std::uint32_t other = 0;     ///< the later target
+  std::uint32_t elements = 0;  ///< of the faces that both move: those of the term are among them
+  StoredTerm term;
+};
+
+struct StoredTarget {
+  SparseBits elements;  ///< that the target touches
+  SparseBits faces;     ///< all faces of these
+  std::size_t element_count = 0;
+  std::size_t moved_faces = 0, moved_corners = 0;
+  double reach = 0;  ///< the largest absolute component of its deltas
+  StoredTerm term;
+  std::vector<StoredPair> pairs;  ///< with later targets, ascending
+};
+
+class BlendStorage {
+ public:
+  /// Counts, and decides which terms to store; makes none. No groups: of faces. The set and the groups must outlive it.
+  BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes);
+
+  /// Makes the terms that are to be stored.
+  void fill();
+  /// Takes notice of a target that was appended to the set, and makes its terms.
+  void target_added();
+  /// Takes notice of a target that was erased from the set.
+  void target_removed(std::size_t k);
+
+  [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
+  [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
+  [[nodiscard]] const BlendCost& cost() const noexcept { return cost_; }
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Candidate;
+
+  [[nodiscard]] StoredTarget listed(std::size_t i) const;
+  [[nodiscard]] std::size_t list_bytes() const noexcept;
+  void choose(std::vector<Candidate> candidates);
+  void fill_target(std::size_t i);
+  void fill_pair(std::size_t i, StoredPair& pair);
+  void update_cost();
+
+  const BlendSet& set_;
+  const NormalGroups* groups_;
+  std::size_t max_bytes_;
+  BlendTerms terms_;
+  std::vector<StoredTarget> targets_;
+  BlendCost cost_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_

@@ -1,0 +1,97 @@
+/// Vectors at the corners of faces, and the sums of their products that terms of blend shapes are made of. Private to
+/// normals.
+#ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
+#define CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/blend_set.h"
+#include "core/noise.h"
+
+namespace chronormal {
+
+inline constexpr double kHalfEpsilon = 0x1p-53;
+/// Faces of so many corners cost no memory of their own.
+inline constexpr std::size_t kSmallFace = 4;
+
+/// Vectors at the corners of a face.
+class CornerVectors {
+ public:
+  explicit CornerVectors(std::size_t count) : count_(count) {
+    if (count > kSmallFace) many_.resize(count);
+  }
+
+  [[nodiscard]] Vec3d& operator[](std::size_t c) noexcept { return count_ > kSmallFace ? many_[c] : few_[c]; }
+  [[nodiscard]] const Vec3d& operator[](std::size_t c) const noexcept {
+    return count_ > kSmallFace ? many_[c] : few_[c];
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+
+ private:
+  std::size_t count_;
+  std::array<Vec3d, kSmallFace> few_;
+  std::vector<Vec3d> many_;
+};
+
+[[nodiscard]] inline Vec3d vector_at(const float* v) { return {v[0], v[1], v[2]}; }
+
+[[nodiscard]] inline CornerVectors positions_of(const BlendSet& set, std::span<const std::uint32_t> face) {
+  CornerVectors positions(face.size());
+  for (std::size_t c = 0; c < face.size(); ++c) positions[c] = vector_at(set.base.data() + 3 * std::size_t{face[c]});
+  return positions;
+}
+
+[[nodiscard]] inline double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+
+/// A sum of products of edges.
+class ProductSum {
+ public:
+  /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
+  /// Edges and both products of a component are within 10 half eps of the absolute products; each triangle adds a
+  /// rounding, and four for what counts as noise.
+  void add(const CornerVectors& p, const CornerVectors& q) {
+    Vec3d e = p[1] - p[0];
+    for (std::size_t c = 2; c < p.size(); ++c) {
+      const Vec3d f = q[c] - q[0];
+      sum_.add(cross(e, f));
+      products_ += sum_abs(e) * sum_abs(f);
+      e = p[c] - p[0];
+    }
+    roundings_ += static_cast<double>(10 + 5 * p.size());
+  }
+
+  [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
+  [[nodiscard]] double noise() const { return kHalfEpsilon * roundings_ * products_; }
+
+ private:
+  VectorSum sum_;
+  double products_ = 0, roundings_ = 0;
+};
+
+/// The sum of faces around an element: each adds a rounding, and four for what counts as noise.
+class ElementSum {
+ public:
+  void add(const Vec3d& face, double noise) {
+    sum_.add(face);
+    noise_ += noise;
+    size_ += sum_abs(face);
+    ++count_;
+  }
+
+  [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
+  [[nodiscard]] double noise() const { return noise_ + 5 * kHalfEpsilon * count_ * size_; }
+
+ private:
+  VectorSum sum_;
+  double noise_ = 0, size_ = 0, count_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_

@@ -1,0 +1,29 @@
+/// Sixteen elements on their way into NormalCurves: what a kernel that makes control normals hands to the one that
+/// packs them.
+///
+///     normals     n0.x of 16 elements, n0.y of 16, n0.z, m.x, m.y, m.z, n1.x, n1.y, n1.z
+///     magnitude   for each element, at least the sum of the absolute products that went into any one component
+///     degree      for each element, as degree() in control_normals.h finds it
+///
+/// Everything is computed in double and rounded once. Where a component is smaller than the rounding error of its
+/// products (far below 2^-26 of `magnitude`) it may be noise here: the reader must not trust it, and asks for the
+/// element in double instead, where noise is zero. Lanes beyond the last element repeat it.
+#ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
+#define CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
+
+#include <cstddef>
+#include <cstdint>
+
+namespace chronormal {
+
+inline constexpr std::size_t kTile = 16;
+
+struct alignas(64) ControlTile {
+  float normals[9][kTile];
+  float magnitude[kTile];
+  std::int32_t degree[kTile];
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_

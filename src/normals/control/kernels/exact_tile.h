@@ -1,0 +1,34 @@
+/// Control normals of sixteen faces in double: what tiles and sums are made from.
+#ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
+#define CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
+
+#include <cstddef>
+#include <cstdint>
+
+#include "chronormal/motion/motion.h"
+#include "normals/control/kernels/control_tile.h"
+
+namespace chronormal {
+
+/// Planes as in ControlTile; the bits of face_control_normals().
+struct alignas(64) ExactTile {
+  double normals[9][kTile];
+  float magnitude[kTile];
+};
+
+/// Of the magnitude of a triangle: noise is below half of it.
+inline constexpr double kNoiseAbove = 0x1p-47;
+
+/// A float that is not less than a magnitude, and 0 for 0.
+[[nodiscard]] float magnitude_above(double magnitude) noexcept;
+
+/// Writes one face into one lane, whatever its corners.
+void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
+
+/// Writes one triangle into one lane without noise. Keeps the magnitude where it is finite.
+void set_without_noise(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
+                       ExactTile& tile) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_

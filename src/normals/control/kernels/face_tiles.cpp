@@ -1,0 +1,71 @@
+#include "normals/control/kernels/face_tiles.h"
+
+#include <algorithm>
+#include <cassert>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "normals/control/kernels/face_tiles.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "normals/control/kernels/tile_degrees-inl.h"
+#include "normals/control/kernels/triangles-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
+  const bool rows = IsRows(segment.from) && IsRows(segment.to);
+  ExactTile exact;
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
+    FaceTile(segment, rows, f, faces.end(), exact);
+    ControlTile& tile = *tiles++;
+    for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+      hn::Store(hn::Load(kFloats, exact.magnitude + lane), kFloats, tile.magnitude + lane);
+      for (std::size_t k = 0; k < 9; ++k) hn::Store(ToFloat(exact.normals[k] + lane), kFloats, tile.normals[k] + lane);
+    }
+    if (!SetDegreesByFloats(tile)) SetDegrees(exact, tile);
+  }
+}
+
+void TriangleControlNormals(const Segment& segment, IndexRange faces, double* result) {
+  constexpr std::size_t kRow = 9;
+  const bool rows = IsRows(segment.from) && IsRows(segment.to);
+  ExactTile exact;
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
+    FaceTile(segment, rows, f, faces.end(), exact);
+    const std::size_t count = std::min(kTile, faces.end() - f);
+    if (count == kTile) {
+      StoreRows<kRow>(exact, result);
+    } else {
+      alignas(64) double part[kTile * kRow];
+      StoreRows<kRow>(exact, part);
+      std::copy_n(part, count * kRow, result);
+    }
+    result += count * kRow;
+  }
+}
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace chronormal {
+
+HWY_EXPORT(FaceTiles);
+HWY_EXPORT(TriangleControlNormals);
+
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {
+  assert(faces.count > 0 && faces.end() <= segment.topology->face_count());
+  assert(tiles.size() == (faces.count + kTile - 1) / kTile);
+  HWY_DYNAMIC_DISPATCH(FaceTiles)(segment, faces, tiles.data());
+}
+
+void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {
+  static_assert(sizeof(ControlNormals) == 9 * sizeof(double));
+  assert(segment.topology->all_triangles() && result.size() == faces.count);
+  HWY_DYNAMIC_DISPATCH(TriangleControlNormals)(segment, faces, reinterpret_cast<double*>(result.data()));
+}
+
+}  // namespace chronormal
+#endif  // HWY_ONCE

@@ -1,0 +1,25 @@
+/// Control normals of faces, sixteen at a time: the front end of NormalCurves::of_faces, and of every scheme.
+#ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_
+#define CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_
+
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "normals/control/kernels/control_tile.h"
+
+namespace chronormal {
+
+/// Writes the tiles of a range of faces: tile k holds the faces faces.first + 16 k ... (see ControlTile). The values
+/// are those of face_control_normals(), rounded to float32, and so is the degree.
+/// tiles must have ceil(faces.count / 16) elements; faces.count > 0
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
+
+/// face_control_normals() of a mesh of triangles.
+void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_

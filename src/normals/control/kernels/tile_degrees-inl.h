@@ -1,0 +1,64 @@
+// The degree of sixteen elements, as degree() in control_normals.h finds it in double.
+//
+// Included once for each instruction set, as lanes-inl.h.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "normals/control/kernels/control_tile.h"
+#include "normals/control/kernels/exact_tile.h"
+#include "normals/control/kernels/triangles-inl.h"
+#include "normals/control/polygon_normals.h"
+
+#if defined(CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_
+#undef CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_
+#else
+#define CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+// Sets the degrees to 2 and returns true if float32 alone shows that they are. Its error in n0 - 2 m + n1 is below
+// 2^-20 of the largest component, far above the tolerance of degree(), but so is the term itself in most motions.
+HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
+  const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
+  bool all = true;
+  for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+    const auto load = [&tile, lane](std::size_t k) HWY_ATTR {
+      return Lanes3{hn::Load(kFloats, tile.normals[k] + lane), hn::Load(kFloats, tile.normals[k + 1] + lane),
+                    hn::Load(kFloats, tile.normals[k + 2] + lane)};
+    };
+    const Lanes3 n0 = load(0), m = load(3), n1 = load(6);
+    const Floats size = MaxAbs(n0, m, n1);
+    const Floats bend = MaxAbs((n0 - m) + (n1 - m));
+    all &= hn::AllTrue(kFloats, hn::And(hn::Gt(bend, hn::Mul(share, size)), hn::Gt(size, smallest_size)));
+    hn::Store(hn::Set(kInts, 2), kInts, tile.degree + lane);
+  }
+  return all;
+}
+
+HWY_NOINLINE inline void SetDegrees(const ExactTile& exact, ControlTile& tile) {
+  const Doubles share = hn::Set(kDoubles, kDegreeTolerance);
+  for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
+    const auto load = [&exact, lane](std::size_t k) HWY_ATTR {
+      return Doubles3{hn::Load(kDoubles, exact.normals[k] + lane), hn::Load(kDoubles, exact.normals[k + 1] + lane),
+                      hn::Load(kDoubles, exact.normals[k + 2] + lane)};
+    };
+    const Doubles3 n0 = load(0), m = load(3), n1 = load(6);
+    const Doubles tolerance = hn::Mul(share, MaxAbs(n0, m, n1));
+    const Doubles one = hn::Set(kDoubles, 1.0), two = hn::Set(kDoubles, 2.0);
+    const Doubles at_most_1 = hn::IfThenElseZero(hn::Gt(MaxAbs(n1 - n0), tolerance), one);
+    const Doubles degree = hn::IfThenElse(hn::Gt(MaxAbs((n0 - m) + (n1 - m)), tolerance), two, at_most_1);
+    const hn::Rebind<std::int32_t, DoubleTag> half_ints;
+    hn::StoreU(hn::DemoteTo(half_ints, degree), half_ints, tile.degree + lane);
+  }
+}
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_

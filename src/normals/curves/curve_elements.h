@@ -1,0 +1,48 @@
+/// One element of a curve of normals, over any scalar: what the kernels do to sixteen at a time, spelt out for a scalar
+/// that counts.
+#ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
+#define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
+
+#include <cmath>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// The weights of n0, m, n1 in eq. 5, shared by all elements at one t. Made in double: each is right to half a bit.
+template <class S>
+struct QuadraticWeights {
+  S w0, w1, w2;
+
+  [[nodiscard]] static QuadraticWeights at(double t) {
+    const double s = 1 - t;
+    return {S(static_cast<float>(s * s)), S(static_cast<float>(2 * t * s)), S(static_cast<float>(t * t))};
+  }
+};
+
+template <class S>
+[[nodiscard]] Vec3<S> quadratic_normal(const Vec3<S>& n0, const Vec3<S>& m, const Vec3<S>& n1,
+                                       const QuadraticWeights<S>& w) {
+  return w.w0 * n0 + w.w1 * m + w.w2 * n1;
+}
+
+/// A quadratic at one of equidistant t, with its first and second forward difference.
+template <class S>
+struct QuadraticState {
+  Vec3<S> n, first, second;
+
+  /// To the next t: two additions per component.
+  [[nodiscard]] QuadraticState next() const { return {n + first, first + second, second}; }
+};
+
+/// v scaled to length 1. Precondition: v is not zero and |v|^2 neither overflows nor underflows.
+template <class S>
+[[nodiscard]] Vec3<S> normalized(const Vec3<S>& v) {
+  using std::sqrt;
+  const S scale = S(1) / sqrt(dot(v, v));
+  return scale * v;
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_

@@ -1,0 +1,60 @@
+#include "normals/curves/kernels/curve_blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace chronormal {
+namespace {
+
+constexpr double kLargestWeight = 32767;
+// Control normals of 32767 times weights of this sum stay in the range of int32.
+constexpr double kLargestSum = 65532;
+
+std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF) | (high * 65536); }
+
+// Integers in the ratios of the weights: only ratios count for a direction, so of some scales the one that rounds least
+// is taken.
+template <std::size_t kCount>
+std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount>& weights) {
+  constexpr int kTrials = 16, kStep = 256;
+  const double largest_scale =
+      std::min(kLargestWeight / *std::max_element(weights.begin(), weights.end()), kLargestSum);
+  std::array<std::int32_t, kCount> best{};
+  double smallest_error = 2, its_scale = 1;  // the error in units of 1 / scale
+  for (int trial = 0; trial < kTrials && smallest_error > 0; ++trial) {
+    const double scale = largest_scale - trial * kStep;
+    std::array<std::int32_t, kCount> rounded;
+    double error = 0;
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const double exact = weights[k] * scale;
+      rounded[k] = static_cast<std::int32_t>(std::lround(exact));
+      error += std::fabs(rounded[k] - exact);
+    }
+    if (error * its_scale < smallest_error * scale) {
+      smallest_error = error;
+      its_scale = scale;
+      best = rounded;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+CurveWeights CurveWeights::at(double t, bool compact) noexcept {
+  const double s = 1 - t;
+  CurveWeights weights{{static_cast<float>(s), static_cast<float>(t)},
+                       {static_cast<float>(s * s), static_cast<float>(2 * t * s), static_cast<float>(t * t)}};
+  if (compact) {
+    const auto linear = integer_weights<2>({s, t});
+    const auto quadratic = integer_weights<3>({s * s, 2 * t * s, t * t});
+    weights.linear16 = pair_of(linear[0], linear[1]);
+    weights.ends16 = pair_of(quadratic[0], quadratic[2]);
+    weights.middle16 = quadratic[1];
+    weights.middle_low = (quadratic[1] + 16) / 32;
+  }
+  return weights;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,86 @@
+/// How NormalCurves keeps its elements: blocks of 16, each of one kind, and runs of neighbouring blocks of one kind.
+///
+/// A block is a few planes of 16 numbers, element i in lane i. c(k) are the control normals; M is the largest absolute
+/// component of an element. "int16 pairs" are 16 words of 32 bits with one number in each half, the first in the low.
+///
+///     kUnit           u.x u.y u.z                               float32, length 1
+///     kUnitLength     u.x u.y u.z |n|                           float32
+///     kLinear32       n0.x n0.y n0.z n1.x n1.y n1.z             float32
+///     kQuadratic32    n0.x n0.y n0.z m.x ... n1.z               float32
+///     kLinear16       (n0.x, n1.x) (n0.y, n1.y) (n0.z, n1.z)    int16 pairs: c = q M / 32767
+///     kQuadratic16    (n0.x, n1.x) (n0.y, n1.y) (n0.z, n1.z)
+///                     (m.x, m.y) (m.z, 0)                       the same
+///     kScaled16       as kQuadratic16, but each control normal by a scale of its own, and in place of the 0 three
+///                     exponents of 5 bits, of n0 in the lowest: c(k) = q 2^-e(k) M / 32767
+///     kQuadratic11    16 words for x, for y, for z; from the lowest bit up: 5 low bits of m, 11 bits of n0, 5 high
+///                     bits of m, 11 bits of n1; c = q M / 1023 for the ends, m = (32 high + low + 16) 2 M / 1023, with
+///                     both halves signed, from -16 to 15
+///
+/// Pairs are what one instruction multiplies by two weights and adds up (pmaddwd).
+#ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_
+#define CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_
+
+#include <cstddef>
+#include <cstdint>
+
+#include "normals/control/kernels/control_tile.h"
+
+namespace chronormal {
+
+enum class BlockKind : int {
+  kUnit,
+  kUnitLength,
+  kLinear16,
+  kQuadratic11,
+  kQuadratic16,
+  kScaled16,
+  kLinear32,
+  kQuadratic32,
+};
+
+/// Bytes for each element.
+[[nodiscard]] constexpr std::size_t bytes_of(BlockKind kind) {
+  constexpr std::size_t bytes[] = {12, 16, 12, 12, 20, 20, 24, 36};
+  return bytes[static_cast<int>(kind)];
+}
+
+/// How precisely the elements of a block are kept, whatever their degree.
+enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
+
+/// The kind for elements of a degree; with_lengths asks for lengths where all are of degree 0.
+[[nodiscard]] constexpr BlockKind kind_for(Precision precision, int degree, bool with_lengths) {
+  if (degree == 0) return with_lengths ? BlockKind::kUnitLength : BlockKind::kUnit;
+  switch (precision) {
+    case Precision::k11:
+      return degree == 1 ? BlockKind::kLinear16 : BlockKind::kQuadratic11;
+    case Precision::k16:
+      return degree == 1 ? BlockKind::kLinear16 : BlockKind::kQuadratic16;
+    case Precision::kScaled16:
+      return BlockKind::kScaled16;
+    case Precision::k32:
+      break;
+  }
+  return degree == 1 ? BlockKind::kLinear32 : BlockKind::kQuadratic32;
+}
+
+inline constexpr int kMaxScaleExponent = 31;
+
+/// What all elements share at one t, in the form that each kind wants it.
+struct CurveWeights {
+  float linear[2];              ///< of n0, n1
+  float quadratic[3];           ///< of n0, m, n1
+  std::int32_t linear16 = 0;    ///< int16 pair: of n0, n1, in units of a common scale
+  std::int32_t ends16 = 0;      ///< int16 pair: of n0, n1
+  std::int32_t middle16 = 0;    ///< of m, in the same units
+  std::int32_t middle_low = 0;  ///< a 32nd of it
+
+  /// The integers take a tenth of a microsecond to choose; without `compact` they are left 0.
+  [[nodiscard]] static CurveWeights at(double t, bool compact) noexcept;
+};
+
+/// The sum of the absolute errors of the int16 weights stays below this share of their sum, at every t.
+inline constexpr double kWeightError = 1.5 / 32767;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_

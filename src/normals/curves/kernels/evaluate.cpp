@@ -1,0 +1,399 @@
+#include "normals/curves/kernels/evaluate.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
+#include <hwy/foreach_target.h>
+// After it, so that it is of one instruction set at a time.
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+constexpr std::size_t kCacheLine = 64;
+
+// A kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at `lane`. They
+// need no length of 1 unless kUnitLength says that they have it.
+
+struct Unit {
+  static constexpr bool kUnitLength = true;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kUnit);
+  explicit Unit(const CurveWeights&) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const float* const p = reinterpret_cast<const float*>(block) + lane;
+    return {hn::Load(kFloats, p), hn::Load(kFloats, p + kTile), hn::Load(kFloats, p + 2 * kTile)};
+  }
+};
+
+struct UnitLength : Unit {
+  using Unit::Unit;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kUnitLength);
+};
+
+HWY_INLINE Lanes3 LoadVector(const float* plane) {
+  return {hn::Load(kFloats, plane), hn::Load(kFloats, plane + kTile), hn::Load(kFloats, plane + 2 * kTile)};
+}
+
+struct Linear32 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kLinear32);
+  HWY_INLINE explicit Linear32(const CurveWeights& w)
+      : start(hn::Set(kFloats, w.linear[0])), end(hn::Set(kFloats, w.linear[1])) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const float* const p = reinterpret_cast<const float*>(block) + lane;
+    return Scale(start, LoadVector(p)) + Scale(end, LoadVector(p + 3 * kTile));
+  }
+  Floats start, end;
+};
+
+struct Quadratic32 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kQuadratic32);
+  HWY_INLINE explicit Quadratic32(const CurveWeights& w)
+      : start(hn::Set(kFloats, w.quadratic[0])),
+        middle(hn::Set(kFloats, w.quadratic[1])),
+        end(hn::Set(kFloats, w.quadratic[2])) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const float* const p = reinterpret_cast<const float*>(block) + lane;
+    return Scale(start, LoadVector(p)) + Scale(middle, LoadVector(p + 3 * kTile)) +
+           Scale(end, LoadVector(p + 6 * kTile));
+  }
+  Floats start, middle, end;
+};
+
+#if HWY_TARGET == HWY_SCALAR
+// One lane of 32 bits cannot be taken for two of 16: the halves of a pair one after the other.
+using Shorts = Ints;
+
+HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::Set(kInts, pair); }
+HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::Load(kInts, p); }
+HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) {
+  return hn::And(hn::ShiftLeft<11>(a), hn::Set(kInts, static_cast<std::int32_t>(0xF800F800u)));
+}
+
+HWY_INLINE Ints PairProduct(Shorts a, Shorts v) {
+  const auto low = [](Shorts pair) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)); };
+  return hn::Add(hn::Mul(low(a), low(v)), hn::Mul(hn::ShiftRight<16>(a), hn::ShiftRight<16>(v)));
+}
+HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
+  return hn::ConvertTo(kFloats, hn::Add(hn::Add(PairProduct(a, v), start), PairProduct(b, w)));
+}
+HWY_INLINE Floats PairSum(Shorts a, Shorts v) { return hn::ConvertTo(kFloats, PairProduct(a, v)); }
+
+#else
+using ShortTag = hn::Repartition<std::int16_t, IntTag>;
+using Shorts = hn::Vec<ShortTag>;
+inline constexpr ShortTag kShorts;
+
+HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::BitCast(kShorts, hn::Set(kInts, pair)); }
+HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::BitCast(kShorts, hn::Load(kInts, p)); }
+HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) { return hn::ShiftLeft<11>(a); }
+
+// start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers: exact in any order.
+HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
+  Ints rest = hn::Zero(kInts);
+  Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, start, rest);
+  sum = hn::ReorderWidenMulAccumulate(kInts, b, w, sum, rest);
+  return hn::ConvertTo(kFloats, hn::RearrangeToOddPlusEven(sum, rest));
+}
+HWY_INLINE Floats PairSum(Shorts a, Shorts v) {
+  Ints rest = hn::Zero(kInts);
+  const Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, hn::Zero(kInts), rest);
+  return hn::ConvertTo(kFloats, hn::RearrangeToOddPlusEven(sum, rest));
+}
+#endif
+
+struct Linear16 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kLinear16);
+  HWY_INLINE explicit Linear16(const CurveWeights& w) : ends(PairSet(w.linear16)) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
+    return {PairSum(LoadPairs(p), ends), PairSum(LoadPairs(p + kTile), ends), PairSum(LoadPairs(p + 2 * kTile), ends)};
+  }
+  Shorts ends;
+};
+
+struct Quadratic16 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kQuadratic16);
+  HWY_INLINE explicit Quadratic16(const CurveWeights& w)
+      : ends(PairSet(w.ends16)), low(PairSet(w.middle16)), high(PairSet(w.middle16 * 65536)) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
+    const Shorts middle_xy = LoadPairs(p + 3 * kTile), middle_z = LoadPairs(p + 4 * kTile);
+    const Ints zero = hn::Zero(kInts);
+    return {PairSum(zero, LoadPairs(p), ends, middle_xy, low),
+            PairSum(zero, LoadPairs(p + kTile), ends, middle_xy, high),
+            PairSum(zero, LoadPairs(p + 2 * kTile), ends, middle_z, low)};
+  }
+  Shorts ends, low, high;  // m stands in the low half of its pair, or in the high one
+};
+
+struct Scaled16 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kScaled16);
+  HWY_INLINE explicit Scaled16(const CurveWeights& w)
+      : start(hn::Set(kFloats, w.quadratic[0])),
+        middle(hn::Set(kFloats, w.quadratic[1])),
+        end(hn::Set(kFloats, w.quadratic[2])) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
+    const Ints x = hn::Load(kInts, p), y = hn::Load(kInts, p + kTile), z = hn::Load(kInts, p + 2 * kTile);
+    const Ints middle_xy = hn::Load(kInts, p + 3 * kTile), middle_z = hn::Load(kInts, p + 4 * kTile);
+    const Ints exponents = hn::ShiftRight<16>(middle_z);
+    return Scale(hn::Mul(start, PowerOfTwo(exponents)), {Low(x), Low(y), Low(z)}) +
+           Scale(hn::Mul(middle, PowerOfTwo(hn::ShiftRight<5>(exponents))),
+                 {Low(middle_xy), High(middle_xy), Low(middle_z)}) +
+           Scale(hn::Mul(end, PowerOfTwo(hn::ShiftRight<10>(exponents))), {High(x), High(y), High(z)});
+  }
+  HWY_INLINE static Floats Low(Ints pair) {
+    return hn::ConvertTo(kFloats, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
+  }
+  HWY_INLINE static Floats High(Ints pair) { return hn::ConvertTo(kFloats, hn::ShiftRight<16>(pair)); }
+  // 2^-e of the lowest five bits: the exponent field of a float, of which 127 stands for 2^0.
+  HWY_INLINE static Floats PowerOfTwo(Ints exponent) {
+    const Ints e = hn::And(exponent, hn::Set(kInts, kMaxScaleExponent));
+    return hn::BitCast(kFloats, hn::ShiftLeft<23>(hn::Sub(hn::Set(kInts, 127), e)));
+  }
+  Floats start, middle, end;
+};
+
+struct Quadratic11 {
+  static constexpr bool kUnitLength = false;
+  static constexpr std::size_t kBytes = bytes_of(BlockKind::kQuadratic11);
+  HWY_INLINE explicit Quadratic11(const CurveWeights& w)
+      : ends(PairSet(w.ends16)),
+        middle(PairSet(w.middle_low | (w.middle16 * 65536))),
+        mask(PairSet(kEndBits)),
+        start(hn::Set(kInts, 16 * 64 * w.middle16)) {}
+  HWY_INLINE Lanes3 direction(const std::byte* block, std::size_t lane) const {
+    const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
+    return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
+  }
+  // The ends stand in the upper 11 bits of their halves: 32 times their value. The two halves of m, moved there, are
+  // 2048 times their value; its 16 comes first, so that no sum on the way leaves the range.
+  HWY_INLINE Floats Component(const std::int32_t* p) const {
+    const Shorts words = LoadPairs(p);
+    return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
+  }
+  static constexpr std::int32_t kEndBits = static_cast<std::int32_t>(0xFFE0FFE0u);
+  Shorts ends, middle, mask;
+  Ints start;
+};
+
+// Where results go, kLanes vectors at a time.
+
+template <Access kAccess>
+struct Accesses {
+  static constexpr bool kStream = kAccess.stream;
+  // How many bytes ahead of itself a kernel asks for blocks; measured where a core has 1 MiB of its own and 32 MiB are
+  // shared.
+  static constexpr std::size_t kAhead = kAccess.working_set == WorkingSet::kSmall         ? 2048
+                                        : kAccess.working_set == WorkingSet::kSharedCache ? 16384
+                                                                                          : 8192;
+};
+
+template <Access kAccess>
+struct ToPacked : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
+  float* xyz;
+  template <class Kind>
+  HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
+    if constexpr (Kind::kUnitLength) {
+      StorePacked<kStream>(v, xyz + 3 * i);
+    } else {
+      StorePacked<kStream>(Normalized(v), xyz + 3 * i);
+    }
+  }
+};
+
+template <Access kAccess>
+struct ToPlanes : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
+  float *x, *y, *z;
+  template <class Kind>
+  HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
+    const Lanes3 u = Kind::kUnitLength ? v : Normalized(v);
+    StoreOne<kStream>(u.x, x + i);
+    StoreOne<kStream>(u.y, y + i);
+    StoreOne<kStream>(u.z, z + i);
+  }
+};
+
+template <Access kAccess>
+struct ToOctahedral : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
+  std::uint32_t* bits;
+  // The octahedron needs no length of 1, and no square root.
+  template <class Kind>
+  HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
+    const Floats one = hn::Set(kFloats, 1.0f);
+    const Floats ax = hn::Abs(v.x), ay = hn::Abs(v.y), az = hn::Abs(v.z);
+    const Floats scale = hn::Div(one, hn::Add(hn::Add(ax, ay), az));
+    const Floats x = hn::Mul(v.x, scale), y = hn::Mul(v.y, scale);
+    const auto below = hn::Lt(v.z, hn::Zero(kFloats));
+    const Floats folded_x = hn::CopySign(hn::Sub(one, hn::Abs(y)), x);
+    const Floats folded_y = hn::CopySign(hn::Sub(one, hn::Abs(x)), y);
+    const Floats limit = hn::Set(kFloats, 32767.0f);
+    const Ints low = RoundToInt(hn::Mul(hn::IfThenElse(below, folded_x, x), limit));
+    const Ints high = RoundToInt(hn::Mul(hn::IfThenElse(below, folded_y, y), limit));
+    const Ints both = hn::Or(hn::And(low, hn::Set(kInts, 0xFFFF)), hn::ShiftLeft<16>(high));
+    StoreOne<kStream>(hn::BitCast(kFloats, both), reinterpret_cast<float*>(bits + i));
+  }
+};
+
+template <Access kAccess>
+struct ToRgb10A2 : Accesses<kAccess> {
+  using Accesses<kAccess>::kStream;
+  std::uint32_t* bits;
+  template <class Kind>
+  HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
+    const Lanes3 u = Kind::kUnitLength ? v : Normalized(v);
+    const Floats limit = hn::Set(kFloats, 511.0f);
+    const Ints mask = hn::Set(kInts, 0x3FF);
+    const Ints x = hn::And(RoundToInt(hn::Mul(u.x, limit)), mask);
+    const Ints y = hn::And(RoundToInt(hn::Mul(u.y, limit)), mask);
+    const Ints z = hn::And(RoundToInt(hn::Mul(u.z, limit)), mask);
+    const Ints all = hn::Or(x, hn::Or(hn::ShiftLeft<10>(y), hn::ShiftLeft<20>(z)));
+    StoreOne<kStream>(hn::BitCast(kFloats, all), reinterpret_cast<float*>(bits + i));
+  }
+};
+
+// All whole blocks of a span.
+template <class Kind, class To>
+HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
+  const Kind kind(weights);
+  const std::byte* const blocks = span.blocks;  // stores might change what is behind a reference
+  const std::size_t block_count = span.elements / kTile;
+  for (std::size_t b = 0; b < block_count; ++b) {
+    const std::byte* const block = blocks + b * kTile * Kind::kBytes;
+    for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine)
+      hwy::Prefetch(block + To::kAhead + line);
+    for (std::size_t lane = 0; lane < kTile; lane += kLanes)
+      to.template Put<Kind>(kind.direction(block, lane), b * kTile + lane);
+  }
+}
+
+template <class To>
+void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
+  switch (span.kind) {
+    case BlockKind::kUnit:
+      return WholeBlocks<Unit>(span, w, to);
+    case BlockKind::kUnitLength:
+      return WholeBlocks<UnitLength>(span, w, to);
+    case BlockKind::kLinear16:
+      return WholeBlocks<Linear16>(span, w, to);
+    case BlockKind::kQuadratic11:
+      return WholeBlocks<Quadratic11>(span, w, to);
+    case BlockKind::kQuadratic16:
+      return WholeBlocks<Quadratic16>(span, w, to);
+    case BlockKind::kScaled16:
+      return WholeBlocks<Scaled16>(span, w, to);
+    case BlockKind::kLinear32:
+      return WholeBlocks<Linear32>(span, w, to);
+    case BlockKind::kQuadratic32:
+      return WholeBlocks<Quadratic32>(span, w, to);
+  }
+}
+
+template <template <Access> class To, class... Pointer>
+void ByAccess(const BlockSpan& span, const CurveWeights& w, Access access, Pointer... to) {
+  constexpr Access kShared{WorkingSet::kSharedCache, false}, kSharedStream{WorkingSet::kSharedCache, true};
+  constexpr Access kMemory{WorkingSet::kMemory, false}, kMemoryStream{WorkingSet::kMemory, true};
+  switch (access.working_set) {
+    case WorkingSet::kSmall:  // nobody streams these
+      return ByKind(span, w, To<Access{}>{{}, to...});
+    case WorkingSet::kSharedCache:
+      if (access.stream) return ByKind(span, w, To<kSharedStream>{{}, to...});
+      return ByKind(span, w, To<kShared>{{}, to...});
+    case WorkingSet::kMemory:
+      if (access.stream) return ByKind(span, w, To<kMemoryStream>{{}, to...});
+      return ByKind(span, w, To<kMemory>{{}, to...});
+  }
+}
+
+// The elements of the last block, if it is filled in part: `part` says how many.
+struct Tail {
+  BlockSpan block;  // as if it were whole
+  std::size_t first, part;
+};
+
+Tail TailOf(const BlockSpan& span) {
+  const std::size_t whole = span.elements / kTile;
+  return {{span.blocks + whole * kTile * bytes_of(span.kind), span.kind, kTile}, whole * kTile, span.elements % kTile};
+}
+
+void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult result) {
+  const Tail tail = TailOf(span);
+  ByAccess<ToPacked>(span, w, result.access, result.xyz);
+  if (tail.part == 0) return;
+  alignas(64) float last[3 * kTile];
+  ByKind(tail.block, w, ToPacked<Access{}>{{}, last});
+  std::copy_n(last, 3 * tail.part, result.xyz + 3 * tail.first);
+}
+
+void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult result) {
+  const Tail tail = TailOf(span);
+  ByAccess<ToPlanes>(span, w, result.access, result.x, result.y, result.z);
+  if (tail.part == 0) return;
+  alignas(64) float last[3 * kTile];
+  ByKind(tail.block, w, ToPlanes<Access{}>{{}, last, last + kTile, last + 2 * kTile});
+  std::copy_n(last, tail.part, result.x + tail.first);
+  std::copy_n(last + kTile, tail.part, result.y + tail.first);
+  std::copy_n(last + 2 * kTile, tail.part, result.z + tail.first);
+}
+
+void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, OctahedralResult result) {
+  const Tail tail = TailOf(span);
+  ByAccess<ToOctahedral>(span, w, result.access, result.bits);
+  if (tail.part == 0) return;
+  alignas(64) std::uint32_t last[kTile];
+  ByKind(tail.block, w, ToOctahedral<Access{}>{{}, last});
+  std::copy_n(last, tail.part, result.bits + tail.first);
+}
+
+void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result result) {
+  const Tail tail = TailOf(span);
+  ByAccess<ToRgb10A2>(span, w, result.access, result.bits);
+  if (tail.part == 0) return;
+  alignas(64) std::uint32_t last[kTile];
+  ByKind(tail.block, w, ToRgb10A2<Access{}>{{}, last});
+  std::copy_n(last, tail.part, result.bits + tail.first);
+}
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace chronormal {
+
+HWY_EXPORT(EvaluatePacked);
+HWY_EXPORT(EvaluatePlanes);
+HWY_EXPORT(EvaluateOctahedral);
+HWY_EXPORT(EvaluateRgb10A2);
+
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept {
+  HWY_DYNAMIC_DISPATCH(EvaluatePacked)(span, weights, result);
+}
+
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept {
+  HWY_DYNAMIC_DISPATCH(EvaluatePlanes)(span, weights, result);
+}
+
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept {
+  HWY_DYNAMIC_DISPATCH(EvaluateOctahedral)(span, weights, result);
+}
+
+void flush_stream() noexcept { hwy::FlushStream(); }
+
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept {
+  HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(span, weights, result);
+}
+
+}  // namespace chronormal
+#endif  // HWY_ONCE

@@ -1,0 +1,69 @@
+/// The kernel of NormalCurves: blocks of one kind to unit normals.
+#ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
+#define CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
+
+#include <cstddef>
+#include <cstdint>
+
+#include "chronormal/core/memory.h"
+#include "normals/curves/kernels/curve_blocks.h"
+
+namespace chronormal {
+
+/// Neighbouring blocks of one kind, the last of which may be filled in part.
+struct BlockSpan {
+  const std::byte* blocks = nullptr;
+  BlockKind kind = BlockKind::kUnit;
+  std::size_t elements = 0;
+};
+
+/// Where all fits that a pass reads and writes; small: 8 MiB.
+enum class WorkingSet { kSmall, kSharedCache, kMemory };
+
+/// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
+/// results go past the caches, for which all their arrays must be aligned to 64 bytes.
+struct Access {
+  WorkingSet working_set = WorkingSet::kSmall;
+  bool stream = false;
+};
+
+/// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.
+constexpr Access access_of_pass(std::size_t read, std::size_t written) noexcept {
+  constexpr std::size_t kLargestSmall = std::size_t{8} << 20, kLargestShared = std::size_t{40} << 20;
+  const std::size_t all = read + written;
+  const WorkingSet set = all <= kLargestSmall     ? WorkingSet::kSmall
+                         : read <= kLargestShared ? WorkingSet::kSharedCache
+                                                  : WorkingSet::kMemory;
+  return {set, all > kStreamFrom};
+}
+
+/// Where the results of a span go: pointers to that of its first element.
+struct PackedResult {
+  float* xyz;
+  Access access = {};
+};
+struct PlanesResult {
+  float *x, *y, *z;
+  Access access = {};
+};
+struct OctahedralResult {
+  std::uint32_t* bits;
+  Access access = {};
+};
+struct Rgb10A2Result {
+  std::uint32_t* bits;
+  Access access = {};
+};
+
+/// Writes the unit normals of all elements of a span, at the t of the weights.
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept;
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept;
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept;
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept;
+
+/// Makes what this thread has streamed visible to the others: once, after the last span, for it waits for the memory.
+void flush_stream() noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_

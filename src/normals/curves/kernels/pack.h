@@ -1,0 +1,47 @@
+/// Control normals into blocks: which precision a tile needs, and the block of a kind.
+#ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_
+#define CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "normals/control/kernels/control_tile.h"
+#include "normals/curves/kernels/curve_blocks.h"
+
+namespace chronormal {
+
+/// How short n(t) may get for each precision to keep a tolerance (docs/theory.md, section 13). A precision that cannot
+/// keep it at all has a limit of 0.
+struct PrecisionLimits {
+  /// k11 and k16: of M / |n(t)|, where M is the largest absolute component of the control normals.
+  double largest_ratio11 = 0, largest_ratio16 = 0;
+  /// kScaled16 and k32: of sum w_k |c_k| / |n(t)|.
+  double sum_ratio_scaled16 = 0, sum_ratio32 = 0;
+
+  /// Above kLargestTolerance, in radians, what lies between a chord and its angle would need a closer look.
+  static constexpr double kLargestTolerance = 0.2;
+  [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
+};
+
+/// What is known of a tile at a glance.
+struct TileSummary {
+  std::uint32_t uncertain = 0;           ///< bit i: element i must be looked at in double
+  std::uint32_t moving = 0;              ///< bit i: its degree is 1 or 2
+  std::uint32_t bending = 0;             ///< bit i: its degree is 2
+  Precision precision = Precision::k11;  ///< that suffices for all others
+};
+
+/// Finds the elements of which some operations in float32 show that they stay long enough: all three control normals
+/// lie within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters; well above
+/// the noise of their products and within the range of float32.
+void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& limits,
+                     std::span<TileSummary> summaries) noexcept;
+
+/// Writes one block of 16 elements for each tile. Precondition: the tiles are finite; for kinds of int16 no element is
+/// zero. blocks must have 16 * bytes_of(kind) bytes for each tile, aligned to 64
+void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* blocks) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_

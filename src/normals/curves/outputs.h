@@ -1,0 +1,114 @@
+/// The forms in which results leave NormalCurves, each behind the same two calls.
+///
+///     write(span, weights, first)   the unit normals of a span of blocks, the first of which is element `first`
+///     set(i, v)                     that of one element
+#ifndef CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_
+#define CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/core/views.h"
+#include "chronormal/normals/encodings.h"
+#include "normals/curves/kernels/evaluate.h"
+
+namespace chronormal {
+
+[[nodiscard]] inline bool is_packed(const VectorView<float>& view) {
+  return view.stride == 3 && view.y == view.x + 1 && view.z == view.x + 2;
+}
+
+/// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.
+template <class... Pointer>
+[[nodiscard]] Access access_to(Access of_pass, Pointer... arrays) {
+  const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
+  return {of_pass.working_set, of_pass.stream && aligned};
+}
+
+struct PackedOutput {
+  PackedOutput(const VectorView<float>& view, Access of_pass) : result(view), access(access_to(of_pass, view.x)) {}
+
+  void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, access});
+  }
+  void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
+
+  VectorView<float> result;
+  Access access;
+};
+
+struct PlanesOutput {
+  PlanesOutput(const VectorView<float>& view, Access of_pass)
+      : result(view), access(access_to(of_pass, view.x, view.y, view.z)) {}
+
+  void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    evaluate_blocks(span, weights, PlanesResult{result.x + first, result.y + first, result.z + first, access});
+  }
+  void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
+
+  VectorView<float> result;
+  Access access;
+};
+
+struct OctahedralOutput {
+  OctahedralOutput(std::span<Octahedral> normals, Access of_pass)
+      : result(normals), access(access_to(of_pass, normals.data())) {}
+
+  void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    static_assert(sizeof(Octahedral) == sizeof(std::uint32_t));
+    evaluate_blocks(span, weights, OctahedralResult{&result[first].bits, access});
+  }
+  void set(std::size_t i, const Vec3f& v) const { result[i] = encode_octahedral(v); }
+
+  std::span<Octahedral> result;
+  Access access;
+};
+
+struct Rgb10A2Output {
+  Rgb10A2Output(std::span<Rgb10A2> normals, Access of_pass)
+      : result(normals), access(access_to(of_pass, normals.data())) {}
+
+  void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    static_assert(sizeof(Rgb10A2) == sizeof(std::uint32_t));
+    evaluate_blocks(span, weights, Rgb10A2Result{&result[first].bits, access});
+  }
+  void set(std::size_t i, const Vec3f& v) const { result[i] = encode_rgb10a2(v); }
+
+  std::span<Rgb10A2> result;
+  Access access;
+};
+
+/// Any other form, by a function of index and vector: through planes on the stack, a few blocks at a time.
+template <class Set>
+struct AnyOutput {
+  WorkingSet working_set;
+  Set set;
+
+  void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    constexpr std::size_t kCount = 16 * kTile;
+    alignas(64) float x[kCount], y[kCount], z[kCount];
+    for (std::size_t i = 0; i < span.elements; i += kCount) {
+      const std::size_t count = std::min(kCount, span.elements - i);
+      const BlockSpan some{span.blocks + i * bytes_of(span.kind), span.kind, count};
+      evaluate_blocks(some, weights, PlanesResult{x, y, z, {working_set, false}});
+      for (std::size_t k = 0; k < count; ++k) set(first + i + k, {x[k], y[k], z[k]});
+    }
+  }
+};
+
+template <class Set>
+AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
+
+/// Calls body(output) with the form that a view has; returns what it returns.
+template <class Body>
+auto with_output(const VectorView<float>& result, Access of_pass, Body body) {
+  if (is_packed(result)) return body(PackedOutput(result, of_pass));
+  if (result.stride == 1) return body(PlanesOutput(result, of_pass));
+  return body(AnyOutput{of_pass.working_set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_

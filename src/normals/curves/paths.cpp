@@ -1,0 +1,184 @@
+#include "chronormal/normals/paths.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/noise.h"
+
+namespace chronormal {
+namespace {
+
+// The error of de Casteljau's algorithm in degree up to 6, and of the control normals.
+constexpr double kNoise = 16 * std::numeric_limits<double>::epsilon();
+
+template <std::size_t K>
+PolynomialSegment<K> empty_segment(const Topology& topology, double start_time, double end_time) {
+  PolynomialSegment<K> segment;
+  segment.topology = &topology;
+  segment.start_time = start_time;
+  segment.end_time = end_time;
+  for (auto& control : segment.control) control.resize(topology.vertex_count());
+  return segment;
+}
+
+template <std::size_t K>
+Bernstein<Vec3d, K> edge(const PolynomialSegment<K>& segment, std::uint32_t from, std::uint32_t to) {
+  Bernstein<Vec3d, K> result;
+  for (std::size_t k = 0; k <= K; ++k) result[k] = segment.control[k][to] - segment.control[k][from];
+  return result;
+}
+
+// The first of the control normals, from the end that is asked for, that is not rounding; zero if there is none.
+template <class Iterator>
+Vec3d first_direction(Iterator begin, Iterator end, double noise) {
+  const auto found = std::find_if(begin, end, [noise](const Vec3d& n) { return max_abs(n) > noise; });
+  return found == end ? Vec3d{} : unit(*found);
+}
+
+}  // namespace
+
+PolynomialSegment<2> accelerated_segment(const Topology& topology, VectorView<const float> positions,
+                                         VectorView<const float> velocities, VectorView<const float> accelerations,
+                                         double start_time, double end_time) {
+  const std::size_t count = topology.vertex_count();
+  assert(positions.count == count && velocities.count == count && accelerations.count == count);
+  PolynomialSegment<2> segment = empty_segment<2>(topology, start_time, end_time);
+  const double duration = end_time - start_time;
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3d p = to_double(positions[v]), step = duration * to_double(velocities[v]);
+    segment.control[0][v] = p;
+    segment.control[1][v] = p + 0.5 * step;
+    segment.control[2][v] = p + step + (0.5 * duration * duration) * to_double(accelerations[v]);
+  }
+  return segment;
+}
+
+PolynomialSegment<3> hermite_segment(const Topology& topology, VectorView<const float> from,
+                                     VectorView<const float> from_velocities, VectorView<const float> to,
+                                     VectorView<const float> to_velocities, double start_time, double end_time) {
+  const std::size_t count = topology.vertex_count();
+  assert(from.count == count && from_velocities.count == count && to.count == count && to_velocities.count == count);
+  PolynomialSegment<3> segment = empty_segment<3>(topology, start_time, end_time);
+  const double third = (end_time - start_time) / 3;
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3d p0 = to_double(from[v]), p1 = to_double(to[v]);
+    segment.control[0][v] = p0;
+    segment.control[1][v] = p0 + third * to_double(from_velocities[v]);
+    segment.control[2][v] = p1 - third * to_double(to_velocities[v]);
+    segment.control[3][v] = p1;
+  }
+  return segment;
+}
+
+template <std::size_t K>
+void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange faces,
+                             std::span<PolynomialNormals<K>> result) noexcept {
+  assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const auto face = segment.topology->face(faces.first + i);
+    PolynomialNormals<K> sum{}, size{};
+    Bernstein<Vec3d, K> e = edge(segment, face[0], face[1]);
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      const Bernstein<Vec3d, K> f = edge(segment, face[0], face[c]);
+      const auto normal = multiply(e, f, cross<double>);
+      const auto products = multiply(e, f, [](const Vec3d& a, const Vec3d& b) {
+        const double largest = max_abs(a) * max_abs(b);
+        return Vec3d{largest, largest, largest};
+      });
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        sum[k] = sum[k] + normal[k];
+        size[k] = size[k] + products[k];
+      }
+      e = f;
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      result[i][k] = max_abs(sum[k]) > kNoise * static_cast<double>(face.size()) * size[k].x ? sum[k] : Vec3d{};
+  }
+}
+
+template <std::size_t K>
+void polynomial_group_normals(const NormalGroups& groups, std::span<const PolynomialNormals<K>> of_faces,
+                              IndexRange elements, std::span<PolynomialNormals<K>> result) noexcept {
+  assert(result.size() == elements.count && elements.end() <= groups.size());
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    std::array<VectorSum, 2 * K + 1> sum;
+    for (const std::uint32_t f : groups.faces(elements.first + i)) {
+      assert(f < of_faces.size());
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k].add(of_faces[f][k]);
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) result[i][k] = sum[k].without_noise();
+  }
+}
+
+template <std::size_t N>
+UnitNormal unit_normal_at(const std::array<Vec3d, N>& normals, double t) noexcept {
+  const auto [before, after] = split(normals, t);
+  Bernstein<double, N - 1> sizes;
+  for (std::size_t k = 0; k < N; ++k) sizes[k] = max_abs(normals[k]);
+  const Vec3d n = after[0];
+  if (max_abs(n) > kNoise * evaluate(sizes, t)) return {unit(n), Direction::kRegular};
+
+  // n(t) = 0: near t the curve leaves along the first control normal of either part that is not zero.
+  const double noise = kNoise * *std::max_element(sizes.begin(), sizes.end());
+  const Vec3d next = first_direction(after.begin() + 1, after.end(), noise);
+  const Vec3d last = first_direction(before.rbegin() + 1, before.rend(), noise);
+  const Vec3d given = t <= 0 || last == Vec3d{} ? next : last;
+  if (given == Vec3d{}) return {{}, Direction::kNone};
+  const bool inside = t > 0 && t < 1 && next != Vec3d{} && last != Vec3d{};
+  return {given, inside && dot(next, last) < 0 ? Direction::kDiscontinuous : Direction::kLimit};
+}
+
+template <std::size_t K>
+Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double distance, std::size_t most_pieces) {
+  if (!(distance > 0)) return Error{ErrorCode::kUsage, "", "the distance of a cut motion must be positive"};
+
+  // A chord over a piece of length h is within h^2 / 8 of the largest second derivative.
+  double second_derivative = 0;
+  for (std::size_t k = 0; k + 2 <= K; ++k) {
+    for (std::size_t v = 0; v < segment.topology->vertex_count(); ++v) {
+      const auto& c = segment.control;
+      const Vec3d bend = (c[k][v] - c[k + 1][v]) + (c[k + 2][v] - c[k + 1][v]);
+      second_derivative = std::max(second_derivative, static_cast<double>(K * (K - 1)) * length(bend));
+    }
+  }
+  const double pieces = std::fmax(1.0, std::ceil(std::sqrt(second_derivative / (8 * distance)) * (1 + 1e-12)));
+  if (!(pieces <= static_cast<double>(most_pieces)))
+    return Error{ErrorCode::kUsage, "",
+                 "a motion this curved needs more than " + std::to_string(most_pieces) + " straight pieces"};
+
+  Motion motion;
+  motion.topology = *segment.topology;
+  const auto piece_count = static_cast<std::size_t>(pieces);
+  for (std::size_t piece = 0; piece <= piece_count; ++piece) {
+    const double t = static_cast<double>(piece) / pieces;
+    Motion::Keyframe keyframe;
+    keyframe.time = segment.start_time + t * (segment.end_time - segment.start_time);
+    keyframe.positions.reserve(3 * segment.topology->vertex_count());
+    for (std::size_t v = 0; v < segment.topology->vertex_count(); ++v) {
+      Bernstein<Vec3d, K> curve;
+      for (std::size_t k = 0; k <= K; ++k) curve[k] = segment.control[k][v];
+      const Vec3f p = to_float(evaluate(curve, t));
+      keyframe.positions.insert(keyframe.positions.end(), {p.x, p.y, p.z});
+    }
+    motion.keyframes.push_back(std::move(keyframe));
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+#define CHRONORMAL_INSTANTIATE(K)                                                                           \
+  template void polynomial_face_normals<(K)>(const PolynomialSegment<(K)>&, IndexRange,                     \
+                                             std::span<PolynomialNormals<(K)>>) noexcept;                   \
+  template void polynomial_group_normals<(K)>(const NormalGroups&, std::span<const PolynomialNormals<(K)>>, \
+                                              IndexRange, std::span<PolynomialNormals<(K)>>) noexcept;      \
+  template UnitNormal unit_normal_at(const std::array<Vec3d, 2 * (K) + 1>&, double) noexcept;               \
+  template Result<Motion> cut_into_segments<(K)>(const PolynomialSegment<(K)>&, double, std::size_t)
+
+CHRONORMAL_INSTANTIATE(1);
+CHRONORMAL_INSTANTIATE(2);
+CHRONORMAL_INSTANTIATE(3);
+
+}  // namespace chronormal

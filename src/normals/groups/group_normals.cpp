@@ -1,0 +1,48 @@
+#include "chronormal/normals/group_normals.h"
+
+#include <cassert>
+#include <cstddef>
+
+#include "core/blocks.h"
+#include "core/noise.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+
+}  // namespace
+
+void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
+                           std::span<ControlNormals> result) noexcept {
+  assert(result.size() == elements.count && elements.end() <= groups.size());
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    VectorSum n0, m, n1;
+    for (const std::uint32_t f : groups.faces(elements.first + i)) {
+      assert(f < of_faces.size());
+      n0.add(of_faces[f].n0);
+      m.add(of_faces[f].m);
+      n1.add(of_faces[f].n1);
+    }
+    result[i] = {n0.without_noise(), m.without_noise(), n1.without_noise()};
+  }
+}
+
+std::vector<ControlNormals> all_face_control_normals(const Segment& segment) {
+  std::vector<ControlNormals> normals(segment.topology->face_count());
+  parallel_blocks(normals.size(), kBlock, [&](IndexRange faces) {
+    face_control_normals(segment, faces, std::span(normals).subspan(faces.first, faces.count));
+  });
+  return normals;
+}
+
+std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups) {
+  const std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
+  std::vector<ControlNormals> normals(groups.size());
+  parallel_blocks(normals.size(), kBlock, [&](IndexRange elements) {
+    group_control_normals(groups, of_faces, elements, std::span(normals).subspan(elements.first, elements.count));
+  });
+  return normals;
+}
+
+}  // namespace chronormal

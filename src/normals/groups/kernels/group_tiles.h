@@ -1,0 +1,67 @@
+/// Control normals of vertices and corners, sixteen at a time: the front end of NormalCurves::of_groups.
+#ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
+#define CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
+
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/memory.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+#include "normals/control/kernels/control_tile.h"
+
+namespace chronormal {
+
+/// Control normals of the faces begin ... end - 1, in a ring of rows: nine components and the magnitude, at the
+/// beginning of two cache lines.
+struct FaceWindow {
+  static constexpr std::size_t kRow = 16;
+  static constexpr std::size_t kSmallest = 1024, kLargest = 32768;  // faces; powers of two
+
+  double* rows = nullptr;            ///< of `largest` faces, or of all
+  std::size_t capacity = kSmallest;  ///< face f is in row f % capacity
+  std::size_t largest = kLargest;    ///< what capacity may grow to
+  std::size_t begin = 0, end = 0;    ///< multiples of 16
+  std::size_t late = 0, early = 0;   ///< faces that were missed, before `begin` and after `end`
+  std::size_t strange = 0;           ///< corners since an element last used the window
+};
+
+/// The control normals of all faces in such rows: for meshes in no order, whose neighbours are anywhere. 128 bytes a
+/// face, shared by all threads.
+class AllFaceRows {
+ public:
+  /// Throws std::bad_alloc.
+  AllFaceRows(const Segment& segment, Threads threads);
+
+  [[nodiscard]] double* data() const noexcept { return rows_.data(); }
+
+ private:
+  mutable AlignedArray<double> rows_;  // a window could write, but one over all faces never does
+};
+
+/// Walks over ascending ranges of elements; one object for each thread. Keeps the control normals of the faces that
+/// were used last, so that those around neighbouring elements are computed once on a well-ordered mesh, and no array
+/// of all of them is needed. On a mesh in any other order, without all_rows, they are computed for every corner.
+class GroupTiles {
+ public:
+  /// Throws std::bad_alloc only. groups must outlive the object and belong to the topology of the segment
+  /// all_rows must be of this segment, and outlive the object as well; without them a window of its own is used.
+  GroupTiles(const Segment& segment, const NormalGroups& groups, const AllFaceRows* all_rows = nullptr);
+
+  /// Writes the tiles of a range of elements (see ControlTile); ranges that ascend are fast. The values are those of
+  /// group_control_normals(), rounded to float32, and so is the degree.
+  /// tiles must have ceil(elements.count / 16) elements; elements.count > 0
+  void write(IndexRange elements, std::span<ControlTile> tiles) noexcept;
+
+ private:
+  Segment segment_;
+  const NormalGroups* groups_;
+  AlignedArray<double> rows_;  // of the window; what is not used costs no memory
+  FaceWindow window_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_

@@ -1,0 +1,462 @@
+#include "normals/recompute/kernels/recompute_tiles.h"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <cassert>
+#include <type_traits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "normals/recompute/kernels/recompute_tiles.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "simd/lanes-inl.h"
+#include "simd/rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+using IdTag = hn::RebindToUnsigned<FloatTag>;
+
+inline constexpr IdTag kIds;
+
+constexpr std::size_t kBlock = 16;
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE Lanes4 LoadRows(const float* rows) { return LoadRow(rows); }
+
+struct Sum {
+  double values[4] = {};
+
+  HWY_INLINE void Add(const FaceNormal& n) {
+    const float* const terms = &n.x;
+    for (int i = 0; i < 4; ++i) values[i] += static_cast<double>(terms[i]);
+  }
+  HWY_INLINE void Store(float* to) const {
+    for (int i = 0; i < 4; ++i) to[i] = static_cast<float>(values[i]);
+  }
+};
+
+#else
+
+HWY_INLINE Floats Joined(Doubles lower, Doubles upper) {
+  const HalfFloatTag part;
+  return hn::Combine(kFloats, hn::DemoteTo(part, upper), hn::DemoteTo(part, lower));
+}
+
+// Four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
+HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
+#if HWY_TARGET == HWY_AVX3
+  // A load that fills some of the lanes needs no permutation, as insertions do.
+  const auto row = [base, offsets](std::size_t i) HWY_ATTR { return _mm_loadu_ps(base + offsets[i]); };
+  __m512 rows = _mm512_broadcast_f32x4(row(0));
+  rows = _mm512_mask_broadcast_f32x4(rows, 0x00F0, row(1));
+  rows = _mm512_mask_broadcast_f32x4(rows, 0x0F00, row(2));
+  return Floats{_mm512_mask_broadcast_f32x4(rows, 0xF000, row(3))};
+#elif HWY_TARGET == HWY_AVX2
+  return hn::Combine(kFloats, LoadRow(base + offsets[1]), LoadRow(base + offsets[0]));
+#else
+  return LoadRow(base + offsets[0]);
+#endif
+}
+
+HWY_INLINE Lanes4 LoadRows(const float* rows) {
+  constexpr std::size_t kOffsets[] = {0, 16, 32, 48};
+  return Transposed(
+      {RowsAt(rows, kOffsets), RowsAt(rows + 4, kOffsets), RowsAt(rows + 8, kOffsets), RowsAt(rows + 12, kOffsets)});
+}
+
+// x, y, z and error of normals, added up in double.
+template <std::size_t kRegisters>
+struct SumOf {
+  using Tag = hn::CappedTag<double, 4 / kRegisters>;
+  hn::Vec<Tag> parts[kRegisters] = {};
+
+  HWY_INLINE SumOf() {
+    for (auto& part : parts) part = hn::Zero(Tag());
+  }
+  HWY_INLINE void Add(const FaceNormal& n) {
+    const Row row = LoadRow(&n.x);
+    if constexpr (kRegisters == 1) {
+      parts[0] = hn::Add(parts[0], hn::PromoteTo(Tag(), row));
+    } else {
+      const hn::Rebind<float, Tag> half;
+      parts[0] = hn::Add(parts[0], hn::PromoteTo(Tag(), hn::LowerHalf(half, row)));
+      parts[1] = hn::Add(parts[1], hn::PromoteTo(Tag(), hn::UpperHalf(half, row)));
+    }
+  }
+  HWY_INLINE void Store(float* to) const {
+    const hn::Rebind<float, Tag> some;
+    for (std::size_t i = 0; i < kRegisters; ++i) hn::Store(hn::DemoteTo(some, parts[i]), some, to + 4 / kRegisters * i);
+  }
+};
+using Sum = SumOf<kLanes == 4 ? 2 : 1>;
+
+#endif
+
+// Edges from the first corner of the faces of a block, at both ends.
+struct alignas(64) EdgeBlock {
+  float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
+};
+
+HWY_INLINE void StorePlanes(const Lanes4& v, float (*planes)[kBlock], std::size_t lane) {
+  hn::Store(v.x, kFloats, planes[0] + lane);
+  hn::Store(v.y, kFloats, planes[1] + lane);
+  hn::Store(v.z, kFloats, planes[2] + lane);
+}
+
+HWY_INLINE Floats Square(const float (*planes)[kBlock], std::size_t lane) {
+  const Lanes3 v = {hn::Load(kFloats, planes[0] + lane), hn::Load(kFloats, planes[1] + lane),
+                    hn::Load(kFloats, planes[2] + lane)};
+  return Dot(v, v);
+}
+
+// Reads the coordinates and nothing else.
+inline void LoadEdgesExactly(const float* from, const float* to, std::size_t stride, const std::uint32_t* corners,
+                             EdgeBlock& block) {
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const std::size_t a = stride * corners[3 * i], b = stride * corners[3 * i + 1], c = stride * corners[3 * i + 2];
+    for (std::size_t k = 0; k < 3; ++k) {
+      block.start_e[k][i] = from[b + k] - from[a + k];
+      block.start_f[k][i] = from[c + k] - from[a + k];
+      block.end_e[k][i] = to[b + k] - to[a + k];
+      block.end_f[k][i] = to[c + k] - to[a + k];
+    }
+  }
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+constexpr bool kReadsBehind = false;
+
+template <std::size_t kStride>
+HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
+  LoadEdgesExactly(from, to, kStride, corners, block);
+}
+
+#else
+
+constexpr bool kReadsBehind = true;
+
+// Edges of faces k, k + 4, ... as rows.
+struct EdgeRows {
+  Floats e0, f0, e1, f1;
+};
+
+template <std::size_t kStride>
+HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::uint32_t* corners) {
+  constexpr std::size_t kRows = kLanes / 4;
+  std::size_t offsets[3 * kRows];
+  for (std::size_t i = 0; i < kRows; ++i) {
+    offsets[i] = kStride * corners[12 * i];
+    offsets[kRows + i] = kStride * corners[12 * i + 1];
+    offsets[2 * kRows + i] = kStride * corners[12 * i + 2];
+  }
+  const Floats a0 = RowsAt(from, offsets), a1 = RowsAt(to, offsets);
+  const Floats b0 = RowsAt(from, offsets + kRows), b1 = RowsAt(to, offsets + kRows);
+  const Floats c0 = RowsAt(from, offsets + 2 * kRows), c1 = RowsAt(to, offsets + 2 * kRows);
+  return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
+}
+
+// Reads a float behind each vertex.
+template <std::size_t kStride>
+HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
+  for (std::size_t k = 0; k < kBlock; k += kLanes, corners += 3 * kLanes) {
+    const EdgeRows r0 = RowsOfEdges<kStride>(from, to, corners);
+    const EdgeRows r1 = RowsOfEdges<kStride>(from, to, corners + 3);
+    const EdgeRows r2 = RowsOfEdges<kStride>(from, to, corners + 6);
+    const EdgeRows r3 = RowsOfEdges<kStride>(from, to, corners + 9);
+    StorePlanes(Transposed({r0.e0, r1.e0, r2.e0, r3.e0}), block.start_e, k);
+    StorePlanes(Transposed({r0.f0, r1.f0, r2.f0, r3.f0}), block.start_f, k);
+    StorePlanes(Transposed({r0.e1, r1.e1, r2.e1, r3.e1}), block.end_e, k);
+    StorePlanes(Transposed({r0.f1, r1.f1, r2.f1, r3.f1}), block.end_f, k);
+  }
+}
+
+#endif
+
+// Of half of the lanes of a vector, where there are two.
+HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
+  const HalfFloatTag part;
+  const auto load = [part, lane](const float* plane)
+                        HWY_ATTR { return hn::PromoteTo(kDoubles, hn::Load(part, plane + lane)); };
+  return {hn::Add(hn::Mul(s, load(a[0])), hn::Mul(t, load(b[0]))),
+          hn::Add(hn::Mul(s, load(a[1])), hn::Mul(t, load(b[1]))),
+          hn::Add(hn::Mul(s, load(a[2])), hn::Mul(t, load(b[2])))};
+}
+
+HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, double t) {
+  const Doubles s1 = hn::Set(kDoubles, 1 - t), t1 = hn::Set(kDoubles, t);
+  return Cross(Lerp(s1, block.start_e, t1, block.end_e, lane), Lerp(s1, block.start_f, t1, block.end_f, lane));
+}
+
+// Squares of float32 between these neither overflow nor lose digits.
+HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
+  return hn::And(hn::Ge(smallest, hn::Set(kFloats, 0x1p-100f)), hn::Le(largest, hn::Set(kFloats, 0x1p100f)));
+}
+
+struct Normals {
+  Lanes3 n;
+  Floats product;  // A B of recompute.h
+  hn::Mask<FloatTag> trusted;
+};
+
+HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, double t) {
+#if HWY_TARGET == HWY_SCALAR
+  const Doubles3 exact = CrossOfLerps(block, lane, t);
+  const Lanes3 n = {hn::DemoteTo(kFloats, exact.x), hn::DemoteTo(kFloats, exact.y), hn::DemoteTo(kFloats, exact.z)};
+#else
+  const Doubles3 lower = CrossOfLerps(block, lane, t), upper = CrossOfLerps(block, lane + kLanes / 2, t);
+  const Lanes3 n = {Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
+#endif
+  const Floats s1 = hn::Set(kFloats, static_cast<float>(1 - t)), t1 = hn::Set(kFloats, static_cast<float>(t));
+  const Floats a = hn::Add(hn::Mul(s1, Square(block.start_e, lane)), hn::Mul(t1, Square(block.end_e, lane)));
+  const Floats b = hn::Add(hn::Mul(s1, Square(block.start_f, lane)), hn::Mul(t1, Square(block.end_f, lane)));
+  const Floats product = hn::Mul(a, b), square = Dot(n, n);
+  constexpr float kMaxProduct = 40;  // 2.31 sqrt(40) <= 14.7
+  const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMaxProduct), square));
+  return {n, product, hn::And(precise, InRange(hn::Min(square, hn::Min(a, b)), square))};
+}
+
+// Appends the places of lanes that are not to be trusted.
+HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std::size_t end, std::size_t count,
+                              std::uint32_t* doubtful) {
+  if (HWY_LIKELY(hn::AllTrue(kFloats, trusted))) return count;
+  alignas(64) float flags[kLanes];
+  hn::Store(hn::IfThenElseZero(trusted, hn::Set(kFloats, 1.0f)), kFloats, flags);
+  for (std::size_t i = 0; i < kLanes && first + i < end; ++i) {
+    if (flags[i] == 0) doubtful[count++] = static_cast<std::uint32_t>(first + i);
+  }
+  return count;
+}
+
+enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
+
+// Writes kLanes vectors from the first-th on, but for those beyond the end.
+template <ResultLayout kLayout>
+HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
+  if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
+    if constexpr (kLayout == ResultLayout::kPlanes) {
+      hn::StoreU(v.x, kFloats, result.x + first);
+      hn::StoreU(v.y, kFloats, result.y + first);
+      hn::StoreU(v.z, kFloats, result.z + first);
+    } else {
+      StorePacked<kLayout == ResultLayout::kStreamed>(v, result.x + 3 * first);
+    }
+    return;
+  }
+  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
+  hn::Store(v.x, kFloats, x);
+  hn::Store(v.y, kFloats, y);
+  hn::Store(v.z, kFloats, z);
+  for (std::size_t i = 0; i < kLanes && first + i < result.count; ++i) result.set(first + i, {x[i], y[i], z[i]});
+}
+
+// Calls body with the layout of a result, as a constant.
+template <class Body>
+HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
+  if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
+  if (result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2) {
+    if (stream && reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0)
+      return body(std::integral_constant<ResultLayout, ResultLayout::kStreamed>());
+    return body(std::integral_constant<ResultLayout, ResultLayout::kPacked>());
+  }
+  return body(std::integral_constant<ResultLayout, ResultLayout::kOther>());
+}
+
+// Whether one of the 48 corners of a block is this vertex.
+HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
+  const auto wanted = hn::Set(kIds, vertex);
+  auto found = hn::Eq(hn::LoadU(kIds, corners), wanted);
+  for (std::size_t i = kLanes; i < 3 * kBlock; i += kLanes)
+    found = hn::Or(found, hn::Eq(hn::LoadU(kIds, corners + i), wanted));
+  return !hn::AllFalse(kIds, found);
+}
+
+// How far ahead to fetch: enough for some 50 misses under way.
+constexpr std::size_t kFacesAhead = 48, kTermsAhead = 64;
+
+template <std::size_t kStride>
+HWY_INLINE void Fetch(const MovingTriangles& triangles, const std::uint32_t* corners) {
+  for (std::size_t k = 0; k < 3 * kBlock; ++k) {
+    hwy::Prefetch(triangles.from + kStride * corners[k]);
+    if constexpr (kStride == 3) hwy::Prefetch(triangles.to + kStride * corners[k]);
+  }
+}
+
+// Loads the edges of a block of faces; of fewer than 16, the last again and again.
+template <std::size_t kStride>
+HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, std::size_t count, EdgeBlock& block) {
+  const auto last = static_cast<std::uint32_t>(triangles.vertex_count - 1);
+  const std::uint32_t* corners = triangles.corners + 3 * first;
+  std::uint32_t padded[3 * kBlock];
+  if (HWY_UNLIKELY(count < kBlock)) {
+    for (std::size_t k = 0; k < 3 * kBlock; ++k) padded[k] = corners[3 * std::min(k / 3, count - 1) + k % 3];
+    corners = padded;
+  } else if (!triangles.is_coherent && first + kFacesAhead + kBlock <= triangles.face_count) {
+    Fetch<kStride>(triangles, corners + 3 * kFacesAhead);
+  }
+  if (HWY_UNLIKELY(kReadsBehind && kStride == 3 && Contains(corners, last))) {
+    LoadEdgesExactly(triangles.from, triangles.to, kStride, corners, block);
+  } else {
+    LoadEdges<kStride>(triangles.from, triangles.to, corners, block);
+  }
+}
+
+// Calls body(place, normals) for every kLanes faces of a range. The next block is loaded before one is worked on, so
+// that the machine does both at once.
+template <std::size_t kStride, class Body>
+HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
+  EdgeBlock blocks[2];
+  LoadBlock<kStride>(triangles, faces.first, faces.count, blocks[0]);
+  for (std::size_t i = 0; i < faces.count; i += kBlock) {
+    const EdgeBlock& block = blocks[i / kBlock % 2];
+    if (i + kBlock < faces.count) {
+      LoadBlock<kStride>(triangles, faces.first + i + kBlock, faces.count - i - kBlock, blocks[(i / kBlock + 1) % 2]);
+    }
+    for (std::size_t k = 0; k < kBlock; k += kLanes) body(i + k, NormalsAt(block, k, t));
+  }
+}
+
+std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange faces, double t, VectorView<float> result,
+                                 bool stream, std::uint32_t* doubtful) {
+  return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
+    std::size_t count = 0;
+    const auto body = [&](std::size_t place, const Normals& normals) HWY_ATTR {
+      Write<layout()>(Normalized(normals.n), place, result);
+      count = Append(normals.trusted, place, faces.count, count, doubtful);
+    };
+    if (triangles.is_paired)
+      ForNormals<8>(triangles, faces, t, body);
+    else
+      ForNormals<3>(triangles, faces, t, body);
+    return count;
+  });
+}
+
+std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
+                                 std::uint32_t* doubtful) {
+  std::size_t count = 0;
+  const auto body = [&](std::size_t place, const Normals& normals) HWY_ATTR {
+    // 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
+    const Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
+    const Lanes3& n = normals.n;
+    if (HWY_LIKELY(place + kLanes <= faces.count)) {
+      hn::StoreInterleaved4(n.x, n.y, n.z, error, kFloats, &result[place].x);
+    } else {
+      alignas(64) float rows[4 * kLanes];
+      hn::StoreInterleaved4(n.x, n.y, n.z, error, kFloats, rows);
+      for (std::size_t i = 0; place + i < faces.count; ++i)
+        result[place + i] = {rows[4 * i], rows[4 * i + 1], rows[4 * i + 2], rows[4 * i + 3]};
+    }
+    count = Append(normals.trusted, place, faces.count, count, doubtful);
+  };
+  if (triangles.is_paired)
+    ForNormals<8>(triangles, faces, t, body);
+  else
+    ForNormals<3>(triangles, faces, t, body);
+  return count;
+}
+
+template <ResultLayout kLayout>
+HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
+                                    const VectorView<float>& result, std::uint32_t* doubtful) {
+  const auto last = groups.faces(elements.end() - 1);
+  const std::uint32_t* const end = last.data() + last.size();
+  const std::uint32_t* f = groups.faces(elements.first).data();
+  std::size_t count = 0;
+  alignas(64) float rows[4 * kBlock] = {};
+  for (std::size_t i = 0; i < elements.count; i += kBlock) {
+    const std::size_t in_block = std::min(kBlock, elements.count - i);
+    for (std::size_t k = 0; k < in_block; ++k) {
+      Sum sum;
+      const std::uint32_t* const faces_end = f + groups.faces(elements.first + i + k).size();
+      if (!window.fetch && faces_end - f == 6) {
+        // By far the most frequent number.
+        for (int term = 0; term < 6; ++term) sum.Add(window.normals[f[term] & window.mask]);
+        f = faces_end;
+      }
+      for (; f != faces_end; ++f) {
+        if (window.fetch && end - f > static_cast<std::ptrdiff_t>(kTermsAhead))
+          hwy::Prefetch(window.normals + (f[kTermsAhead] & window.mask));
+        sum.Add(window.normals[*f & window.mask]);
+      }
+      sum.Store(rows + 4 * k);
+    }
+    for (std::size_t k = 0; k < in_block; k += kLanes) {
+      const Lanes4 v = LoadRows(rows + 4 * k);
+      const Lanes3 n = {v.x, v.y, v.z};
+      const Floats square = Dot(n, n);
+      // An error of 14.56 u |n| leaves 2 u |n| for rounding to float32.
+      const auto precise = hn::Le(hn::Mul(v.w, v.w), hn::Mul(hn::Set(kFloats, 212.0f), square));
+      Write<kLayout>(Normalized(n), i + k, result);
+      count = Append(hn::And(precise, InRange(square, square)), i + k, elements.count, count, doubtful);
+    }
+  }
+  return count;
+}
+
+std::size_t RecomputeGroupNormals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
+                                  VectorView<float> result, bool stream, std::uint32_t* doubtful) {
+  return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
+    return GroupNormals<layout()>(groups, elements, window, result, doubtful);
+  });
+}
+
+IndexRange RangeOf(const std::uint32_t* values, std::size_t count) {
+  std::uint32_t first = values[0], last = values[0];
+  std::size_t i = 0;
+  if (count >= kLanes) {
+    auto low = hn::LoadU(kIds, values), high = low;
+    for (; i + kLanes <= count; i += kLanes) {
+      low = hn::Min(low, hn::LoadU(kIds, values + i));
+      high = hn::Max(high, hn::LoadU(kIds, values + i));
+    }
+    first = hn::GetLane(hn::MinOfLanes(kIds, low));
+    last = hn::GetLane(hn::MaxOfLanes(kIds, high));
+  }
+  for (; i < count; ++i) {
+    first = std::min(first, values[i]);
+    last = std::max(last, values[i]);
+  }
+  return {first, std::size_t{last} - first + 1};
+}
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace chronormal {
+
+HWY_EXPORT(RecomputeUnitNormals);
+HWY_EXPORT(RecomputeFaceNormals);
+HWY_EXPORT(RecomputeGroupNormals);
+HWY_EXPORT(RangeOf);
+
+std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, double t,
+                                   VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept {
+  assert(0 < faces.count && faces.end() <= triangles.face_count && result.count == faces.count);
+  return HWY_DYNAMIC_DISPATCH(RecomputeUnitNormals)(triangles, faces, t, result, stream, doubtful);
+}
+
+std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
+                                   std::uint32_t* doubtful) noexcept {
+  assert(0 < faces.count && faces.end() <= triangles.face_count);
+  return HWY_DYNAMIC_DISPATCH(RecomputeFaceNormals)(triangles, faces, t, result, doubtful);
+}
+
+std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
+                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept {
+  assert(0 < elements.count && elements.end() <= groups.size() && result.count == elements.count);
+  return HWY_DYNAMIC_DISPATCH(RecomputeGroupNormals)(groups, elements, window, result, stream, doubtful);
+}
+
+IndexRange range_of(std::span<const std::uint32_t> values) noexcept {
+  assert(!values.empty());
+  return HWY_DYNAMIC_DISPATCH(RangeOf)(values.data(), values.size());
+}
+
+}  // namespace chronormal
+#endif  // HWY_ONCE

@@ -1,0 +1,68 @@
+/// Normals of moving triangles at one t, sixteen at a time, and their sums: the inner loops of NormalRecompute.
+///
+/// A face at t in float32 edges and double beyond: positions are subtracted in float32, edges are interpolated and
+/// multiplied in double. With u = 2^-24, and E, F the interpolated lengths of both edges, s|e0| + t|e1|,
+///
+///     edges       each component within u of itself            |error of n| <= 2 u 2/sqrt(3) E F = 2.31 u E F
+///     to float32  of n, and of its multiple of length 1        2 u |n|
+///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
+///
+/// so n is within 1e-6 rad where 2.31 sqrt(A B) <= 14.7 |n|: triangles with more than 9 degrees at their first corner
+/// that do not shrink much on their way. The others are *doubtful*, and the caller's: it does them in double.
+#ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
+#define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal {
+
+/// Triangles as the kernels read them: positions packed; or paired, x0 y0 z0 _ x1 y1 z1 _ for each vertex.
+struct MovingTriangles {
+  const std::uint32_t* corners = nullptr;  ///< three for each face
+  std::size_t face_count = 0;
+  const float* from = nullptr;
+  const float* to = nullptr;  ///< paired: from + 4
+  std::size_t vertex_count = 0;
+  bool is_paired = false;
+  bool is_coherent = true;  ///< neighbouring faces have neighbouring vertices: nothing has to be fetched ahead
+};
+
+/// n(t) of a face, and how far it may be off: at most 2^-24 `error`.
+struct alignas(16) FaceNormal {
+  float x, y, z, error;
+};
+
+/// Where the normals of faces are: that of face f is normals[f & mask].
+struct NormalWindow {
+  const FaceNormal* normals = nullptr;
+  std::size_t mask = 0;
+  bool fetch = false;  ///< whether they are anywhere in memory, and have to be fetched ahead
+};
+
+/// Writes the unit normals of a range of faces, and into `doubtful` the places in it that are not to be trusted;
+/// returns how many those are. `stream`: past the caches, where the result is packed and aligned to 64 bytes.
+/// faces.count > 0; result must have faces.count elements, doubtful as much room
+std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, double t,
+                                   VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
+
+/// The same of normals that keep their length, with their errors.
+std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
+                                   std::uint32_t* doubtful) noexcept;
+
+/// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Doubtful are those
+/// of elements whose faces cancel, and (0, 0, 0).
+/// elements.count > 0; result must have elements.count elements, doubtful as much room
+std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
+                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
+
+/// From the smallest to the largest of some values.
+[[nodiscard]] IndexRange range_of(std::span<const std::uint32_t> values) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_

@@ -1,0 +1,412 @@
+#include "chronormal/normals/recompute.h"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "chronormal/normals/control_normals.h"
+#include "core/blocks.h"
+#include "motion/coherence.h"
+#include "normals/curves/curve_elements.h"
+#include "normals/groups/group_sum.h"
+#include "normals/recompute/kernels/recompute_tiles.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kFaceBatch = 1024;  // room for the doubtful ones on the stack
+constexpr std::size_t kFaceBlock = 16;
+constexpr std::size_t kBlockOfVertices = 16384;
+constexpr std::size_t kGroupBatch = 256;                      // elements whose faces must be in the window at once
+constexpr std::size_t kLargestWindow = std::size_t{1} << 14;  // 256 KiB
+constexpr std::size_t kWindowSamples = 64;
+constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
+constexpr std::size_t kMostParts = 64;
+
+// Positions that fit here may be read in any order.
+constexpr std::size_t kNearBytes = std::size_t{1} << 20;
+constexpr double kMostLinesPerFace = 1;
+
+constexpr double kHalfEpsilon = 0x1p-53;
+constexpr double kFloatHalfEpsilon = 0x1p-24;
+
+// n(t) in double from the positions, and what it may be off by.
+struct NormalAtTime {
+  Vec3d n;
+  double error = 0;
+};
+
+double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+
+// With u = 2^-53: edges, and both products of each component after them, are within 10 u of the absolute products; and
+// each triangle of a fan adds a rounding.
+NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
+  const auto face = segment.topology->face(f);
+  const double s = 1 - t;
+  const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
+  struct Edge {
+    Vec3d at;
+    double size;
+  };
+  const auto edge = [&](std::size_t c) {
+    const Vec3d e0 = to_double(segment.from[face[c]]) - a0, e1 = to_double(segment.to[face[c]]) - a1;
+    return Edge{s * e0 + t * e1, s * sum_abs(e0) + t * sum_abs(e1)};
+  };
+  NormalAtTime result;
+  Edge e = edge(1);
+  for (std::size_t c = 2; c < face.size(); ++c) {
+    const Edge f_c = edge(c);
+    result.n = result.n + cross(e.at, f_c.at);
+    result.error += e.size * f_c.size;
+    e = f_c;
+  }
+  result.error *= kHalfEpsilon * static_cast<double>(10 + face.size());
+  return result;
+}
+
+constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
+
+FaceNormal rounded(const NormalAtTime& normal) {
+  // A little more, for the rounding of the bound.
+  const double error = 1.01 * (length(normal.n) + normal.error / kFloatHalfEpsilon);
+  if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
+  const Vec3f n = to_float(normal.n);
+  return {n.x, n.y, n.z, static_cast<float>(error)};
+}
+
+// What the kernel makes of a triangle, to the last bit.
+struct QuickNormal {
+  Vec3f n;
+  float error = 0;
+  bool is_trusted = false;
+};
+
+bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && largest <= 0x1p100f; }
+
+QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
+  const auto face = segment.topology->face(f);
+  const auto edge = [face](const VectorView<const float>& points, std::size_t c) {
+    return points[face[c]] - points[face[0]];
+  };
+  const auto at = [t](const Vec3f& start, const Vec3f& end) { return (1 - t) * to_double(start) + t * to_double(end); };
+  const Vec3f e0 = edge(segment.from, 1), e1 = edge(segment.to, 1), f0 = edge(segment.from, 2),
+              f1 = edge(segment.to, 2);
+  const Vec3d exact = cross(at(e0, e1), at(f0, f1));
+  if (!(max_abs(exact) <= kLargestNormal)) return {};
+  const Vec3f n = to_float(exact);
+  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
+  const float a = start_weight * dot(e0, e0) + end_weight * dot(e1, e1);
+  const float b = start_weight * dot(f0, f0) + end_weight * dot(f1, f1);
+  const float product = a * b, square = dot(n, n);
+  const bool is_precise = product <= 40 * square;
+  return {n, 3.32f * std::sqrt(product), is_precise && in_range(std::min({square, a, b}), square)};
+}
+
+FaceNormal face_normal(const Segment& segment, std::size_t f, double t) {
+  if (segment.topology->all_triangles()) {
+    const QuickNormal quick = quick_normal(segment, f, t);
+    if (quick.is_trusted) return {quick.n.x, quick.n.y, quick.n.z, quick.error};
+  }
+  return rounded(normal_at_time(segment, f, t));
+}
+
+// In double, as finely as it takes.
+UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, double t) {
+  const NormalAtTime normal = normal_at_time(segment, f, t);
+  constexpr double kSmallestAngle = 0x1p-23;  // 1.2e-7 rad
+  constexpr double kSmallestNormal = 0x1p-900;
+  const double size = max_abs(normal.n);
+  if (normal.error <= kSmallestAngle * size && size >= kSmallestNormal) return {unit(normal.n), Direction::kRegular};
+  ControlNormals control;
+  face_control_normals(segment, {f, 1}, {&control, 1});
+  return unit_normal_at(control, t);
+}
+
+UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) {
+  if (segment.topology->all_triangles()) {
+    const QuickNormal quick = quick_normal(segment, f, t);
+    if (quick.is_trusted) return {to_double(normalized(quick.n)), Direction::kRegular};
+  }
+  return fine_unit_normal(segment, f, t);
+}
+
+UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element, double t) {
+  return unit_normal_at(control_normals_of_group(segment, groups, element), t);
+}
+
+// The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
+UnitNormal quick_unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element,
+                                      double t) {
+  Vec3d sum;
+  double sum_of_errors = 0;
+  for (const std::uint32_t f : groups.faces(element)) {
+    const FaceNormal normal = face_normal(segment, f, t);
+    sum = sum + to_double(Vec3f{normal.x, normal.y, normal.z});
+    sum_of_errors += static_cast<double>(normal.error);
+  }
+  const Vec3f n = to_float(sum);
+  const float error = static_cast<float>(sum_of_errors), square = dot(n, n);
+  if (error * error <= 212 * square && in_range(square, square)) return {to_double(normalized(n)), Direction::kRegular};
+  return unit_normal_of_group(segment, groups, element, t);
+}
+
+// The faces of neighbouring elements; those of NormalGroups lie one after the other.
+std::span<const std::uint32_t> faces_of(const NormalGroups& groups, IndexRange elements) {
+  const auto first = groups.faces(elements.first), last = groups.faces(elements.end() - 1);
+  return {first.data(), last.data() + last.size()};
+}
+
+// The smallest power of two that holds the faces around nine batches of ten; 0 if that is too large for the cache.
+std::size_t window_for(const NormalGroups& groups) {
+  std::array<std::size_t, kWindowSamples> counts{};
+  const std::size_t batches = groups.size() / kGroupBatch;
+  for (std::size_t i = 0; i < kWindowSamples && batches > 0; ++i) {
+    const auto faces = faces_of(groups, {batches * i / kWindowSamples * kGroupBatch, kGroupBatch});
+    if (!faces.empty()) counts[i] = range_of(faces).count;
+  }
+  std::sort(counts.begin(), counts.end());
+  const std::size_t window =
+      std::bit_ceil(std::max<std::size_t>(counts[kWindowSamples * 9 / 10] + 2 * kFaceBlock, 512));
+  return window <= kLargestWindow ? window : 0;
+}
+
+bool is_packed(const VectorView<const float>& points) {
+  return points.stride == 3 && points.y == points.x + 1 && points.z == points.x + 2;
+}
+
+}  // namespace
+
+// One evaluation.
+class NormalRecompute::Call {
+ public:
+  // Of faces, without scratch. Element `first` goes to result[0].
+  Call(const Segment& segment, double t, VectorView<float> result, std::size_t first)
+      : segment_(segment), t_(t), result_(result), first_(first) {
+    const Topology& topology = *segment.topology;
+    by_kernel_ = topology.all_triangles() && is_packed(segment.from) && is_packed(segment.to);
+    stream_ = (2 * segment.from.count + result.count) * 3 * sizeof(float) > kStreamFrom;
+    triangles_.corners = topology.corners().data();
+    triangles_.face_count = topology.face_count();
+    triangles_.vertex_count = topology.vertex_count();
+    triangles_.from = segment.from.x;
+    triangles_.to = segment.to.x;
+  }
+
+  Call(NormalRecompute& owner, double t, VectorView<float> result) : Call(owner.segment_, t, result, 0) {
+    groups_ = owner.groups_;
+    normals_ = reinterpret_cast<FaceNormal*>(owner.normals_.data());
+    window_ = owner.window_;
+    triangles_.is_coherent = owner.vertices_are_near_;
+    if (owner.pairs_.size() > 0) {
+      by_kernel_ = true;
+      triangles_.from = owner.pairs_.data();
+      triangles_.to = owner.pairs_.data() + 4;
+      triangles_.is_paired = true;
+    }
+  }
+
+  std::size_t faces(IndexRange faces) const noexcept {
+    std::size_t zeros = 0;
+    for (std::size_t f = faces.first; f < faces.end(); f += kFaceBatch)
+      zeros += batch_of_faces({f, std::min(kFaceBatch, faces.end() - f)});
+    finish();
+    return zeros;
+  }
+
+  void write_all_normals(IndexRange faces) const noexcept { write_normals(faces, normals_ + faces.first); }
+
+  // Of elements in ascending order, with a window of its own.
+  std::size_t elements(IndexRange elements, std::size_t part) const noexcept {
+    std::size_t zeros = 0;
+    FaceNormal* const normals = normals_ + part * window_;
+    IndexRange ready;  // in the window
+    // Faces that may be written there, so that elements which jump to and fro cost no more than a few times their own.
+    std::size_t credit = 2 * window_;
+    for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
+      const IndexRange batch{e, std::min(kGroupBatch, elements.end() - e)};
+      if (window_ == 0) {
+        zeros += batch_of_groups(batch, {normals_, ~std::size_t{0}, !triangles_.is_coherent});
+        continue;
+      }
+      const auto around = faces_of(*groups_, batch);
+      const IndexRange needed = around.empty() ? IndexRange{} : range_of(around);
+      credit = std::min(credit + 4 * around.size(), 4 * window_);
+      if (bring(needed, normals, ready, credit))
+        zeros += batch_of_groups(batch, {normals, window_ - 1, false});
+      else
+        zeros += scattered_groups(batch);
+    }
+    finish();
+    return zeros;
+  }
+
+ private:
+  // Other threads see what was written past the caches.
+  void finish() const {
+    if (stream_) hwy::FlushStream();
+  }
+
+  [[nodiscard]] VectorView<float> part(IndexRange elements) const {
+    return result_.part({elements.first - first_, elements.count});
+  }
+
+  std::size_t put(std::size_t element, const UnitNormal& u) const {
+    result_.set(element - first_, to_float(u.vector));
+    return u.direction == Direction::kNone ? 1 : 0;
+  }
+
+  std::size_t batch_of_faces(IndexRange faces) const {
+    std::size_t zeros = 0;
+    if (!by_kernel_) {
+      for (std::size_t f = faces.first; f < faces.end(); ++f) zeros += put(f, unit_normal_of_face(segment_, f, t_));
+      return zeros;
+    }
+    std::array<std::uint32_t, kFaceBatch> doubtful;
+    const std::size_t count = recompute_unit_normals(triangles_, faces, t_, part(faces), stream_, doubtful.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t f = faces.first + doubtful[i];
+      zeros += put(f, fine_unit_normal(segment_, f, t_));
+    }
+    return zeros;
+  }
+
+  void write_normals(IndexRange faces, FaceNormal* normals) const {
+    for (std::size_t i = 0; i < faces.count; i += kFaceBatch) {
+      const IndexRange batch{faces.first + i, std::min(kFaceBatch, faces.count - i)};
+      if (!by_kernel_) {
+        for (std::size_t k = 0; k < batch.count; ++k) normals[i + k] = face_normal(segment_, batch.first + k, t_);
+        continue;
+      }
+      std::array<std::uint32_t, kFaceBatch> doubtful;
+      const std::size_t count = recompute_face_normals(triangles_, batch, t_, normals + i, doubtful.data());
+      for (std::size_t k = 0; k < count; ++k)
+        normals[i + doubtful[k]] = rounded(normal_at_time(segment_, batch.first + doubtful[k], t_));
+    }
+  }
+
+  // Makes the window hold the needed faces. Those in it follow on each other up to ready.end(), and more are added
+  // there; false where the needed ones do not fit, or would cost more than there is credit for.
+  bool bring(IndexRange needed, FaceNormal* normals, IndexRange& ready, std::size_t& credit) const {
+    if (needed.count == 0) return true;
+    const bool follows = ready.first <= needed.first && needed.first <= ready.end();
+    if (follows && needed.end() <= ready.end()) return true;
+    std::size_t first = follows ? ready.end() : needed.first / kFaceBlock * kFaceBlock;
+    const std::size_t end =
+        std::min((needed.end() + kFaceBlock - 1) / kFaceBlock * kFaceBlock, segment_.topology->face_count());
+    if (end - needed.first > window_ || end - first > credit) return false;
+    credit -= end - first;
+    const std::size_t oldest = follows ? ready.first : first;
+    while (first < end) {
+      const std::size_t place = first & (window_ - 1), count = std::min(end - first, window_ - place);
+      write_normals({first, count}, normals + place);
+      first += count;
+    }
+    const std::size_t held = std::min(end - oldest, window_);
+    ready = {end - held, held};
+    return true;
+  }
+
+  std::size_t batch_of_groups(IndexRange elements, const NormalWindow& window) const {
+    std::array<std::uint32_t, kGroupBatch> doubtful;
+    const std::size_t count =
+        recompute_group_normals(*groups_, elements, window, part(elements), stream_, doubtful.data());
+    std::size_t zeros = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t e = elements.first + doubtful[i];
+      zeros += put(e, unit_normal_of_group(segment_, *groups_, e, t_));
+    }
+    return zeros;
+  }
+
+  // Elements whose faces are too far from each other for the window, one by one.
+  std::size_t scattered_groups(IndexRange elements) const {
+    std::size_t zeros = 0;
+    for (std::size_t e = elements.first; e < elements.end(); ++e)
+      zeros += put(e, quick_unit_normal_of_group(segment_, *groups_, e, t_));
+    return zeros;
+  }
+
+  const Segment& segment_;
+  const NormalGroups* groups_ = nullptr;
+  double t_;
+  VectorView<float> result_;
+  std::size_t first_;
+  bool by_kernel_;  // else one by one
+  bool stream_;
+  MovingTriangles triangles_;
+  FaceNormal* normals_ = nullptr;
+  std::size_t window_ = 0;
+};
+
+std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept {
+  assert(result.count == faces.count && faces.end() <= segment.topology->face_count());
+  return NormalRecompute::Call(segment, t, result, faces.first).faces(faces);
+}
+
+NormalRecompute::NormalRecompute(const Segment& segment) : segment_(segment) { choose_positions(); }
+
+NormalRecompute::NormalRecompute(const Segment& segment, const NormalGroups& groups)
+    : segment_(segment), groups_(&groups), window_(window_for(groups)) {
+  choose_positions();
+  const std::size_t parts = std::clamp<std::size_t>(groups.size() / kSmallestPart, 1, kMostParts);
+  const std::size_t normals = window_ == 0 ? segment.topology->face_count() : parts * window_;
+  normals_ = AlignedBytes(normals * sizeof(FaceNormal));
+}
+
+void NormalRecompute::choose_positions() {
+  const Topology& topology = *segment_.topology;
+  if (!topology.all_triangles() || topology.face_count() == 0) return;
+  const std::size_t vertices = topology.vertex_count();
+  vertices_are_near_ = vertices * 6 * sizeof(float) <= kNearBytes || lines_per_face(topology) <= kMostLinesPerFace;
+  if (!vertices_are_near_ || !is_packed(segment_.from) || !is_packed(segment_.to))
+    pairs_ = AlignedArray<float>(8 * vertices);
+}
+
+std::size_t NormalRecompute::size() const noexcept {
+  if (segment_.topology == nullptr) return 0;
+  return groups_ == nullptr ? segment_.topology->face_count() : groups_->size();
+}
+
+std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Threads threads) {
+  assert(result.count == size());
+  if (size() == 0) return 0;
+  // The same blocks whatever the threads.
+  const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
+    if (threads == Threads::kOne || count <= block)
+      body(IndexRange{0, count});
+    else
+      parallel_blocks(count, block, body);
+  };
+  if (pairs_.size() > 0) {
+    in_blocks(segment_.topology->vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
+      float* pair = pairs_.data() + 8 * vertices.first;
+      for (std::size_t v = vertices.first; v < vertices.end(); ++v, pair += 8) {
+        const Vec3f from = segment_.from[v], to = segment_.to[v];
+        pair[0] = from.x, pair[1] = from.y, pair[2] = from.z, pair[3] = 0;
+        pair[4] = to.x, pair[5] = to.y, pair[6] = to.z, pair[7] = 0;
+      }
+    });
+  }
+  const Call call(*this, t, result);
+  std::atomic<std::size_t> zeros = 0;
+  if (groups_ == nullptr) {
+    in_blocks(size(), kSmallestPart, [&](IndexRange faces) { zeros += call.faces(faces); });
+    return zeros;
+  }
+  if (window_ == 0)
+    in_blocks(segment_.topology->face_count(), kSmallestPart, [&](IndexRange faces) { call.write_all_normals(faces); });
+  const std::size_t parts = window_ == 0 ? kMostParts : normals_.size() / sizeof(FaceNormal) / window_;
+  const std::size_t part = std::max((size() / parts + kGroupBatch) / kGroupBatch * kGroupBatch, kSmallestPart);
+  in_blocks(size(), part, [&](IndexRange elements) { zeros += call.elements(elements, elements.first / part); });
+  return zeros;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,68 @@
+/// What one corner adds to the normal of its element, at one t in double.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
+
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/weighting.h"
+#include "normals/groups/corner_sets.h"
+
+namespace chronormal {
+
+/// The vertices of one corner: here, and the ends of its two edges.
+struct CornerVertices {
+  std::uint32_t here, next, previous;
+};
+
+[[nodiscard]] inline CornerVertices corner_vertices(const Topology& topology, std::uint32_t corner,
+                                                    std::uint32_t f) noexcept {
+  const auto face = topology.face(f);
+  const std::size_t i = corner - first_corner(topology, f);
+  return {face[i], face[i + 1 == face.size() ? 0 : i + 1], face[i == 0 ? face.size() - 1 : i - 1]};
+}
+
+/// An edge between two vertices at t, and the size of what it was made of: its error is a few eps of that.
+struct MovingEdge {
+  Vec3d vector;
+  double size;
+
+  [[nodiscard]] static MovingEdge at(const Segment& segment, std::uint32_t from, std::uint32_t to, double t) noexcept {
+    const Vec3d e0 = to_double(segment.from[to]) - to_double(segment.from[from]);
+    const Vec3d e1 = to_double(segment.to[to]) - to_double(segment.to[from]);
+    return {lerp(e0, e1, t), (1 - t) * max_abs(e0) + t * max_abs(e1)};
+  }
+};
+
+/// 16 eps: the error of a cross product of two such edges, relative to the product of their sizes, and a margin.
+inline constexpr double kCrossNoise = 16 * std::numeric_limits<double>::epsilon();
+
+/// v, or zero where it is nothing but rounding of things of this size.
+[[nodiscard]] inline Vec3d without_noise(const Vec3d& v, double size) noexcept {
+  return max_abs(v) > kCrossNoise * size ? v : Vec3d{};
+}
+
+/// What a corner of a face with normal n adds; n is not zero. Zero where an edge has no length.
+[[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
+                                       Weighting weighting, double t) noexcept {
+  if (weighting == Weighting::kArea) return n;
+  if (weighting == Weighting::kUniform) return unit(n);
+  const MovingEdge e = MovingEdge::at(segment, corner.here, corner.next, t);
+  const MovingEdge f = MovingEdge::at(segment, corner.here, corner.previous, t);
+  if (without_noise(e.vector, e.size) == Vec3d{} || without_noise(f.vector, f.size) == Vec3d{}) return {};
+  if (weighting == Weighting::kMax) {
+    const Vec3d product = without_noise(cross(e.vector, f.vector), e.size * f.size);
+    return (1 / (dot(e.vector, e.vector) * dot(f.vector, f.vector))) * product;
+  }
+  const double angle = angle_between(e.vector, f.vector);
+  return angle * (weighting == Weighting::kAngle ? unit(n) : n);
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_

@@ -1,0 +1,85 @@
+/// Intervals that contain the exact result of every operation, whatever was rounded.
+///
+/// Each bound of a result is moved outwards by more than its rounding error: by 2^-51 of itself, which is at least two
+/// units in the last place, and by the smallest double, for results that underflow. (One unit would do where both
+/// operands are exact; a factor such as 1/3 has a rounding of its own.) A division by an interval that contains zero,
+/// and a root of one that contains negative numbers, give the whole line.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace chronormal {
+
+struct Interval {
+  double low = 0, high = 0;
+
+  /// [low, high] moved outwards; the whole line where a bound is no number.
+  [[nodiscard]] static Interval outwards(double low, double high) noexcept {
+    constexpr double kStep = 0x1p-51, kSmallest = std::numeric_limits<double>::denorm_min();
+    if (!(low <= high)) return whole();
+    return {low - (kStep * std::fabs(low) + kSmallest), high + (kStep * std::fabs(high) + kSmallest)};
+  }
+  [[nodiscard]] static Interval whole() noexcept {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {-kInfinity, kInfinity};
+  }
+  [[nodiscard]] static Interval point(double x) noexcept { return {x, x}; }
+
+  [[nodiscard]] bool finite() const noexcept { return std::isfinite(low) && std::isfinite(high); }
+  /// The largest absolute value.
+  [[nodiscard]] double magnitude() const noexcept { return std::max(-low, high); }
+
+  friend Interval operator+(const Interval& a, const Interval& b) noexcept {
+    return outwards(a.low + b.low, a.high + b.high);
+  }
+  friend Interval operator-(const Interval& a, const Interval& b) noexcept {
+    return outwards(a.low - b.high, a.high - b.low);
+  }
+  friend Interval operator*(const Interval& a, const Interval& b) noexcept {
+    const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+    if (!std::isfinite(p + q + r + s)) return whole();
+    return outwards(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
+  }
+  friend Interval operator*(double a, const Interval& b) noexcept {
+    const double p = a * b.low, q = a * b.high;
+    return outwards(std::min(p, q), std::max(p, q));
+  }
+};
+
+/// 1 / a.
+[[nodiscard]] inline Interval reciprocal(const Interval& a) noexcept {
+  if (!(a.low > 0 || a.high < 0)) return Interval::whole();
+  return Interval::outwards(1 / a.high, 1 / a.low);
+}
+
+[[nodiscard]] inline Interval square_root(const Interval& a) noexcept {
+  if (!(a.low >= 0)) return Interval::whole();
+  return Interval::outwards(std::sqrt(a.low), std::sqrt(a.high));
+}
+
+/// a^2, which is never negative.
+[[nodiscard]] inline Interval square(const Interval& a) noexcept {
+  const Interval product = a * a;
+  return {std::max(product.low, 0.0), product.high};
+}
+
+/// The angle of the vector (x, y) with y >= 0: that of a point inside, and how far the others can be from it. The arc
+/// tangent of the C library is taken to be right to 4 eps.
+[[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
+  if (!y.finite() || !x.finite()) return Interval::whole();
+  const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
+  const double radius = (y.high - y.low) + (x.high - x.low);
+  // The distance to the origin is at least this on the way from the point inside to any other.
+  const double distance = 0.999 * std::hypot(mx, my) - radius;
+  if (!(distance > 0)) return Interval::whole();
+  constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();
+  const double angle = std::atan2(my, mx), error = 1.001 * radius / distance + kLibrary;
+  return Interval::outwards(angle - error, angle + error);
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_

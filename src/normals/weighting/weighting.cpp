@@ -1,0 +1,89 @@
+#include "chronormal/normals/weighting.h"
+
+#include <cassert>
+#include <string>
+
+#include "core/blocks.h"
+#include "normals/weighting/corner_terms.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+
+Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
+  Vec3d n;
+  double size = 0;
+  MovingEdge e = MovingEdge::at(segment, face[0], face[1], t);
+  for (std::size_t c = 2; c < face.size(); ++c) {
+    const MovingEdge f = MovingEdge::at(segment, face[0], face[c], t);
+    n = n + cross(e.vector, f.vector);
+    size += e.size * f.size;
+    e = f;
+  }
+  return without_noise(n, static_cast<double>(face.size() - 2) * size);
+}
+
+}  // namespace
+
+std::string_view weighting_name(Weighting weighting) noexcept {
+  for (const WeightingInfo& info : kWeightings) {
+    if (info.weighting == weighting) return info.name;
+  }
+  return "";
+}
+
+Result<Weighting> make_weighting(std::string_view name) {
+  for (const WeightingInfo& info : kWeightings) {
+    if (info.name == name) return info.weighting;
+  }
+  std::string message = "there is no weighting '";
+  message += name;
+  message += "'; there are";
+  for (const WeightingInfo& info : kWeightings) {
+    message += info.weighting == kWeightings.front().weighting ? " " : ", ";
+    message += info.name;
+  }
+  return Error{ErrorCode::kUsage, "", std::move(message)};
+}
+
+void face_normals_at(const Segment& segment, double t, IndexRange faces, std::span<Vec3d> result) noexcept {
+  assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
+  for (std::size_t i = 0; i < faces.count; ++i)
+    result[i] = face_normal_at(segment, segment.topology->face(faces.first + i), t);
+}
+
+void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, double t,
+                         std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept {
+  assert(result.size() == elements.count && elements.end() <= groups.size());
+  assert(of_faces.size() == segment.topology->face_count());
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    const auto corners = groups.corners(elements.first + i), faces = groups.faces(elements.first + i);
+    Vec3d sum;
+    double size = 0;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Vec3d& n = of_faces[faces[c]];
+      if (n == Vec3d{}) continue;
+      const Vec3d term =
+          corner_term(segment, corner_vertices(*segment.topology, corners[c], faces[c]), n, weighting, t);
+      sum = sum + term;
+      size += max_abs(term);
+    }
+    result[i] = without_noise(sum, size);
+  }
+}
+
+std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting,
+                                           double t) {
+  std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
+  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
+    face_normals_at(segment, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
+  });
+  parallel_blocks(result.size(), kBlock, [&](IndexRange elements) {
+    weighted_normals_at(segment, groups, weighting, t, of_faces, elements,
+                        std::span(result).subspan(elements.first, elements.count));
+  });
+  return result;
+}
+
+}  // namespace chronormal

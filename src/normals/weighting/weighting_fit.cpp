@@ -1,0 +1,401 @@
+#include "chronormal/normals/weighting_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+
+#include "chronormal/normals/group_normals.h"
+#include "core/blocks.h"
+#include "normals/weighting/corner_terms.h"
+#include "normals/weighting/taylor.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlock = 64;
+
+// Taylor polynomials have 5 coefficients, and the sixth is the remainder.
+constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
+
+constexpr std::size_t kSamples = 16;      // of the error, to compare the bound with
+constexpr double kTightness = 2;          // times the largest sample is close enough
+constexpr double kFineEnough = 1e-9;      // radians
+constexpr int kDeepest = 20;              // halvings of the segment
+constexpr std::size_t kMostPieces = 256;  // per element
+
+// The control normals of a face as intervals that contain the exact ones.
+struct IntervalNormals {
+  std::array<std::array<Interval, 3>, 3> control;  // n0, m, n1
+  bool area = false;                               // at any time, but for rounding
+};
+
+struct IntervalEdge {
+  std::array<Interval, 3> from, to;  // at t = 0 and at t = 1
+};
+
+std::array<Interval, 3> difference(const Vec3d& a, const Vec3d& b) {
+  const auto p = Interval::point;
+  return {p(a.x) - p(b.x), p(a.y) - p(b.y), p(a.z) - p(b.z)};
+}
+
+IntervalEdge edge_between(const Segment& segment, std::uint32_t a, std::uint32_t b) {
+  return {difference(to_double(segment.from[b]), to_double(segment.from[a])),
+          difference(to_double(segment.to[b]), to_double(segment.to[a]))};
+}
+
+std::array<Interval, 3> cross_of(const std::array<Interval, 3>& a, const std::array<Interval, 3>& b) {
+  std::array<Interval, 3> result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    result[i] = a[j] * b[k] - a[k] * b[j];
+  }
+  return result;
+}
+
+IntervalNormals face_intervals(const Segment& segment, std::span<const std::uint32_t> face) {
+  IntervalNormals sum{};
+  IntervalEdge e = edge_between(segment, face[0], face[1]);
+  for (std::size_t c = 2; c < face.size(); ++c) {
+    const IntervalEdge f = edge_between(segment, face[0], face[c]);
+    const auto n0 = cross_of(e.from, f.from), n1 = cross_of(e.to, f.to);
+    const auto before = cross_of(e.from, f.to), after = cross_of(e.to, f.from);
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum.control[0][i] = sum.control[0][i] + n0[i];
+      sum.control[1][i] = sum.control[1][i] + 0.5 * (before[i] + after[i]);
+      sum.control[2][i] = sum.control[2][i] + n1[i];
+    }
+    e = f;
+  }
+  return sum;
+}
+
+// A quadratic in Bernstein form, as a series about t.
+Series<3> about(const Interval& n0, const Interval& m, const Interval& n1, double t) {
+  const Interval s = Interval::point(t), rest = Interval::point(1) - s;
+  const Interval first = m - n0, last = n1 - m;
+  return {rest * (rest * n0 + s * m) + s * (rest * m + s * n1), 2.0 * (rest * first + s * last), last - first};
+}
+
+VectorSeries<3> about(const IntervalNormals& n, double t) {
+  VectorSeries<3> result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = about(n.control[0][i], n.control[1][i], n.control[2][i], t);
+  return result;
+}
+
+VectorSeries<2> about(const IntervalEdge& e, double t) {
+  const Interval s = Interval::point(t), rest = Interval::point(1) - s;
+  VectorSeries<2> result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = {rest * e.from[i] + s * e.to[i], e.to[i] - e.from[i]};
+  return result;
+}
+
+// The squared length of a vector series that is known about c, about all c + around. The first coefficient is a square.
+template <std::size_t M>
+Series<2 * M - 1> squared_length(const VectorSeries<M>& v, const Interval& around) {
+  Series<2 * M - 1> squares = dot_product<2 * M - 1>(v, v);
+  squares[0] = square(v[0][0]) + square(v[1][0]) + square(v[2][0]);
+  return shifted(squares, around);
+}
+
+VectorSeries<kTerms> unit_series(const VectorSeries<3>& n, const Interval& around) {
+  const Series<5> squares = squared_length(n, around);
+  return scaled_by<kTerms>(power<kTerms>(squares, -0.5, reciprocal(square_root(squares[0]))), shifted(n, around));
+}
+
+// The angle between two edges: its derivative is (x y' - y x') / (x^2 + y^2) with x = e.f, y = |e x f|.
+Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
+  const VectorSeries<3> c = cross_product<3>(e, f);
+  const Series<3> x_here = dot_product<3>(e, f), x = shifted(x_here, around);
+  const Series<5> y_squared = squared_length(c, around);
+  const Series<kTerms> y = power<kTerms>(y_squared, 0.5, square_root(y_squared[0]));
+  const Series<5> lengths = product<5>(squared_length(e, around), squared_length(f, around));
+  const Series<kTerms - 1> numerator = product<kTerms - 1>(x, derivative(y)) - product<kTerms - 1>(y, derivative(x));
+  const Series<kTerms - 1> speed =
+      product<kTerms - 1>(numerator, power<kTerms - 1>(lengths, -1, reciprocal(lengths[0])));
+
+  // Integrate, from the angle at the centre.
+  const Interval y_here = square_root(square(c[0][0]) + square(c[1][0]) + square(c[2][0]));
+  Series<kTerms> angle;
+  angle[0] = angle_of(y_here, x_here[0]);
+  if (around.low != 0 || around.high != 0) angle[0] = angle[0] + around * speed[0];
+  for (std::size_t k = 1; k < kTerms; ++k) angle[k] = (1 / static_cast<double>(k)) * speed[k - 1];
+  return angle;
+}
+
+double length_of(double x, double y, double z) { return (1 + 0x1p-50) * length(Vec3d{x, y, z}); }
+
+// The largest length of a vector that is somewhere in these intervals.
+double largest_length(const Interval& x, const Interval& y, const Interval& z) {
+  return length_of(x.magnitude(), y.magnitude(), z.magnitude());
+}
+
+// An angle that is known no better than this over a piece of time.
+struct CoarseAngle {
+  double middle, radius;
+};
+
+// The angle between two edges about all centre + around, where it is not smooth: near 0 and near pi by its tangent.
+CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
+  const VectorSeries<3> c = shifted(cross_product<3>(e, f), around);
+  const Interval x = shifted(dot_product<3>(e, f), around)[0];
+  const double y = largest_length(c[0][0], c[1][0], c[2][0]);
+  constexpr double kPi = std::numbers::pi;
+  double low = 0, high = kPi;
+  if (x.low > 0) high = std::min(kPi, y / x.low);
+  if (x.high < 0) low = std::max(0.0, kPi + y / x.high);
+  return {low + (high - low) / 2, (high - low) / 2 + 1e-15};
+}
+
+// What a corner adds, about the centre and about all of the piece. The true value may differ by a vector of length
+// `slack`.
+struct TermSeries {
+  VectorSeries<kTerms> here, around;
+  double slack = 0;
+};
+
+TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, const CornerVertices& corner,
+                       Weighting weighting, double centre, const Interval& piece) {
+  constexpr Interval kHere{0, 0};
+  const VectorSeries<3> n = about(of_face, centre);
+  if (weighting == Weighting::kUniform) return {unit_series(n, kHere), unit_series(n, piece)};
+
+  const VectorSeries<2> e = about(edge_between(segment, corner.here, corner.next), centre);
+  const VectorSeries<2> f = about(edge_between(segment, corner.here, corner.previous), centre);
+  if (weighting == Weighting::kMax) {
+    const auto term = [&](const Interval& around) {
+      const Series<5> lengths = product<5>(squared_length(e, around), squared_length(f, around));
+      return scaled_by<kTerms>(power<kTerms>(lengths, -1, reciprocal(lengths[0])),
+                               shifted(cross_product<3>(e, f), around));
+    };
+    return {term(kHere), term(piece)};
+  }
+
+  Series<kTerms> angle_here = angle_series(e, f, kHere), angle_around = angle_series(e, f, piece);
+  const bool by_area = weighting == Weighting::kAreaAngle;
+  double slack = 0;
+  if (!std::all_of(angle_around.begin(), angle_around.end(), [](const Interval& a) { return a.finite(); })) {
+    const CoarseAngle angle = coarse_angle(e, f, piece);
+    angle_here = angle_around = {Interval::point(angle.middle)};
+    const VectorSeries<3> all = shifted(n, piece);
+    slack = angle.radius * (by_area ? largest_length(all[0][0], all[1][0], all[2][0]) : 1 + 0x1p-50);
+  }
+  if (by_area) return {scaled_by<kTerms>(angle_here, n), scaled_by<kTerms>(angle_around, shifted(n, piece)), slack};
+  return {scaled_by<kTerms>(angle_here, unit_series(n, kHere)), scaled_by<kTerms>(angle_around, unit_series(n, piece)),
+          slack};
+}
+
+// C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
+constexpr std::array<std::array<double, kDegree + 1>, kDegree + 1> kBernsteinOfPowers = {
+    {{1, 1, 1, 1, 1}, {-4, -2, 0, 2, 4}, {6, 0, -2, 0, 6}, {-4, 2, 0, -2, 4}, {1, -1, 1, -1, 1}}};
+
+// The Bernstein coefficients over [c - h, c + h] of the Taylor polynomial about c; k-th powers of h are given.
+std::array<Interval, kDegree + 1> bernstein(const Series<kTerms>& taylor, const std::array<Interval, kTerms>& powers) {
+  std::array<Interval, kDegree + 1> result;
+  for (std::size_t k = 0; k <= kDegree; ++k) {
+    const Interval coefficient = (1 / binomial(kDegree, k)) * (taylor[k] * powers[k]);
+    for (std::size_t j = 0; j <= kDegree; ++j) result[j] = result[j] + kBernsteinOfPowers[k][j] * coefficient;
+  }
+  return result;
+}
+
+// Everything about one element that bounds need.
+struct Element {
+  const Segment* segment;
+  std::span<const IntervalNormals> of_faces;
+  std::span<const std::uint32_t> corners, faces;
+  Weighting weighting;
+  ControlNormals fit;
+
+  // The cross and dot product of the fit and the element, about the centre and about all of the piece.
+  struct Products {
+    VectorSeries<kTerms> cross_here, cross_around;
+    Series<kTerms> dot_here, dot_around;
+    double slack;  // of all four
+  };
+  [[nodiscard]] Products products(double centre, const Interval& piece) const {
+    TermSeries sum;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      if (!adds_something(c)) continue;
+      const TermSeries term =
+          term_series(*segment, of_faces[faces[c]], corner_vertices(*segment->topology, corners[c], faces[c]),
+                      weighting, centre, piece);
+      for (std::size_t i = 0; i < 3; ++i) {
+        sum.here[i] = sum.here[i] + term.here[i];
+        sum.around[i] = sum.around[i] + term.around[i];
+      }
+      sum.slack += term.slack;
+    }
+    IntervalNormals control;
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d& n = k == 0 ? fit.n0 : k == 1 ? fit.m : fit.n1;
+      control.control[k] = {Interval::point(n.x), Interval::point(n.y), Interval::point(n.z)};
+      largest = std::max(largest, length(n));
+    }
+    const VectorSeries<3> q = about(control, centre), q_around = shifted(q, piece);
+    return {cross_product<kTerms>(q, sum.here), cross_product<kTerms>(q_around, sum.around),
+            dot_product<kTerms>(q, sum.here), dot_product<kTerms>(q_around, sum.around),
+            (1 + 1e-12) * sum.slack * largest};
+  }
+
+  // Whether a corner adds anything at any time: not on a face that never has an area, or at an edge without length.
+  [[nodiscard]] bool adds_something(std::size_t c) const {
+    if (!of_faces[faces[c]].area) return false;
+    if (weighting == Weighting::kUniform) return true;
+    const CornerVertices v = corner_vertices(*segment->topology, corners[c], faces[c]);
+    const auto apart = [&](std::uint32_t other) {
+      return segment->from[v.here] != segment->from[other] || segment->to[v.here] != segment->to[other];
+    };
+    return apart(v.next) && apart(v.previous);
+  }
+
+  // An upper bound of the angle between the fit and the element over [t0, t1]; pi where none is proven.
+  [[nodiscard]] double bound(double t0, double t1) const {
+    const double centre = t0 + (t1 - t0) / 2, half = (t1 - t0) / 2;
+    const Products series = products(centre, Interval{-half, half});
+    std::array<Interval, kTerms> powers;
+    powers[0] = Interval::point(1);
+    for (std::size_t k = 1; k < kTerms; ++k) powers[k] = half * powers[k - 1];
+    const auto rest = [&](const Series<kTerms>& s) { return s[kTerms - 1] * powers[kTerms - 1]; };
+
+    // The cross product lies in the hull of its Bernstein coefficients, but for the remainder.
+    const auto& [cross_x, cross_y, cross_z] = series.cross_here;
+    const auto x = bernstein(cross_x, powers), y = bernstein(cross_y, powers), z = bernstein(cross_z, powers);
+    double sine = 0;
+    for (std::size_t j = 0; j <= kDegree; ++j) sine = std::max(sine, largest_length(x[j], y[j], z[j]));
+    const auto& [rest_x, rest_y, rest_z] = series.cross_around;
+    sine += largest_length(rest(rest_x), rest(rest_y), rest(rest_z)) + series.slack;
+
+    const auto d = bernstein(series.dot_here, powers);
+    double cosine = d[0].low;
+    for (const Interval& coefficient : d) cosine = std::min(cosine, coefficient.low);
+    cosine -= (1 + 0x1p-50) * (rest(series.dot_around).magnitude() + series.slack);
+
+    if (!std::isfinite(sine) || !(cosine > 0)) return std::numbers::pi;
+    return (1 + 0x1p-48) * std::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
+  }
+
+  // The bound over the whole segment. Pieces are halved until their bounds are close to `goal`; where the shortest has
+  // none, there is none.
+  [[nodiscard]] double bound_over_segment(double goal) const {
+    struct Piece {
+      double t0, t1;
+      int depth;
+    };
+    std::array<Piece, kDeepest + 2> stack;
+    std::size_t waiting = 0, pieces = 0;
+    stack[waiting++] = {0, 1, 0};
+    double worst = 0;
+    while (waiting > 0) {
+      const Piece piece = stack[--waiting];
+      const double here = bound(piece.t0, piece.t1);
+      ++pieces;
+      if (here <= std::max(goal, worst)) {
+        worst = std::max(worst, here);
+      } else if (piece.depth < kDeepest && (pieces < kMostPieces || here >= std::numbers::pi)) {
+        const double middle = piece.t0 + (piece.t1 - piece.t0) / 2;
+        stack[waiting++] = {middle, piece.t1, piece.depth + 1};
+        stack[waiting++] = {piece.t0, middle, piece.depth + 1};
+      } else {
+        if (here >= std::numbers::pi) return std::numbers::pi;
+        worst = std::max(worst, here);
+      }
+    }
+    return worst;
+  }
+};
+
+// The weighted normal at one time, from positions, and the factor that gives it an area-weighted length: the sum of |n|
+// over the corners as a share of the sum of the lengths of the terms.
+struct Sampled {
+  Vec3d normal;
+  double to_area = 0;
+};
+
+Sampled sample(const Segment& segment, std::span<const Vec3d> of_faces, const Element& element, double t) {
+  Sampled result;
+  double terms = 0, areas = 0;
+  for (std::size_t c = 0; c < element.corners.size(); ++c) {
+    const Vec3d& n = of_faces[element.faces[c]];
+    if (n == Vec3d{}) continue;
+    const Vec3d term = corner_term(segment, corner_vertices(*segment.topology, element.corners[c], element.faces[c]), n,
+                                   element.weighting, t);
+    result.normal = result.normal + term;
+    terms += length(term);
+    areas += length(n);
+  }
+  result.normal = without_noise(result.normal, terms);
+  result.to_area = terms > 0 ? areas / terms : 0;
+  return result;
+}
+
+// Whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish with its area
+// only; of other polygons that is true of uniform weights.
+bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
+  if (faces.empty()) return false;
+  for (const std::uint32_t face : faces) {
+    if (face != faces.front()) return false;
+  }
+  return weighting == Weighting::kUniform || segment.topology->face(faces.front()).size() == 3;
+}
+
+}  // namespace
+
+WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting) {
+  WeightingFit fit;
+  if (weighting == Weighting::kArea) {
+    fit.normals = all_group_control_normals(segment, groups);
+    fit.bounds.assign(groups.size(), 0.0);
+    return fit;
+  }
+  fit.normals.resize(groups.size());
+  fit.bounds.resize(groups.size());
+
+  // The faces once: as intervals, and at the times of the samples.
+  const std::size_t face_count = segment.topology->face_count();
+  std::vector<IntervalNormals> intervals(face_count);
+  std::vector<std::vector<Vec3d>> of_faces(kSamples + 1, std::vector<Vec3d>(face_count));
+  const auto sample_time = [](std::size_t i) { return static_cast<double>(i) / kSamples; };
+  parallel_blocks(face_count, kBlock, [&](IndexRange faces) {
+    for (std::size_t f = faces.first; f < faces.end(); ++f) {
+      ControlNormals n;
+      face_control_normals(segment, {f, 1}, {&n, 1});
+      intervals[f] = face_intervals(segment, segment.topology->face(f));
+      intervals[f].area = n != ControlNormals{};
+    }
+    for (std::size_t i = 0; i <= kSamples; ++i)
+      face_normals_at(segment, sample_time(i), faces, std::span(of_faces[i]).subspan(faces.first, faces.count));
+  });
+
+  parallel_blocks(groups.size(), kBlock, [&](IndexRange elements) {
+    for (std::size_t e = elements.first; e < elements.end(); ++e) {
+      if (is_direction_of_one_face(segment, groups.faces(e), weighting)) {
+        face_control_normals(segment, {groups.faces(e).front(), 1}, {&fit.normals[e], 1});
+        continue;
+      }
+      Element element{&segment, intervals, groups.corners(e), groups.faces(e), weighting, {}};
+      std::array<Vec3d, kSamples + 1> truth;
+      std::array<Vec3d, 3> node;
+      for (std::size_t i = 0; i <= kSamples; ++i) {
+        const Sampled sampled = sample(segment, of_faces[i], element, sample_time(i));
+        truth[i] = sampled.normal;
+        if (i % (kSamples / 2) == 0) node[i / (kSamples / 2)] = sampled.to_area * sampled.normal;
+      }
+      element.fit = {node[0], 2.0 * node[1] - 0.5 * (node[0] + node[2]), node[2]};
+      fit.normals[e] = element.fit;
+
+      bool anything = false;
+      for (std::size_t c = 0; c < element.corners.size(); ++c) anything = anything || element.adds_something(c);
+      double largest = 0;
+      for (std::size_t i = 0; i <= kSamples; ++i)
+        largest = std::max(largest, angle_between(normal_at(element.fit, sample_time(i)), truth[i]));
+      fit.bounds[e] = anything ? element.bound_over_segment(std::max(kTightness * largest, kFineEnough)) : 0;
+    }
+  });
+  return fit;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,108 @@
+// Vectors of doubles beside those of floats, and rows of four floats that become lanes.
+//
+// Included once for each instruction set, as lanes-inl.h.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+#include "simd/lanes-inl.h"
+
+#if defined(CHRONORMAL_SIMD_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_SIMD_ROWS_INL_H_
+#undef CHRONORMAL_SIMD_ROWS_INL_H_
+#else
+#define CHRONORMAL_SIMD_ROWS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+// A vector of floats makes two of doubles; a single lane (Highway's plain C++) makes one.
+inline constexpr std::size_t kDoubleLanes = kLanes > 1 ? kLanes / 2 : 1;
+using DoubleTag = hn::CappedTag<double, kDoubleLanes>;
+using HalfFloatTag = hn::Rebind<float, DoubleTag>;
+using Doubles = hn::Vec<DoubleTag>;
+
+inline constexpr DoubleTag kDoubles;
+
+struct Doubles3 {
+  Doubles x, y, z;
+};
+
+HWY_INLINE Doubles3 operator+(const Doubles3& a, const Doubles3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Doubles3 operator-(const Doubles3& a, const Doubles3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Doubles3 Scale(Doubles s, const Doubles3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
+HWY_INLINE Doubles3 Cross(const Doubles3& a, const Doubles3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+struct Lanes4 {
+  Floats x, y, z, w;
+
+  HWY_INLINE Lanes3 xyz() const { return {x, y, z}; }
+};
+
+// Columns(row) gives those of a matrix with a row of four floats for each lane, row(i).
+#if HWY_TARGET == HWY_SCALAR
+
+using Row = Lanes4;
+HWY_INLINE Row LoadRow(const float* from) {
+  return {hn::Load(kFloats, from), hn::Load(kFloats, from + 1), hn::Load(kFloats, from + 2),
+          hn::Load(kFloats, from + 3)};
+}
+template <class RowOf>
+HWY_INLINE Lanes4 Columns(const RowOf& row) {
+  return row(0);
+}
+
+#else
+
+using Row = hn::Vec<hn::FixedTag<float, 4> >;
+HWY_INLINE Row LoadRow(const float* from) { return hn::LoadU(hn::FixedTag<float, 4>(), from); }
+
+// Four lanes for each 128 bits of a vector: load(b) gives those of block b.
+template <class LoadBlock>
+HWY_INLINE Floats Blocks(const LoadBlock& load) {
+  if constexpr (kLanes == 4) {
+    return load(0);
+  } else if constexpr (kLanes == 8) {
+    return hn::Combine(kFloats, load(1), load(0));
+  } else {
+    const HalfFloatTag half;
+    return hn::Combine(kFloats, hn::Combine(half, load(3), load(2)), hn::Combine(half, load(1), load(0)));
+  }
+}
+
+// Lane i of rows[k] is from the row 4 * (i / 4) + k.
+HWY_INLINE Lanes4 Transposed(const Floats (&rows)[4]) {
+  const auto pairs = [](Floats v) HWY_ATTR { return hn::BitCast(kDoubles, v); };
+  const Doubles xy01 = pairs(hn::InterleaveLower(kFloats, rows[0], rows[1]));
+  const Doubles xy23 = pairs(hn::InterleaveLower(kFloats, rows[2], rows[3]));
+  const Doubles zw01 = pairs(hn::InterleaveUpper(kFloats, rows[0], rows[1]));
+  const Doubles zw23 = pairs(hn::InterleaveUpper(kFloats, rows[2], rows[3]));
+  return {hn::BitCast(kFloats, hn::InterleaveLower(kDoubles, xy01, xy23)),
+          hn::BitCast(kFloats, hn::InterleaveUpper(kDoubles, xy01, xy23)),
+          hn::BitCast(kFloats, hn::InterleaveLower(kDoubles, zw01, zw23)),
+          hn::BitCast(kFloats, hn::InterleaveUpper(kDoubles, zw01, zw23))};
+}
+
+template <class RowOf>
+HWY_INLINE Lanes4 Columns(const RowOf& row) {
+  Floats rows[4];
+  for (std::size_t k = 0; k < 4; ++k)
+    rows[k] = Blocks([&row, k](std::size_t block) HWY_ATTR { return row(4 * block + k); });
+  return Transposed(rows);
+}
+
+#endif
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

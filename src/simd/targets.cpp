@@ -1,0 +1,31 @@
+#include "simd/targets.h"
+
+#include <hwy/targets.h>
+
+namespace chronormal {
+
+std::vector<std::int64_t> supported_targets() {
+  std::vector<std::int64_t> targets;
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) targets.push_back(target);
+  return targets;
+}
+
+std::string target_name(std::int64_t target) { return hwy::TargetName(target); }
+
+std::int64_t current_target() {
+  // A set of one bit is that of a test; otherwise the lowest bit is the best target.
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  return supported & -supported;
+}
+
+ScopedTarget::ScopedTarget(std::int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+ScopedTarget::~ScopedTarget() {
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace chronormal

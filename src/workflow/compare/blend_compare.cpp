@@ -1,0 +1,476 @@
+#include "chronormal/workflow/blend_compare.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "analysis/blend_quality.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/motion/blend_set.h"
+#include "chronormal/normals/blend_normals.h"
+#include "chronormal/workflow/gltf_shading.h"
+#include "chronormal/workflow/sample.h"
+#include "core/blocks.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
+constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
+constexpr std::size_t kRowsPerTarget = 16;                  // of least squares
+constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // in one list of rows
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // of terms: others are made from positions
+constexpr std::size_t kChunk = 512;
+
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+}
+
+Vec3d vector_at(const std::vector<float>& values, std::size_t i) {
+  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+// What shows a normal, and what a person calls it.
+struct Output {
+  std::uint32_t element = 0, number = 0;
+};
+
+// A set whose normals are compared. Without groups its elements are its faces; with a shading, that of a file.
+struct Subject {
+  const BlendSet* set = nullptr;
+  const NormalGroups* groups = nullptr;
+  const GltfShading* shading = nullptr;
+  std::vector<Output> outputs;
+
+  [[nodiscard]] std::size_t elements() const { return groups ? groups->size() : set->topology.face_count(); }
+};
+
+// n(w) of all elements by nothing but cross products of blended positions.
+std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
+  const Topology& topology = subject.set->topology;
+  std::vector<double> positions(subject.set->base.size());
+  blend_positions(*subject.set, weights, positions);
+  std::vector<Vec3d> faces(topology.face_count());
+  numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t f = first; f < last; ++f) {
+      const auto face = topology.face(f);
+      const auto at = [&](std::size_t c) {
+        const double* p = positions.data() + 3 * std::size_t{face[c]};
+        return Vec3d{p[0], p[1], p[2]};
+      };
+      for (std::size_t c = 1; c + 1 < face.size(); ++c) faces[f] = faces[f] + cross(at(c) - at(0), at(c + 1) - at(0));
+    }
+  });
+  if (subject.groups == nullptr) return faces;
+  std::vector<Vec3d> result(subject.groups->size());
+  numbered_blocks(result.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e)
+      for (const std::uint32_t f : subject.groups->faces(e)) result[e] = result[e] + faces[f];
+  });
+  return result;
+}
+
+// The outputs whose normal each target moves, ascending.
+std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
+  const Topology& topology = subject.set->topology;
+  const std::size_t targets = subject.set->targets.size();
+  std::vector<std::vector<std::uint32_t>> faces_of_vertex(topology.vertex_count());
+  for (std::size_t f = 0; f < topology.face_count(); ++f)
+    for (const std::uint32_t v : topology.face(f)) faces_of_vertex[v].push_back(static_cast<std::uint32_t>(f));
+  std::vector<std::vector<std::uint32_t>> elements_of_face(topology.face_count());
+  for (std::size_t e = 0; e < subject.elements(); ++e) {
+    const auto element = static_cast<std::uint32_t>(e);
+    if (subject.groups == nullptr) {
+      elements_of_face[e].push_back(element);
+    } else {
+      for (const std::uint32_t f : subject.groups->faces(e)) elements_of_face[f].push_back(element);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> result(targets);
+  std::vector<std::size_t> moved_by(subject.elements(), targets);  // the last target that moved it
+  for (std::size_t k = 0; k < targets; ++k) {
+    for (const std::uint32_t v : subject.set->targets[k].vertices)
+      for (const std::uint32_t f : faces_of_vertex[v])
+        for (const std::uint32_t e : elements_of_face[f]) moved_by[e] = k;
+    const bool has_deltas = subject.shading != nullptr && !subject.shading->normal_deltas[k].empty();
+    for (std::size_t i = 0; i < subject.outputs.size(); ++i) {
+      const Output& output = subject.outputs[i];
+      if (moved_by[output.element] == k ||
+          (has_deltas && vector_at(subject.shading->normal_deltas[k], output.number) != Vec3d{}))
+        result[k].push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return result;
+}
+
+// Judges rows of weights, one after the other.
+class Judge {
+ public:
+  explicit Judge(const Subject& subject)
+      : subject_(subject),
+        moved_(moved_outputs(subject)),
+        normals_(subject.groups != nullptr
+                     ? BlendNormals::of_groups(*subject.set, *subject.groups, {kMostBytes, std::nullopt})
+                     : BlendNormals::of_faces(*subject.set, {kMostBytes, std::nullopt})),
+        base_(true_normals(subject, std::vector<double>(targets()))),
+        end_point_(endpoint_deltas(normals_)) {}
+
+  [[nodiscard]] std::size_t targets() const { return subject_.set->targets.size(); }
+  [[nodiscard]] bool moves() const {
+    return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
+  }
+
+  // Errors over rows of weights, with least squares over others.
+  BlendErrors judge(std::span<const double> rows, std::span<const double> fitted_rows,
+                    const std::function<void()>& progress) {
+    const DeltaNormals best = best_deltas(normals_, fitted_rows);
+    BlendErrors errors;
+    errors.rows = rows.size() / targets();
+    for (const BlendDeltas deltas :
+         {BlendDeltas::kFile, BlendDeltas::kEndPoint, BlendDeltas::kLeastSquares, BlendDeltas::kExact}) {
+      if (deltas != BlendDeltas::kFile || subject_.shading != nullptr) errors.deltas.emplace_back().deltas = deltas;
+    }
+    for (std::size_t row = 0; row < errors.rows; ++row) {
+      const std::span<const double> weights = rows.subspan(row * targets(), targets());
+      errors.active = std::max(errors.active, static_cast<std::size_t>(std::count_if(weights.begin(), weights.end(),
+                                                                                     [](double w) { return w != 0; })));
+      judge(row, weights, best, errors);
+      progress();
+    }
+    for (BlendError& error : errors.deltas) locate_worst(rows, error);
+    return errors;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::uint32_t> moved_by(std::span<const double> weights) const {
+    std::vector<bool> moved(subject_.outputs.size());
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] == 0) continue;
+      for (const std::uint32_t i : moved_[k]) moved[i] = true;
+    }
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      if (moved[i]) result.push_back(static_cast<std::uint32_t>(i));
+    return result;
+  }
+
+  // N + sum w D as a file has them.
+  [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
+    Vec3d sum = vector_at(subject_.shading->normals, output.number);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const std::vector<float>& deltas = subject_.shading->normal_deltas[k];
+      if (weights[k] != 0 && !deltas.empty()) sum = sum + weights[k] * vector_at(deltas, output.number);
+    }
+    return sum;
+  }
+
+  void judge(std::size_t row, std::span<const double> weights, const DeltaNormals& best, BlendErrors& errors) {
+    const std::size_t elements = normals_.size();
+    std::vector<float> exact(3 * elements);
+    (void)normals_.unit_normals(weights, VectorView<float>::packed(exact.data(), elements), Threads::kAll);
+    std::vector<Vec3d> ends(elements), bests(elements);
+    shown_normals(end_point_, weights, ends);
+    shown_normals(best, weights, bests);
+    const std::vector<Vec3d> truth = true_normals(subject_, weights);
+    const std::vector<std::uint32_t> moved = moved_by(weights);
+    const std::size_t methods = errors.deltas.size();
+    std::vector<Quality> parts((moved.size() + kChunk - 1) / kChunk * methods);
+    numbered_blocks(moved.size(), kChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const Output& output = subject_.outputs[moved[i]];
+        const std::size_t e = output.element;
+        const Vec3d best_that_float_can = vector_at(exact, e);
+        for (std::size_t m = 0; m < methods; ++m) {
+          Quality& quality = parts[chunk * methods + m];
+          if (best_that_float_can == Vec3d{} || truth[e] == Vec3d{}) {  // nothing but rounding
+            ++quality.degenerate;
+            continue;
+          }
+          Vec3d shown, right = truth[e];
+          switch (errors.deltas[m].deltas) {
+            case BlendDeltas::kFile:
+              shown = stored(output, weights);
+              right = shown_direction(vector_at(subject_.shading->normals, output.number), base_[e], truth[e]);
+              break;
+            case BlendDeltas::kEndPoint:
+              shown = ends[e];
+              break;
+            case BlendDeltas::kLeastSquares:
+              shown = bests[e];
+              break;
+            case BlendDeltas::kExact:
+              shown = best_that_float_can;
+          }
+          add(shown, right, {row, moved[i], 0}, quality);
+        }
+      }
+    });
+    for (std::size_t p = 0; p < parts.size(); ++p) errors.deltas[p % methods].quality.add(parts[p]);
+  }
+
+  static void add(const Vec3d& shown, const Vec3d& right, const ErrorPlace& place, Quality& quality) {
+    if (shown == Vec3d{}) {
+      ++quality.missing;
+      return;
+    }
+    const double angle = angle_between(shown, right);
+    quality.sum += angle;
+    quality.sum_of_squares += angle * angle;
+    ++quality.count;
+    if (angle > quality.max) {
+      quality.max = angle;
+      quality.max_at = place;
+    }
+  }
+
+  void locate_worst(std::span<const double> rows, BlendError& error) const {
+    if (!(error.quality.max > 0)) return;
+    const ErrorPlace& at = error.quality.max_at;
+    for (std::size_t k = 0; k < targets(); ++k) {
+      const double weight = rows[at.segment * targets() + k];
+      if (weight != 0) error.worst_weights.push_back({k, weight});
+    }
+    error.worst_output = subject_.outputs[at.element].number;
+    if (subject_.shading == nullptr) return;
+    for (const GltfPart& part : subject_.shading->parts) {
+      if (error.worst_output < part.first_vertex || error.worst_output - part.first_vertex >= part.vertex_count)
+        continue;
+      error.worst_primitive = part.primitive;
+      error.worst_output -= part.first_vertex;
+      break;
+    }
+  }
+
+  const Subject& subject_;
+  std::vector<std::vector<std::uint32_t>> moved_;
+  BlendNormals normals_;
+  std::vector<Vec3d> base_;
+  DeltaNormals end_point_;
+};
+
+Status check(const BlendCompareOptions& options) {
+  if (options.rows < 1 || options.rows > kMostBlendRows) return misuse("", "it takes 1 to 10,000 weight vectors");
+  if (options.active > 0 && !options.animation.empty())
+    return misuse("", "an animation says itself which targets are active");
+  return Success{};
+}
+
+// How many targets are active at once, where there are so many.
+std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
+  if (wanted > 0) return {std::min(wanted, targets)};
+  std::vector<std::size_t> result;
+  for (const std::size_t active : kActive)
+    if (active < targets) result.push_back(active);
+  result.push_back(targets);
+  return result;
+}
+
+std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max(rows, kRowsPerTarget * targets); }
+
+Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
+  // Without overflow: a list of targets that is in memory is not near it.
+  if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
+  return invalid_input(place, std::to_string(targets).append(" targets are too many for that many weight vectors"));
+}
+
+// Random weights of some targets, as rows for all of them; those of extra ones follow.
+std::vector<double> random_rows(const Subject& subject, const std::vector<std::size_t>& own, std::size_t count,
+                                std::size_t active, std::uint64_t seed) {
+  const std::vector<double> drawn = random_blend_weights({own.size(), count, active, 0, 1, seed});
+  const std::size_t targets = subject.set->targets.size();
+  std::vector<double> rows(count * targets);
+  for (std::size_t row = 0; row < count; ++row) {
+    const std::span<double> weights(rows.data() + row * targets, targets);
+    for (std::size_t i = 0; i < own.size(); ++i) weights[own[i]] = drawn[row * own.size() + i];
+    if (subject.shading != nullptr) fill_extra_weights(*subject.shading, weights);
+  }
+  return rows;
+}
+
+void judge_random(Judge& judge, const Subject& subject, const std::vector<std::size_t>& own,
+                  const BlendCompareOptions& options, const std::function<void()>& progress, BlendSubject& result) {
+  for (const std::size_t active : active_counts(own.size(), options.active)) {
+    const std::vector<double> rows = random_rows(subject, own, options.rows, active, options.seed);
+    const std::vector<double> others =
+        random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
+    result.errors.push_back(judge.judge(rows, others, progress));
+    result.errors.back().active = active;  // without extra ones
+  }
+}
+
+BlendSubject describe(const Subject& subject, ElementKind kind) {
+  BlendSubject result;
+  result.kind = kind;
+  result.vertices = subject.set->topology.vertex_count();
+  result.faces = subject.set->topology.face_count();
+  result.outputs = subject.outputs.size();
+  for (const BlendTarget& target : subject.set->targets) result.targets.push_back(target.name);
+  return result;
+}
+
+// Vertices with a stored normal and a face.
+std::vector<Output> outputs_of(const GltfShading& shading) {
+  std::vector<Output> result;
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)
+    if (shading.element_of_vertex[v] != GltfShading::kNoElement) result.push_back({shading.element_of_vertex[v], v});
+  return result;
+}
+
+// The weights that an animation gives a mesh, one track after the other; empty where it gives none.
+Result<std::vector<std::vector<double>>> animated_weights(const GltfDocument& document, std::size_t animation,
+                                                          std::size_t mesh, std::size_t most) {
+  const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
+  const std::size_t targets = document.meshes()[mesh].target_count;
+  std::vector<WeightTrack> read;
+  read.reserve(tracks.size());  // WeightUse points to them
+  WeightUse use(targets);
+  std::vector<std::size_t> known;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (document.nodes()[tracks[t].node].mesh != mesh) continue;
+    if (std::find(known.begin(), known.end(), tracks[t].same_keys_as) != known.end()) continue;
+    known.push_back(tracks[t].same_keys_as);
+    Result<GltfKeys> keys = document.keys(animation, t);
+    if (!keys) return keys.error();
+    read.push_back({tracks[t].interpolation, std::move(keys).value(), targets});
+    use.add_track(read.back());
+  }
+  return use.samples(most);
+}
+
+bool has_stored_normals(const GltfMesh& mesh) {
+  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                     [](const GltfPrimitive& p) { return p.has_faces() && p.has_normals; });
+}
+
+// Targets that move vertices by themselves.
+std::vector<std::size_t> own_targets(const GltfMesh& mesh) {
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < mesh.target_count; ++k) {
+    const auto is_it = [k](const GltfExtraTarget& extra) { return extra.target == k; };
+    if (!mesh.mark || std::none_of(mesh.mark->extras.begin(), mesh.mark->extras.end(), is_it)) result.push_back(k);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string_view name_of(BlendDeltas deltas) noexcept { return kNames[static_cast<std::size_t>(deltas)]; }
+
+Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options) {
+  if (const Status status = check(options); !status) return status.error();
+  if (!options.animation.empty()) return misuse("", "only a glTF file has animations");
+  if (!is_blend_shapes(star)) return misuse("", "the motion is a sequence: it has no targets to blend");
+  Result<BlendSet> set = blend_set_of(star);
+  if (!set) return set.error();
+  const std::size_t targets = set.value().targets.size();
+  if (options.active > targets)
+    return misuse("", std::string("there are only ").append(std::to_string(targets)).append(" targets"));
+  if (const Status status = check_memory("", options.rows, targets); !status) return status.error();
+
+  Subject subject;
+  subject.set = &set.value();
+  NormalGroups groups;
+  const ElementKind kind = options.elements.kind;
+  if (kind == ElementKind::kFaces) {
+    for (std::uint32_t f = 0; f < set.value().topology.face_count(); ++f) subject.outputs.push_back({f, f});
+  } else {
+    Result<NormalGroups> made = make_groups(star, options.elements);
+    if (!made) return made.error();
+    groups = std::move(made).value();
+    subject.groups = &groups;
+    std::vector<bool> known(groups.size());
+    const auto elements = groups.element_of_output();
+    for (std::uint32_t i = 0; i < elements.size(); ++i) {
+      if (!known[elements[i]]) subject.outputs.push_back({elements[i], i});
+      known[elements[i]] = true;
+    }
+  }
+  std::vector<std::size_t> own(targets);
+  for (std::size_t k = 0; k < targets; ++k) own[k] = k;
+  const std::size_t total = active_counts(targets, options.active).size() * options.rows;
+  std::size_t done = 0;
+  const auto progress = [&] {
+    if (options.progress) options.progress(++done, total);
+  };
+  BlendComparison result;
+  result.subjects.push_back(describe(subject, kind));
+  Judge judge(subject);
+  judge_random(judge, subject, own, options, progress, result.subjects.back());
+  return result;
+}
+
+Result<BlendComparison> compare_blends(const GltfDocument& document, const BlendCompareOptions& options) {
+  if (const Status status = check(options); !status) return status.error();
+  std::optional<std::size_t> animation;
+  if (!options.animation.empty()) {
+    const Result<std::size_t> found = document.find_animation(options.animation);
+    if (!found) return found.error();
+    animation = found.value();
+  }
+  const std::vector<GltfMesh>& meshes = document.meshes();
+  std::vector<std::size_t> compared;
+  std::size_t total = 0, done = 0, most = 0;
+  BlendComparison result;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const std::string place = (document.name() + ", /meshes/").append(std::to_string(m));
+    const auto has_faces = [](const GltfPrimitive& p) { return p.has_faces(); };
+    if (meshes[m].target_count == 0 ||
+        std::none_of(meshes[m].primitives.begin(), meshes[m].primitives.end(), has_faces))
+      continue;
+    if (!has_stored_normals(meshes[m])) {
+      ++result.flat;
+      continue;
+    }
+    if (animation) {
+      const std::vector<GltfTrack>& tracks = document.animations()[*animation].tracks;
+      const auto drives = [&](const GltfTrack& track) { return document.nodes()[track.node].mesh == m; };
+      if (std::none_of(tracks.begin(), tracks.end(), drives)) continue;
+    } else if (meshes[m].mark && meshes[m].mark->sequence) {
+      return misuse(place, "its targets are the keyframes of a baked sequence: name its --animation");
+    }
+    if (const Status status = check_memory(place, options.rows, meshes[m].target_count); !status) return status.error();
+    const std::size_t own = own_targets(meshes[m]).size();
+    most = std::max(most, own);
+    total += options.rows * (animation ? 1 : active_counts(own, options.active).size());
+    compared.push_back(m);
+  }
+  if (compared.empty()) {
+    if (animation) return misuse("", "the animation drives no mesh that has targets and stores normals");
+    return invalid_input(document.name(), "no mesh has targets and stores normals");
+  }
+  if (options.active > most)
+    return misuse("", std::string("no mesh has more than ").append(std::to_string(most)).append(" targets"));
+  const auto progress = [&] {
+    if (options.progress) options.progress(std::min(++done, total), total);
+  };
+  for (const std::size_t m : compared) {
+    const Result<GltfShading> shading = read_gltf_shading(document, m);
+    if (!shading) return shading.error();
+    Subject subject{&shading.value().set, &shading.value().groups, &shading.value(), outputs_of(shading.value())};
+    Judge judge(subject);
+    if (!judge.moves()) {
+      ++result.still;
+      continue;
+    }
+    BlendSubject described = describe(subject, ElementKind::kVertices);
+    described.mesh = m;
+    described.name = meshes[m].name;
+    if (animation) {
+      const auto poses = animated_weights(document, *animation, m, options.rows);
+      if (!poses) return poses.error();
+      std::vector<double> rows;
+      for (const std::vector<double>& pose : poses.value()) rows.insert(rows.end(), pose.begin(), pose.end());
+      described.errors.push_back(judge.judge(rows, rows, progress));
+    } else {
+      judge_random(judge, subject, own_targets(meshes[m]), options, progress, described);
+    }
+    result.subjects.push_back(std::move(described));
+  }
+  return result;
+}
+
+}  // namespace chronormal

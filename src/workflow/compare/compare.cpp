@@ -1,0 +1,253 @@
+#include "chronormal/workflow/compare.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "analysis/reference_normals.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/group_normals.h"
+
+namespace chronormal {
+namespace {
+
+// A block of the widest scheme stays in the second-level cache; a wave keeps partial results few and progress smooth.
+constexpr std::size_t kBlockSize = 1024;
+constexpr std::size_t kBlocksPerWaveAndThread = 4;
+
+// Below this mean, the error of linear is its rounding, and no measure for others.
+constexpr double kNoError = 1e-6;  // radians
+
+using Clock = std::chrono::steady_clock;
+
+double nanoseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+}
+
+// What one scheme did on one block, or on all blocks so far.
+struct Tally {
+  Quality quality;
+  std::size_t fallbacks = 0, flagged = 0;
+  double bytes = 0;
+  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
+
+  void add(const Tally& other) {
+    quality.add(other.quality);
+    fallbacks += other.fallbacks;
+    flagged += other.flagged;
+    bytes += other.bytes;
+    prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
+    evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
+  }
+};
+
+// The median, which a thread that was interrupted does not move.
+double median(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double time_of_sample(std::size_t i, std::size_t samples) {
+  return static_cast<double>(i) / static_cast<double>(samples - 1);
+}
+
+// The elements of a motion: its faces, or groups of their corners.
+class Elements {
+ public:
+  explicit Elements(const Topology& topology) : count_(topology.face_count()) {}
+  explicit Elements(NormalGroups groups) : groups_(std::move(groups)), count_(groups_->size()) {}
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+  // What a person calls an element: the face, or the first vertex or corner that shows it.
+  [[nodiscard]] std::size_t first_output(std::size_t element) const {
+    if (!groups_) return element;
+    const auto outputs = groups_->element_of_output();
+    return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
+  }
+
+  // Makes ready for segments first to last: the control normals of faces are shared by many groups.
+  void enter(const Motion& motion, std::size_t first, std::size_t last) {
+    if (!groups_) return;
+    of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
+    for (std::size_t s = first; s <= last; ++s) {
+      if (of_faces_.contains(s)) continue;
+      const auto start = Clock::now();
+      of_faces_.emplace(s, all_face_control_normals(motion.segment(s)));
+      shared_ns_ = nanoseconds_since(start) * static_cast<double>(thread_count()) / static_cast<double>(count_);
+    }
+  }
+  // What the faces of a segment cost one thread, for each of the elements that share them.
+  [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
+
+  void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
+    if (groups_)
+      group_control_normals(*groups_, of_faces_.find(segment.index)->second, range, result);
+    else
+      face_control_normals(segment, range, result);
+  }
+  void exact_normals(const Segment& segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept {
+    if (!groups_) return reference_normals(segment, range, t, result);
+    for (std::size_t i = 0; i < range.count; ++i)
+      result[i] = reference_normal(segment, groups_->faces(range.first + i), t);
+  }
+
+ private:
+  std::optional<NormalGroups> groups_;
+  std::size_t count_;
+  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
+  double shared_ns_ = 0;
+};
+
+// Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
+std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
+                                 const std::vector<std::string>& names, std::size_t samples, Access access) {
+  std::vector<ControlNormals> control_normals(range.count);
+  const auto control_start = Clock::now();
+  all.control_normals(segment, range, control_normals);
+  const double control_ns = nanoseconds_since(control_start) + all.shared_ns() * static_cast<double>(range.count);
+
+  const double elements = static_cast<double>(range.count);
+  std::vector<std::unique_ptr<Scheme>> schemes;
+  std::vector<Tally> tallies(names.size());
+  for (std::size_t s = 0; s < names.size(); ++s) {
+    schemes.push_back(make_scheme(names[s]).value());
+    Scheme& scheme = *schemes[s];
+    const auto start = Clock::now();
+    scheme.prepare({&segment, range, control_normals});
+    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
+    tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
+    tallies[s].fallbacks = scheme.fallback_count();
+    tallies[s].flagged = scheme.flagged_count();
+    tallies[s].bytes = static_cast<double>(scheme.bytes());
+  }
+
+  std::vector<Vec3d> exact(range.count);
+  std::vector<float> planes(3 * range.count);
+  float* const first = planes.data();
+  const auto result = VectorView<float>::planes(first, first + range.count, first + 2 * range.count, range.count);
+  std::vector<std::unique_ptr<Playback>> playbacks(schemes.size());
+  if (access == Access::kSequential) {
+    const double step = time_of_sample(1, samples);
+    for (std::size_t s = 0; s < schemes.size(); ++s) playbacks[s] = schemes[s]->play(0, step, kDefaultAnchorInterval);
+  }
+  std::vector<double> evaluate_ns(schemes.size(), 0);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double t = time_of_sample(i, samples);
+    all.exact_normals(segment, range, t, exact);
+    for (std::size_t s = 0; s < schemes.size(); ++s) {
+      const auto start = Clock::now();
+      if (playbacks[s])
+        playbacks[s]->next(result);
+      else
+        schemes[s]->evaluate(t, result);
+      evaluate_ns[s] += nanoseconds_since(start);
+      tallies[s].quality.add(exact, result, {segment.index, range.first, t});
+    }
+  }
+  for (std::size_t s = 0; s < schemes.size(); ++s)
+    tallies[s].evaluate_ns.push_back(static_cast<float>(evaluate_ns[s] / elements / static_cast<double>(samples)));
+  return tallies;
+}
+
+}  // namespace
+
+std::vector<std::string> default_schemes(ElementKind kind) {
+  std::vector<std::string> names = {"linear",
+                                    "quadratic",
+                                    "cubic",
+                                    "polynomial",
+                                    "slerp",
+                                    "decasteljau:4",
+                                    "quaternion:matrix",
+                                    "quaternion:optimal",
+                                    "circle:timed"};
+  if (kind != ElementKind::kFaces)
+    std::erase_if(names, [](const std::string& name) { return make_scheme(name).value()->needs_faces(); });
+  return names;
+}
+
+Result<Comparison> compare(const Motion& motion, const CompareOptions& options) {
+  if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
+  const ElementKind kind = options.elements.kind;
+
+  // Linear is the measure of the others, so it takes part even where it is not a row.
+  std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
+  std::vector<SchemeComparison> rows;
+  for (const std::string& name : names) {
+    auto scheme = make_scheme(name);
+    if (!scheme) return scheme.error();
+    if (kind != ElementKind::kFaces && scheme.value()->needs_faces())
+      return Error{
+          ErrorCode::kUsage, "",
+          name + " looks at the edges of faces; it has no meaning for " + std::string(element_kind_name(kind))};
+    const auto sequential = scheme.value()->sequential_operations();
+    SchemeComparison row;
+    row.scheme = name;
+    row.sequential = options.access == Access::kSequential && sequential.has_value();
+    row.operations = row.sequential ? *sequential : scheme.value()->operations();
+    rows.push_back(std::move(row));
+  }
+  std::size_t linear = static_cast<std::size_t>(std::find(names.begin(), names.end(), "linear") - names.begin());
+  if (linear == names.size()) names.emplace_back("linear");
+
+  std::optional<Elements> all;
+  if (kind == ElementKind::kFaces) {
+    all.emplace(motion.topology);
+  } else {
+    Result<NormalGroups> groups = make_groups(motion, options.elements);
+    if (!groups) return groups.error();
+    all.emplace(std::move(groups).value());
+  }
+  std::vector<Tally> totals(names.size());
+  const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
+  const std::size_t blocks = blocks_per_segment * motion.segments.size();
+  const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
+  std::vector<std::vector<Tally>> wave(std::min(blocks, blocks_per_wave));
+  for (std::size_t first = 0; first < blocks; first += blocks_per_wave) {
+    const std::size_t count = std::min(blocks_per_wave, blocks - first);
+    all->enter(motion, first / blocks_per_segment, (first + count - 1) / blocks_per_segment);
+    parallel_for(count, [&](std::size_t i) {
+      const Segment segment = motion.segment((first + i) / blocks_per_segment);
+      const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
+      const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
+      wave[i] = compare_block(segment, *all, range, names, options.samples, options.access);
+    });
+    // In order, so that sums do not depend on the threads.
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t s = 0; s < names.size(); ++s) totals[s].add(wave[i][s]);
+    }
+    if (options.progress) options.progress(first + count, blocks);
+  }
+
+  Comparison comparison{kind,
+                        motion.topology.vertex_count(),
+                        motion.topology.face_count(),
+                        all->count(),
+                        motion.segments.size(),
+                        options.samples,
+                        {}};
+  const double elements = static_cast<double>(all->count() * motion.segments.size());
+  const Quality& linear_quality = totals[linear].quality;
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    const Tally& total = totals[s];
+    SchemeComparison& row = rows[s];
+    row.quality = total.quality;
+    row.quality.max_at.element = all->first_output(total.quality.max_at.element);
+    if (linear_quality.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear_quality.sum;
+    row.fallbacks = total.fallbacks;
+    row.flagged = total.flagged;
+    row.prepare_ns = median(total.prepare_ns);
+    row.evaluate_ns = median(total.evaluate_ns);
+    row.bytes = total.bytes / elements;
+    comparison.schemes.push_back(std::move(row));
+  }
+  return comparison;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,246 @@
+#include "chronormal/workflow/inspect.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "analysis/collapse.h"
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/weld.h"
+
+namespace chronormal {
+namespace {
+
+// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) of it, so the edge by twice that,
+// and the cross product of two edges by twice that again, times the longer edge.
+constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
+
+// What can be wrong with a face, a bit each.
+enum Mark : std::uint8_t {
+  kNoArea = 1,
+  kSliver = 2,
+  kCollapses = 4,
+  kTurnsOver = 8,
+  kTurnsFar = 16,
+  kWithoutNormal = 32,
+};
+
+using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
+
+// Faces at one keyframe, or of one kind in one segment.
+struct FaceTally {
+  std::size_t count = 0, first_face = 0;
+  double first_t = 0;
+
+  // Faces come in ascending order.
+  void add(std::size_t face, Mark mark, FaceMarks& marks, double t = 0) {
+    if (count++ == 0) {
+      first_face = face;
+      first_t = t;
+    }
+    marks[face].fetch_or(mark, std::memory_order_relaxed);
+  }
+};
+
+struct KeyframeTally {
+  FaceTally no_area, slivers;
+};
+
+struct SegmentTally {
+  SegmentInspection inspection;
+  FaceTally collapses, turned_over, turned_far, without_normals;
+};
+
+void add_tally(Places& places, const FaceTally& tally, std::size_t at) {
+  if (places.pairs == 0 && tally.count > 0) {
+    places.first_at = at;
+    places.first_face = tally.first_face;
+    places.first_t = tally.first_t;
+  }
+  places.pairs += tally.count;
+}
+
+std::size_t count_marked(const FaceMarks& marks, Mark mark) {
+  return static_cast<std::size_t>(
+      std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
+}
+
+Segment still_segment(const Motion& motion, std::size_t keyframe) {
+  const auto positions =
+      VectorView<const float>::packed(motion.keyframes[keyframe].positions.data(), motion.topology.vertex_count());
+  return {&motion.topology, positions, positions, 0, 1, 0};
+}
+
+// How long a normal may be that is nothing but the rounding of its positions.
+double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
+  double coordinate = 0, edge = 0;
+  const Vec3d origin = to_double(positions[face[0]]);
+  for (const std::uint32_t vertex : face) {
+    const Vec3d p = to_double(positions[vertex]);
+    coordinate = std::fmax(coordinate, max_abs(p));
+    edge = std::fmax(edge, max_abs(p - origin));
+  }
+  return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
+}
+
+// Judges the faces of one keyframe by the normals that they have there.
+template <class NormalOf>
+KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, NormalOf normal_of,
+                               FaceMarks& marks) {
+  KeyframeTally tally;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const double size = max_abs(normal_of(f));
+    if (size == 0)
+      tally.no_area.add(f, kNoArea, marks);
+    else if (size <= rounding_of(topology.face(f), positions))
+      tally.slivers.add(f, kSliver, marks);
+  }
+  return tally;
+}
+
+void inspect_vertices(const Segment& segment, SegmentInspection& result) {
+  for (std::size_t v = 0; v < segment.from.count; ++v) {
+    const Vec3d step = to_double(segment.to[v]) - to_double(segment.from[v]);
+    if (max_abs(step) == 0) continue;
+    ++result.moved_vertices;
+    if (const double distance = length(step); distance > result.motion.value)
+      result.motion = {distance, segment.index, v};
+  }
+}
+
+SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNormals> normals, FaceMarks& marks) {
+  SegmentTally tally;
+  SegmentInspection& result = tally.inspection;
+  inspect_vertices(segment, result);
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const ControlNormals& c = normals[f];
+    if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value)
+      result.turn = {angle, segment.index, f};
+    if (dot(c.n0, c.n1) < 0) tally.turned_far.add(f, kTurnsFar, marks);
+    const Collapses collapses = find_collapses(c);
+    if (collapses.everywhere) tally.without_normals.add(f, kWithoutNormal, marks);
+    if (collapses.count == 0) continue;
+    tally.collapses.add(f, kCollapses, marks, collapses.at[0].t);
+    const auto end = collapses.at.begin() + static_cast<std::ptrdiff_t>(collapses.count);
+    const auto over = std::find_if(collapses.at.begin(), end, [](const Collapse& each) { return each.turns_over; });
+    if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
+  }
+  result.turned_far = tally.turned_far.count;
+  result.collapses = tally.collapses.count;
+  result.turned_over = tally.turned_over.count;
+  result.without_normals = tally.without_normals.count;
+  const NormalCurves curves(normals);
+  result.flagged = curves.flagged_count();
+  result.bytes = curves.bytes();
+  return tally;
+}
+
+void inspect_box(const Motion& motion, Inspection& result) {
+  const Vec3f start = still_segment(motion, 0).from.count > 0 ? still_segment(motion, 0).from[0] : Vec3f{};
+  Vec3f low = start, high = start;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    for (std::size_t i = 0; i + 2 < keyframe.positions.size(); i += 3) {
+      const float* const p = keyframe.positions.data() + i;
+      low = {std::min(low.x, p[0]), std::min(low.y, p[1]), std::min(low.z, p[2])};
+      high = {std::max(high.x, p[0]), std::max(high.y, p[1]), std::max(high.z, p[2])};
+    }
+  }
+  result.low = to_double(low);
+  result.high = to_double(high);
+  result.diagonal = length(result.high - result.low);
+}
+
+void keep_larger(Largest& largest, const Largest& other) {
+  if (other.value > largest.value) largest = other;
+}
+
+}  // namespace
+
+Inspection inspect(const Motion& motion, const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const Topology& topology = motion.topology;
+  Inspection result;
+  result.vertices = topology.vertex_count();
+  result.faces = topology.face_count();
+  result.keyframes = motion.keyframes.size();
+  result.keyframe_bytes = result.keyframes * result.vertices * 3 * sizeof(float);
+  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
+  const auto times = std::minmax_element(motion.keyframes.begin(), motion.keyframes.end(), earlier);
+  result.first_time = times.first->time;
+  result.last_time = times.second->time;
+  inspect_box(motion, result);
+
+  const Points points = weld_coincident(motion);
+  result.doubled = find_copies(points);
+  result.doubled_at_start =
+      find_copies(weld_coincident({topology, {motion.keyframes.front()}, {}, motion.body_of_vertex}));
+  result.surface = survey(topology, points);
+
+  // The first segment at a keyframe judges it; one without a segment is judged as if it stood still.
+  const std::size_t segment_count = motion.segments.size();
+  std::vector<std::optional<std::size_t>> judge(result.keyframes);
+  for (std::size_t s = segment_count; s > 0; --s) {
+    judge[motion.segments[s - 1].from] = s - 1;
+    judge[motion.segments[s - 1].to] = s - 1;
+  }
+  std::vector<std::size_t> still;
+  for (std::size_t k = 0; k < judge.size(); ++k) {
+    if (!judge[k]) still.push_back(k);
+  }
+  FaceMarks marks(result.faces);
+  std::vector<KeyframeTally> keyframes(result.keyframes);
+  std::vector<SegmentTally> segments(segment_count);
+  const std::size_t total = segment_count + still.size(), wave = std::max<std::size_t>(thread_count(), 1);
+  for (std::size_t first = 0; first < total; first += wave) {
+    const std::size_t count = std::min(wave, total - first);
+    parallel_for(count, [&](std::size_t i) {
+      const std::size_t s = first + i;
+      const bool moves = s < segment_count;
+      const Segment segment = moves ? motion.segment(s) : still_segment(motion, still[s - segment_count]);
+      std::vector<ControlNormals> normals(result.faces);
+      face_control_normals(segment, {0, result.faces}, normals);
+      const auto at_start = [&normals](std::size_t f) { return normals[f].n0; };
+      const auto at_end = [&normals](std::size_t f) { return normals[f].n1; };
+      if (!moves) {
+        keyframes[still[s - segment_count]] = inspect_keyframe(topology, segment.from, at_start, marks);
+        return;
+      }
+      const auto [from, to] = motion.segments[s];
+      if (judge[from] == s) keyframes[from] = inspect_keyframe(topology, segment.from, at_start, marks);
+      if (judge[to] == s) keyframes[to] = inspect_keyframe(topology, segment.to, at_end, marks);
+      segments[s] = inspect_segment(segment, normals, marks);
+    });
+    if (progress) progress(first + count, total);
+  }
+
+  // In order, so that what is first does not depend on the threads.
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    add_tally(result.no_area, keyframes[k].no_area, k);
+    add_tally(result.slivers, keyframes[k].slivers, k);
+  }
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const SegmentTally& tally = segments[s];
+    add_tally(result.collapses, tally.collapses, s);
+    add_tally(result.turned_over, tally.turned_over, s);
+    add_tally(result.turned_far, tally.turned_far, s);
+    add_tally(result.without_normals, tally.without_normals, s);
+    keep_larger(result.motion, tally.inspection.motion);
+    keep_larger(result.turn, tally.inspection.turn);
+    result.flagged += tally.inspection.flagged;
+    result.normal_bytes += tally.inspection.bytes;
+    result.segments.push_back(tally.inspection);
+  }
+  result.no_area.faces = count_marked(marks, kNoArea);
+  result.slivers.faces = count_marked(marks, kSliver);
+  result.collapses.faces = count_marked(marks, kCollapses);
+  result.turned_over.faces = count_marked(marks, kTurnsOver);
+  result.turned_far.faces = count_marked(marks, kTurnsFar);
+  result.without_normals.faces = count_marked(marks, kWithoutNormal);
+  return result;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,198 @@
+#include "chronormal/workflow/sample_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/sequence.h"
+#include "io/cache/npz.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/ply.h"
+
+namespace chronormal {
+namespace {
+
+struct FormatName {
+  SampleFormat format;
+  std::string_view name, extension;
+};
+
+constexpr std::array<FormatName, 4> kFormats = {{
+    {SampleFormat::kNpy, "npy", ".npy"},
+    {SampleFormat::kNpz, "npz", ".npz"},
+    {SampleFormat::kPly, "ply", ".ply"},
+    {SampleFormat::kObj, "obj", ".obj"},
+}};
+
+bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || format == SampleFormat::kNpz; }
+
+Result<Pose> pose_of(NormalSampler& sampler, const Moments& moments, std::size_t i) {
+  if (!moments.times.empty()) return sampler.at_time(moments.times[i]);
+  if (!moments.weights.empty()) return sampler.at_weights(moments.weights[i]);
+  return sampler.at_rest();
+}
+
+// What can be known about the moments before anything is computed.
+Status check_moments(const Motion& motion, const Moments& moments) {
+  assert(moments.times.empty() || moments.weights.empty());
+  for (const double time : moments.times) {
+    if (const Result<Instant> instant = find_instant(motion, time); !instant) return instant.error();
+  }
+  for (const auto& weights : moments.weights) {
+    if (Status status = check_weights(motion, weights); !status) return status;
+  }
+  return Success{};
+}
+
+VectorView<const float> packed(const std::vector<float>& values) {
+  return VectorView<const float>::packed(values.data(), values.size() / 3);
+}
+
+std::size_t count_zeros(const std::vector<float>& normals) {
+  std::size_t zeros = 0;
+  for (std::size_t i = 0; i < normals.size(); i += 3)
+    zeros += normals[i] == 0 && normals[i + 1] == 0 && normals[i + 2] == 0 ? 1U : 0U;
+  return zeros;
+}
+
+// The arrays of a .npy or .npz file as they grow.
+class Arrays {
+ public:
+  Arrays(std::size_t moments, std::size_t outputs, std::size_t vertices, SampleFormat format)
+      : normals_({moments, outputs, 3}) {
+    if (format == SampleFormat::kNpz) positions_.emplace(std::vector<std::uint64_t>{moments, vertices, 3});
+  }
+
+  void append(const std::vector<float>& normals, const Pose& pose) {
+    normals_.append(normals);
+    if (positions_) positions_->append(pose.positions);
+  }
+
+  [[nodiscard]] std::string npy() && { return std::move(normals_).bytes(); }
+
+  [[nodiscard]] std::string npz(const Motion& motion, const Moments& moments) const {
+    std::vector<double> values = moments.times;
+    std::vector<std::uint64_t> shape = {moments.count()};
+    if (moments.weights.empty() && values.empty()) values = {motion.keyframes[0].time};
+    if (!moments.weights.empty()) shape.push_back(motion.segments.size());
+    for (const auto& weights : moments.weights) values.insert(values.end(), weights.begin(), weights.end());
+    const NpyBytes when(shape, values);
+    const Result<std::string> faces = write_npy_faces(motion.topology);
+    std::vector<NpzMember> members = {{"normals", normals_.bytes()},
+                                      {moments.weights.empty() ? "times" : "weights", when.bytes()},
+                                      {"positions", positions_->bytes()}};
+    if (faces) members.push_back({"faces", faces.value()});
+    return write_npz(members);
+  }
+
+ private:
+  NpyBytes normals_;
+  std::optional<NpyBytes> positions_;  // for .npz
+};
+
+// The mesh at one moment, as a file.
+std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
+                      const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
+  if (format == SampleFormat::kPly) {
+    PlyNormals properties;
+    (kind == ElementKind::kFaces ? properties.of_faces : properties.of_vertices) = packed(normals);
+    return write_ply(topology, packed(pose.positions), properties, PlyEncoding::kBinaryLittleEndian);
+  }
+  if (kind == ElementKind::kVertices)
+    return write_obj(topology, packed(pose.positions), packed(normals), topology.corners());
+  if (kind == ElementKind::kCorners)
+    return write_obj(topology, packed(pose.positions), packed(pose.normals), sampler.element_of_output());
+  std::vector<std::uint32_t> face_of_corner;
+  for (std::size_t f = 0; f < topology.face_count(); ++f)
+    face_of_corner.insert(face_of_corner.end(), topology.face(f).size(), static_cast<std::uint32_t>(f));
+  return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner);
+}
+
+}  // namespace
+
+Result<SampleFormat> make_sample_format(std::string_view name) {
+  std::string names;
+  for (const FormatName& format : kFormats) {
+    if (format.name == name) return format.format;
+    if (!names.empty()) names += ", ";
+    names += format.name;
+  }
+  return Error{ErrorCode::kUsage, "",
+               std::string("there is no format '").append(name).append("'; there are ").append(names)};
+}
+
+std::optional<SampleFormat> find_sample_format(std::string_view path) {
+  std::string extension(path.substr(path.size() - std::min<std::size_t>(4, path.size())));
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  for (const FormatName& format : kFormats) {
+    if (format.extension == extension) return format.format;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind, std::size_t count) {
+  if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
+    return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
+  std::vector<std::string> names = {output.path};
+  if (!is_array(output.format) && output.path != "-") {
+    Result<std::vector<std::string>> numbered = numbered_names(output.path, count);
+    if (!numbered) return numbered.error();
+    names = std::move(numbered).value();
+  } else if (!is_array(output.format) && count > 1) {
+    return Error{ErrorCode::kUsage, output.path,
+                 "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
+  }
+  for (const std::string& name : names) {
+    if (Status status = check_output(name, output.force); !status) return status.error();
+  }
+  return names;
+}
+
+Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& options, const Moments& moments,
+                                    const SampleOutput& output,
+                                    const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
+  const ElementKind kind = options.elements.kind;
+  const Result<std::vector<std::string>> names = sample_files(output, kind, count);
+  if (!names) return names.error();
+  if (Status status = check_moments(motion, moments); !status) return status.error();
+  Result<NormalSampler> made = NormalSampler::make(motion, options);
+  if (!made) return made.error();
+  NormalSampler& sampler = made.value();
+
+  std::optional<Arrays> arrays;
+  if (is_array(output.format)) {
+    const std::size_t per_moment = sampler.output_count() + (output.format == SampleFormat::kNpz ? vertices : 0);
+    if (count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
+      return Error{ErrorCode::kUsage, output.path,
+                   "the arrays would take more than 4 GiB: choose fewer times, or a file for each (.ply, .obj)"};
+    arrays.emplace(count, sampler.output_count(), vertices, output.format);
+  }
+
+  SampleSummary summary;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Result<Pose> pose = pose_of(sampler, moments, i);
+    if (!pose) return pose.error();
+    const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
+    summary.normals += normals.size() / 3;
+    summary.zeros += count_zeros(normals);
+    if (arrays) {
+      arrays->append(normals, pose.value());
+    } else {
+      const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
+      if (Status status = write_output(names.value()[i], bytes, output.force); !status) return status.error();
+    }
+    if (progress) progress(i + 1, count);
+  }
+  if (!arrays) return summary;
+  const std::string bytes =
+      output.format == SampleFormat::kNpz ? arrays->npz(motion, moments) : std::move(*arrays).npy();
+  if (Status status = write_output(output.path, bytes, output.force); !status) return status.error();
+  return summary;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,201 @@
+#include "io/cache/maya_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "tests/support/cache_bytes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal {
+namespace {
+
+using std::string_literals::operator""s;
+
+void expect_turning(const Result<PositionCache>& cache) {
+  ASSERT_TRUE(cache.ok()) << cache.error().text();
+  EXPECT_EQ(cache.value().vertex_count, 3U);
+  ASSERT_EQ(cache.value().samples.size(), 2U);
+  EXPECT_EQ(cache.value().samples[0].time, 250.0 / 6000);
+  EXPECT_EQ(cache.value().samples[1].time, 375.0 / 6000);
+  EXPECT_EQ(cache.value().samples[0].positions, test::kTurning[0]);
+  EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
+}
+
+// A file of one time, whose groups have no TIME: the header says it.
+std::string frame_bytes(bool wide, std::int32_t ticks, const std::vector<float>& positions) {
+  const test::MayaWriter writer(wide);
+  return writer.header(ticks) + writer.group("MYCH", writer.points<float>("body", positions));
+}
+
+template <class T>
+std::string error_text(const Result<T>& result) {
+  EXPECT_FALSE(result.ok());
+  return result ? "" : result.error().text();
+}
+
+TEST(ReadMayaPoints, reads_float_and_double_with_both_sizes_of_chunks) {
+  for (const bool wide : {false, true}) {
+    expect_turning(read_maya_points(test::small_maya<float>(wide), "a.mc", {1, 3, ""}));
+    expect_turning(read_maya_points(test::small_maya<double>(wide), "a.mc", {1, 3, ""}));
+    expect_turning(read_maya_points(test::small_maya<double>(wide), "a.mc", {1, 0, "body"}));
+  }
+}
+
+TEST(ReadMayaPoints, a_channel_must_be_the_only_one_that_can_be_meant) {
+  const std::string bytes = test::small_maya<float>(false);
+  EXPECT_EQ(
+      error_text(read_maya_points(bytes, "a.mc")),
+      "a.mc, channels: several channels could be meant; name one, as in cache.xml#'body': 'body' (3), 'other' (1)");
+  EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 4, ""})),
+            "a.mc, channels: no channel has the 4 points that the mesh needs; there are 'body' (3), 'other' (1)");
+  EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 3, "head"})),
+            "a.mc, channels: there is no channel 'head'; there are 'body' (3), 'other' (1)");
+  EXPECT_EQ(error_text(read_maya_points(test::MayaWriter(false).header(0), "a.mc")),
+            "a.mc, channels: there are no points in the file");
+}
+
+TEST(ReadMayaPoints, errors_say_where_and_what) {
+  const test::MayaWriter writer(false);
+  const auto error_with = [&](const std::string& chunks, const std::string& header) {
+    return error_text(read_maya_points(header + writer.group("MYCH", chunks), "a.mc"));
+  };
+  EXPECT_EQ(error_text(read_maya_points("FOR5", "a.mc")),
+            "a.mc, byte 0: this is not a Maya cache: its first word is neither FOR4 nor FOR8");
+  EXPECT_EQ(error_with(writer.chunk("FVCA", ""), writer.header(0)),
+            "a.mc, byte 60: points must follow the name and the size of their channel");
+  EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}), ""),
+            "a.mc, byte 36: the points have no time: neither TIME nor STIM stands before them");
+  EXPECT_EQ(
+      error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", -1) + writer.chunk("FVCA", ""), writer.header(0)),
+      "a.mc, byte 84: the channel 'a' declares -1 points, but has 0 bytes for them");
+  EXPECT_EQ(
+      error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) + writer.chunk("DVCA", std::string(12, 'x')),
+                 writer.header(0)),
+      "a.mc, byte 84: the channel 'a' declares 1 points, but has 12 bytes for them");
+  EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""), "a.mc, byte 20: the chunk 'TIME' must have 4 bytes");
+  EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
+                           writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
+                       writer.header(0)),
+            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large");
+  EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
+                       writer.header(0)),
+            "a.mc, byte 136: the channel 'a' has 2 points here, but 1 before");
+  std::string bytes = test::small_maya<float>(true);
+  bytes.replace(8, 8, "\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF");
+  EXPECT_NE(error_text(read_maya_points(bytes, "a.mc")).find("the chunk 'FOR8' declares 9223372036854775807 bytes"),
+            std::string::npos);
+}
+
+TEST(ReadMayaDescription, reads_what_matters_and_passes_over_the_rest) {
+  const Result<MayaCacheDescription> result =
+      read_maya_description(test::maya_xml("OneFilePerFrame", "mcx", 125, -250, 500), "c.xml");
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_TRUE(result.value().has_file_per_frame);
+  EXPECT_EQ(result.value().extension, ".mcx");
+  EXPECT_EQ(result.value().ticks_per_frame, 250);
+  ASSERT_EQ(result.value().channels.size(), 2U);
+  EXPECT_EQ(result.value().channels[1].name, "body");
+  EXPECT_EQ(result.value().channels[1].interpretation, "positions");
+  EXPECT_TRUE(result.value().channels[1].is_regular);
+  EXPECT_EQ(result.value().channels[1].step, 125);
+  EXPECT_EQ(result.value().channels[1].start, -250);
+  EXPECT_EQ(result.value().channels[1].end, 500);
+}
+
+TEST(ReadMayaDescription, errors_say_where_and_what) {
+  const auto error_with = [](const std::string& from, const std::string& to) {
+    std::string xml = test::maya_xml("OneFile", "mcc", 125, 250, 375);
+    xml.replace(xml.find(from), from.size(), to);
+    return error_text(read_maya_description(xml, "c.xml"));
+  };
+  EXPECT_NE(error_with("Autodesk_Cache_File", "x").find("c.xml, byte "), std::string::npos);
+  EXPECT_EQ(error_text(read_maya_description("<a/>", "c.xml")),
+            "c.xml, byte 0: this is not the description of a Maya cache: there is no Autodesk_Cache_File");
+  EXPECT_NE(error_with("OneFile", "TwoFiles").find("the Type of cacheType is 'TwoFiles'"), std::string::npos);
+  EXPECT_NE(error_with("mcc", "abc").find("the Format of cacheType is 'abc'"), std::string::npos);
+  EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be above 0"), std::string::npos);
+  EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
+  EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate above 0"), std::string::npos);
+  EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not after its EndTime"), std::string::npos);
+}
+
+TEST(ReadMayaCache, reads_one_file) {
+  const test::TemporaryFolder folder;
+  for (const bool wide : {false, true}) {
+    folder.write(wide ? "c.mcx" : "c.mc", test::small_maya<float>(wide));
+    folder.write("c.xml", test::maya_xml("OneFile", wide ? "mcx" : "mcc", 125, 250, 375));
+    expect_turning(read_maya_cache(folder / "c.xml", {1, 3, ""}));
+  }
+}
+
+TEST(ReadMayaCache, reads_a_file_per_frame_in_the_order_of_time_and_no_other_file) {
+  const test::TemporaryFolder folder;
+  folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcx", 2125, 250, 2375));
+  folder.write("cFrame1.mcx", frame_bytes(true, 250, test::kTurning[0]));
+  folder.write("cFrame9Tick125.mcx", frame_bytes(true, 2375, test::kTurning[1]));
+  for (const char* const other : {"cFrame2.mc", "bcFrame2.mcx", "cFrameX.mcx", "cFrame2Tick.mcx", "cFrame2Tick1x.mcx",
+                                  "cFrame.mcx", "c.mcx", "cFrame3.mcx.bak"})
+    folder.write(other, "not a cache");
+  const Result<PositionCache> cache = read_maya_cache(folder / "c.xml", {1, 3, ""});
+  ASSERT_TRUE(cache.ok()) << cache.error().text();
+  ASSERT_EQ(cache.value().samples.size(), 2U);
+  EXPECT_EQ(cache.value().samples[1].time, 2375.0 / 6000);
+  EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
+
+  // cFrame10 stands before cFrame9 in the alphabet.
+  folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcx", 125, 2375, 2500));
+  std::filesystem::rename(folder / "cFrame1.mcx", folder / "cFrame10.mcx");
+  folder.write("cFrame10.mcx", frame_bytes(true, 2500, test::kTurning[0]));
+  const Result<PositionCache> sorted = read_maya_cache(folder / "c.xml", {1, 3, ""});
+  ASSERT_TRUE(sorted.ok()) << sorted.error().text();
+  EXPECT_EQ(sorted.value().samples.at(0).positions, test::kTurning[1]);
+}
+
+TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
+  const test::TemporaryFolder folder;
+  folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcc", 125, -250, 0));
+  EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
+            "c.xml: there is no file cFrame0.mc (or another number) beside it");
+  folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
+  folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
+  EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
+            "c.xml: it declares a sample at tick -125, which is not there; its file would be cFrame-1Tick125.mc");
+  folder.write("cFrame-1Tick125.mc", frame_bytes(false, -125, test::kTurning[0]));
+  EXPECT_TRUE(read_maya_cache(folder / "c.xml").ok());
+  folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));
+  folder.write("c.mc", test::small_maya<float>(false));
+  EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml", {1, 3, ""})),
+            "c.xml: it declares a sample at tick 500, which is not there");
+}
+
+TEST(ReadMayaCache, among_channels_of_the_same_size_the_interpretation_decides) {
+  const test::TemporaryFolder folder;
+  const test::MayaWriter writer(false);
+  std::string bytes = writer.header(0);
+  for (int k = 0; k < 2; ++k)
+    bytes += writer.group("MYCH", writer.integer("TIME", 250 + 125 * k) +
+                                      writer.points<float>("other", test::kTurning[1 - k]) +
+                                      writer.points<float>("body", test::kTurning[k]));
+  folder.write("c.mc", bytes);
+  std::string xml = test::maya_xml("OneFile", "mcc", 125, 250, 375);
+  folder.write("c.xml", xml);
+  EXPECT_NE(error_text(read_maya_cache(folder / "c.xml", {1, 3, ""})).find("several channels"), std::string::npos);
+  xml.replace(xml.find("\"positions\""), 11, "\"velocity\"");
+  folder.write("c.xml", xml);
+  expect_turning(read_maya_cache(folder / "c.xml", {1, 3, ""}));
+}
+
+TEST(ReadMayaCache, files_that_are_not_there_are_named) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(read_maya_cache(folder / "c.xml").error().code, ErrorCode::kFailed);
+  folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 375));
+  const Result<PositionCache> cache = read_maya_cache(folder / "c.xml");
+  ASSERT_FALSE(cache.ok());
+  EXPECT_EQ(cache.error().code, ErrorCode::kFailed);
+  EXPECT_EQ(cache.error().place, folder / "c.mc");
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,52 @@
+#include "io/cache/md2.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/cache_bytes.h"
+
+namespace chronormal {
+namespace {
+
+using std::string_literals::operator""s;
+
+std::string error_with(std::size_t at, const std::string& raw) {
+  const Result<Motion> result = read_md2(test::small_md2().replace(at, raw.size(), raw), "imp.md2");
+  EXPECT_FALSE(result.ok());
+  return result ? "" : result.error().text();
+}
+
+TEST(ReadMd2, reads_frames_as_keyframes_and_turns_the_triangles_round) {
+  const Result<Motion> result = read_md2(test::small_md2(), "imp.md2", 10);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const Motion& motion = result.value();
+  EXPECT_EQ(motion.topology, Topology::triangles(3, {0, 1, 2}).value());  // the file says 0 2 1
+  ASSERT_EQ(motion.keyframes.size(), 2U);
+  EXPECT_EQ(motion.keyframes[0].positions, (std::vector<float>{-1, 0, 1, 126.5F, 0, 1, -1, 63.75F, 3}));
+  EXPECT_EQ(motion.keyframes[1].positions, (std::vector<float>{-1, 0, 1, 126.5F, 0, 1, -1, 63.5F, 3}));
+  EXPECT_EQ(motion.keyframes[0].name, "stand01");
+  EXPECT_EQ(motion.keyframes[1].name, "run");
+  EXPECT_EQ(motion.keyframes[1].time, 0.1);
+  EXPECT_EQ(motion.segments.size(), 1U);
+}
+
+TEST(ReadMd2, errors_say_where_and_what) {
+  EXPECT_EQ(error_with(0, "IDP3"), "imp.md2, byte 0: this is not an MD2 file: its first word is not IDP2");
+  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 is unknown; there is only 8");
+  EXPECT_EQ(error_with(16, "\x35"), "imp.md2, byte 16: a frame of 3 vertices has 52 bytes, but the header declares 53");
+  EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the header declares 0 vertices");
+  EXPECT_EQ(error_with(32, "\0"s), "imp.md2, byte 32: the header declares 0 triangles; a motion needs 1 or more");
+  EXPECT_EQ(error_with(40, "\1"), "imp.md2, byte 40: the header declares 1 frames; a motion needs 2 or more");
+  EXPECT_EQ(error_with(40, "\xFF\xFF\xFF\x7F"),
+            "imp.md2, byte 56: the header declares 2147483647 frames from byte 80 on, but the file has only 184 bytes");
+  EXPECT_EQ(error_with(56, "\xFF\xFF\xFF\xFF"),
+            "imp.md2, byte 56: the header declares 2 frames from byte -1 on, but the file has only 184 bytes");
+  EXPECT_EQ(error_with(70, "\3"), "imp.md2, byte 70, triangle 0: corner 1 names vertex 3, but the file has 3");
+  EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s),
+            "imp.md2, byte 120, frame 0, vertex 0: the coordinate is not a finite number");
+  EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"), "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large");
+}
+
+}  // namespace
+}  // namespace chronormal

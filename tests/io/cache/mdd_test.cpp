@@ -1,0 +1,73 @@
+#include "io/cache/mdd.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <string>
+
+#include "tests/support/cache_bytes.h"
+#include "tests/support/random_motion.h"
+
+namespace chronormal {
+namespace {
+
+using std::string_literals::operator""s;
+
+std::string error_of(const std::string& bytes) {
+  const Result<PositionCache> result = read_mdd(bytes, "walk.mdd");
+  EXPECT_FALSE(result.ok());
+  return result ? "" : result.error().text();
+}
+
+TEST(ReadMdd, reads_positions_and_seconds) {
+  const Result<PositionCache> cache = read_mdd(test::small_mdd(-1, 0.5F), "walk.mdd", {24, 0, ""});
+  ASSERT_TRUE(cache.ok()) << cache.error().text();
+  EXPECT_EQ(cache.value().vertex_count, 3U);
+  ASSERT_EQ(cache.value().samples.size(), 2U);
+  EXPECT_EQ(cache.value().samples[0].time, -1);
+  EXPECT_EQ(cache.value().samples[1].time, 0.5);
+  EXPECT_EQ(cache.value().samples[0].positions, test::kTurning[0]);
+  EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
+}
+
+TEST(ReadMdd, errors_say_where_and_what) {
+  const auto patched = [](std::size_t at, const std::string& raw) {
+    return test::small_mdd(0, 1).replace(at, raw.size(), raw);
+  };
+  EXPECT_EQ(error_of("abc"), "walk.mdd, byte 3: the file ends inside its header of 8 bytes");
+  EXPECT_EQ(error_of(patched(4, "\x80\0\0\0"s)),
+            "walk.mdd, byte 8: the header declares -2147483648 vertices and 2 samples");
+  EXPECT_EQ(error_of(patched(4, "\x7F\xFF\xFF\xFF")),
+            "walk.mdd, byte 8: the header declares 2 samples of 2147483647 vertices, for which the file is too short");
+  EXPECT_EQ(error_of(test::small_mdd(0, 1) + "xxxx"),
+            "walk.mdd, byte 8: the header declares 2 samples of 3 vertices, for which the file is too long");
+  EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is not a finite number");
+  EXPECT_EQ(error_of(patched(20, "\xFF\xC0\0\0"s)),
+            "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is not a finite number");
+}
+
+TEST(WriteMdd, writes_the_bytes_that_were_made_by_hand) {
+  EXPECT_EQ(write_mdd(test::turning_motion(-1, 0.5)).value(), test::small_mdd(-1, 0.5F));
+}
+
+RC_GTEST_PROP(WriteMdd, what_was_written_reads_back_bit_for_bit, ()) {
+  const Motion motion = test::random_motion(false);
+  const Result<std::string> bytes = write_mdd(motion);
+  RC_ASSERT(bytes.ok());
+  const Result<PositionCache> back = read_mdd(bytes.value(), "back.mdd");
+  RC_ASSERT(back.ok());
+  RC_ASSERT(back.value().samples.size() == motion.keyframes.size());
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    RC_ASSERT(back.value().samples[k].time == motion.keyframes[k].time);
+    RC_ASSERT(test::same_bits(back.value().samples[k].positions, motion.keyframes[k].positions));
+  }
+}
+
+TEST(WriteMdd, refuses_times_that_float32_can_not_tell_apart) {
+  const Result<std::string> bytes = write_mdd(test::turning_motion(1, 1 + 1e-9));
+  ASSERT_FALSE(bytes.ok());
+  EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
+}
+
+}  // namespace
+}  // namespace chronormal

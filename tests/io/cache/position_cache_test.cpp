@@ -1,0 +1,47 @@
+#include "io/cache/position_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "chronormal/motion/validate.h"
+#include "tests/support/cache_bytes.h"
+
+namespace chronormal {
+namespace {
+
+PositionCache cache_at(std::vector<double> times) {
+  PositionCache cache;
+  cache.vertex_count = 3;
+  for (const double time : times) cache.samples.push_back({time, test::kTurning[0]});
+  return cache;
+}
+
+std::string error_of(std::size_t vertices, PositionCache cache) {
+  const Result<Motion> motion =
+      motion_from_cache(Topology::triangles(vertices, {0, 1, 2}).value(), std::move(cache), "body.obj", "walk.pc2");
+  EXPECT_FALSE(motion.ok());
+  return motion ? "" : motion.error().text();
+}
+
+TEST(MotionFromCache, is_a_sequence_of_all_samples) {
+  const Result<Motion> motion =
+      motion_from_cache(Topology::triangles(3, {0, 1, 2}).value(), cache_at({-1, 0, 5}), "body.obj", "walk.pc2");
+  ASSERT_TRUE(motion.ok()) << motion.error().text();
+  EXPECT_TRUE(validate(motion.value()).ok());
+  EXPECT_EQ(motion.value().segments.size(), 2U);
+  EXPECT_EQ(motion.value().keyframes[2].time, 5);
+  EXPECT_EQ(motion.value().keyframes[2].name, "walk.pc2");
+  EXPECT_TRUE(check_is_sequence(motion.value()).ok());
+}
+
+TEST(MotionFromCache, errors_name_counts_and_samples) {
+  EXPECT_EQ(error_of(4, cache_at({0, 1})), "walk.pc2: it has 3 vertices, but the mesh body.obj has 4");
+  EXPECT_EQ(error_of(3, cache_at({0})), "walk.pc2: a motion needs two samples or more, but it has 1");
+  EXPECT_EQ(error_of(3, cache_at({0, 1, 1})), "walk.pc2, sample 2: its time, 1 s, is not after that of sample 1, 1 s");
+  EXPECT_EQ(error_of(3, cache_at({0, -0.5})),
+            "walk.pc2, sample 1: its time, -0.5 s, is not after that of sample 0, 0 s");
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,92 @@
+// Files by other people; only where the environment variable CHRONORMAL_DATA says where they are.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/file.h"
+#include "chronormal/io/sequence.h"
+#include "io/mesh/mesh_readers.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RealData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("CHRONORMAL_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+    data_ = folder;
+  }
+
+  [[nodiscard]] std::vector<fs::path> meshes_under(const std::string& folder) const {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_ / folder)) {
+      if (entry.is_regular_file() && find_mesh_reader(entry.path().string()) != nullptr) files.push_back(entry.path());
+    }
+    EXPECT_FALSE(files.empty()) << data_ / folder;
+    return files;
+  }
+
+  static Result<MeshFrame> read(const fs::path& path) {
+    const Result<FileBytes> file = FileBytes::open(path.string());
+    if (!file) return file.error();
+    return read_mesh(file.value().bytes(), path.filename().string());
+  }
+
+  fs::path data_;
+};
+
+TEST_F(RealData, meshes_of_other_programs_are_read) {
+  for (const char* const folder : {"sequences", "golden"}) {
+    for (const fs::path& path : meshes_under(folder)) {
+      const Result<MeshFrame> mesh = read(path);
+      EXPECT_TRUE(mesh.ok()) << mesh.error().text();
+    }
+  }
+}
+
+TEST_F(RealData, sequences_of_other_programs_are_motions) {
+  const Result<Motion> rumba = read_sequence(std::vector{(data_ / "sequences/rumba_13").string()}, {});
+  ASSERT_TRUE(rumba.ok()) << rumba.error().text();
+  EXPECT_EQ(rumba.value().topology.vertex_count(), 12811U);
+  EXPECT_EQ(rumba.value().topology.face_count(), 25472U);
+  EXPECT_EQ(rumba.value().keyframes.size(), 13U);
+  const Result<Motion> cloth = read_sequence(std::vector{(data_ / "sequences/thick_cloth/*.ply").string()}, {});
+  ASSERT_TRUE(cloth.ok()) << cloth.error().text();
+  EXPECT_EQ(cloth.value().topology.vertex_count(), 233U);
+  EXPECT_EQ(cloth.value().topology.face_count(), 404U);
+}
+
+TEST_F(RealData, hostile_files_are_meshes_or_clear_errors_within_a_second) {
+  for (const fs::path& path : meshes_under("hostile")) {
+    SCOPED_TRACE(path);
+    const auto start = std::chrono::steady_clock::now();
+    const Result<MeshFrame> mesh = read(path);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.0);
+    if (!mesh) {
+      EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
+      EXPECT_TRUE(mesh.error().place.starts_with(path.filename().string() + ", ")) << mesh.error().text();
+      EXPECT_FALSE(mesh.error().message.empty());
+    }
+    if (std::getenv("CHRONORMAL_VERBOSE") != nullptr)
+      std::printf("%-60s %s\n", path.lexically_relative(data_).c_str(), mesh ? "mesh" : mesh.error().text().c_str());
+  }
+}
+
+TEST_F(RealData, files_that_break_the_ply_grammar_are_refused) {
+  for (const fs::path& path : meshes_under("hostile/magnum_ply")) {
+    const std::string name = path.filename().string();
+    const bool is_good = name == "ascii.ply" || name == "crlf.ply";  // empty.ply follows the grammar, but is no mesh
+    EXPECT_EQ(read(path).ok(), is_good) << name;
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

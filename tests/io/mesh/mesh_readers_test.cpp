@@ -1,0 +1,252 @@
+// Walks the list of readers: a reader that has no fixtures here, and no fuzz target, fails.
+#include "io/mesh/mesh_readers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/ply_bytes.h"
+#include "tests/support/random_edits.h"
+
+namespace chronormal {
+namespace {
+
+struct Fixture {
+  std::string label;
+  std::string bytes;
+  // Every file cut off before this byte must be an error; 0 where the format can not tell.
+  std::size_t declared_end = 0;
+};
+
+Fixture whole(std::string label, std::string bytes) {
+  const std::size_t size = bytes.size();
+  return {std::move(label), std::move(bytes), size};
+}
+
+const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() {
+  static const std::string ascii =
+      test::ply_header("ascii", "4", "2") + "0 0 0\n1 0 .5\n1 1 -1e-3\n0 1 0\n3 0 1 2\n4 0 1 2 3\n";
+  static const std::map<std::string, std::vector<Fixture>, std::less<>> table = {
+      {"obj",
+       {{"triangle", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 0},
+        {"all forms",
+         "# comment\r\nmtllib a.mtl\r\nv 0 0 0 1\r\nv 1e0 -0.5 +.25 0.1 0.2 0.3\r\nv\t1 1 0\r\nv 0 1 \\\r\n 0\r\n"
+         "vt 0 0\r\nvn 0 0 1\r\ng a b\r\nusemtl red\r\nf 1/1/1 2//1 3/1 4\r\nf -4 -3 -2 # end\r\nl 1 2\r\np 1\r\n",
+         0},
+        {"faces first", "f 1 2 3 4\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 12.5", 0}}},
+      {"ply",
+       {{"ascii", ascii, ascii.size() - 1},  // the last line end may be missing
+        whole("little endian", test::small_binary_ply(false)),
+        whole("big endian", test::small_binary_ply(true)),
+        whole("mixed, little endian", test::mixed_binary_ply(false)),
+        whole("mixed, big endian", test::mixed_binary_ply(true))}},
+  };
+  return table;
+}
+
+// The parameter is the name of the reader.
+class Readers : public ::testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] static const MeshReader& reader() {
+    const auto readers = mesh_readers();
+    return *std::find_if(readers.begin(), readers.end(), [](const MeshReader& r) { return r.name == GetParam(); });
+  }
+  [[nodiscard]] static const std::vector<Fixture>& reader_fixtures() {
+    static const std::vector<Fixture> none;
+    const auto found = fixture_table().find(reader().name);
+    return found == fixture_table().end() ? none : found->second;
+  }
+
+  // Reads bytes that may be anything, and checks what must hold for every result. Returns whether it was a mesh.
+  bool read_anything(const std::string& bytes) {
+    ++case_count_;
+    const auto start = std::chrono::steady_clock::now();
+    const Result<MeshFrame> result = reader().read(bytes, "frame 3 (a.mesh)");
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(seconds.count(), 1.0);
+    if (!result) {
+      EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
+      EXPECT_TRUE(result.error().place.starts_with("frame 3 (a.mesh), ")) << result.error().text();
+      EXPECT_FALSE(result.error().message.empty());
+      return false;
+    }
+    const MeshFrame& frame = result.value();
+    EXPECT_GT(frame.topology.vertex_count(), 0U);
+    EXPECT_GT(frame.topology.face_count(), 0U);
+    EXPECT_LE(frame.topology.vertex_count(), bytes.size());
+    EXPECT_LE(frame.topology.corner_count(), bytes.size());
+    EXPECT_EQ(frame.positions.size(), 3 * frame.topology.vertex_count());
+    for (const float coordinate : frame.positions) EXPECT_TRUE(std::isfinite(coordinate));
+    return true;
+  }
+
+  std::size_t case_count_ = 0;
+};
+
+TEST_P(Readers, have_fixtures_that_they_read) {
+  ASSERT_FALSE(reader_fixtures().empty()) << "give the reader " << reader().name << " fixtures in this file";
+  for (const Fixture& fixture : reader_fixtures()) {
+    SCOPED_TRACE(fixture.label);
+    const Result<MeshFrame> result = reader().read(fixture.bytes, "name");
+    EXPECT_TRUE(result.ok()) << result.error().text();
+    EXPECT_TRUE(reader().recognises(fixture.bytes) || fixture.label == "faces first");
+  }
+}
+
+TEST_P(Readers, have_a_fuzz_target_and_seeds) {
+  const std::filesystem::path fuzz = std::filesystem::path(CHRONORMAL_SOURCE_DIR) / "fuzz";
+  const std::string name(reader().name);
+  EXPECT_TRUE(std::filesystem::is_regular_file(fuzz / (name + "_fuzz.cpp")));
+  ASSERT_TRUE(std::filesystem::is_directory(fuzz / "seeds" / name));
+  EXPECT_FALSE(std::filesystem::is_empty(fuzz / "seeds" / name));
+}
+
+TEST_P(Readers, truncated_file_is_an_error_or_a_mesh) {
+  ASSERT_FALSE(reader_fixtures().empty());
+  for (const Fixture& fixture : reader_fixtures()) {
+    for (std::size_t size = 0; size < fixture.bytes.size(); ++size) {
+      SCOPED_TRACE(fixture.label + " cut to " + std::to_string(size) + " bytes");
+      const bool is_mesh = read_anything(fixture.bytes.substr(0, size));
+      EXPECT_FALSE(is_mesh && size < fixture.declared_end);
+    }
+  }
+}
+
+// Where the numbers of a text are: {position, size} of each run of characters of a number.
+std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
+  constexpr std::string_view kOfNumbers = "0123456789+-.eE";
+  std::vector<std::pair<std::size_t, std::size_t>> numbers;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_begin = i == 0 || std::string_view(" \t\r\n/").find(text[i - 1]) != std::string_view::npos;
+    if (!is_begin || std::string_view("0123456789+-.").find(text[i]) == std::string_view::npos) continue;
+    const std::size_t end = text.find_first_not_of(kOfNumbers, i);
+    numbers.emplace_back(i, (end == std::string::npos ? text.size() : end) - i);
+  }
+  return numbers;
+}
+
+TEST_P(Readers, boundary_numbers_in_text_are_errors_or_meshes) {
+  ASSERT_FALSE(reader_fixtures().empty());
+  for (const Fixture& fixture : reader_fixtures()) {
+    for (const auto& [position, size] : numbers_in(fixture.bytes)) {
+      for (const char* const value : {"2147483647",
+                                      "2147483648",
+                                      "4294967295",
+                                      "4294967296",
+                                      "4294967297",
+                                      "4611686018427387904",
+                                      "6148914691236517206",
+                                      "9223372036854775807",
+                                      "9223372036854775808",
+                                      "18446744073709551615",
+                                      "18446744073709551616",
+                                      "-1",
+                                      "-2147483648",
+                                      "-9223372036854775808",
+                                      "0",
+                                      "1",
+                                      "255",
+                                      "256",
+                                      "65536",
+                                      "1e400",
+                                      "-1e400",
+                                      "1e-400",
+                                      "1e99999999999999999999",
+                                      "nan",
+                                      "-inf",
+                                      "0x10",
+                                      "",
+                                      "+",
+                                      "-",
+                                      ".",
+                                      "1.5",
+                                      "1/"}) {
+        SCOPED_TRACE(fixture.label + ", byte " + std::to_string(position) + " := " + value);
+        std::string bytes = fixture.bytes;
+        (void)read_anything(bytes.replace(position, size, value));
+      }
+    }
+  }
+  EXPECT_GE(case_count_, 300U);
+}
+
+TEST_P(Readers, boundary_patterns_in_bytes_are_errors_or_meshes) {
+  ASSERT_FALSE(reader_fixtures().empty());
+  for (const Fixture& fixture : reader_fixtures()) {
+    for (const std::size_t width : {std::size_t{1}, std::size_t{2}, std::size_t{4}, std::size_t{8}}) {
+      std::string highest(width, '\0'), most(width, '\xFF'), infinite(width, '\0');
+      highest[0] = '\x80';
+      most[0] = '\x7F';
+      infinite[0] = '\x7F';
+      if (width > 1) infinite[1] = width == 4 ? '\x80' : '\xF0';
+      for (const std::string& pattern :
+           {std::string(width, '\xFF'), std::string(width, '\0'), highest,
+            std::string(highest.rbegin(), highest.rend()), most, std::string(most.rbegin(), most.rend()), infinite,
+            std::string(infinite.rbegin(), infinite.rend())}) {
+        for (std::size_t at = 0; at + width <= fixture.bytes.size(); ++at) {
+          SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + ", width " + std::to_string(width));
+          std::string bytes = fixture.bytes;
+          (void)read_anything(bytes.replace(at, width, pattern));
+        }
+      }
+    }
+  }
+  EXPECT_GE(case_count_, 300U);
+}
+
+TEST_P(Readers, random_edits_are_errors_or_meshes) {
+  ASSERT_FALSE(reader_fixtures().empty());
+  std::mt19937 random(20240601);
+  for (const Fixture& fixture : reader_fixtures()) {
+    for (int round = 0; round < 2000; ++round) {
+      SCOPED_TRACE(fixture.label + ", round " + std::to_string(round));
+      (void)read_anything(test::with_random_edits(fixture.bytes, random));
+    }
+  }
+}
+
+std::vector<std::string> all_reader_names() {
+  std::vector<std::string> names;
+  for (const MeshReader& reader : mesh_readers()) names.emplace_back(reader.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Io, Readers, ::testing::ValuesIn(all_reader_names()),
+                         [](const auto& param_info) { return param_info.param; });
+
+TEST(ReadMesh, chooses_by_extension_in_upper_and_lower_case) {
+  EXPECT_EQ(find_mesh_reader("a.b/walk.1.OBJ")->name, "obj");
+  EXPECT_EQ(find_mesh_reader("walk.Ply")->name, "ply");
+  EXPECT_EQ(find_mesh_reader("a.obj/walk"), nullptr);
+  EXPECT_EQ(find_mesh_reader("obj"), nullptr);
+  const Result<MeshFrame> misnamed = read_mesh(test::small_binary_ply(false), "walk.obj");
+  ASSERT_FALSE(misnamed.ok());
+  EXPECT_EQ(misnamed.error().place, "walk.obj, line 10") << misnamed.error().text();
+}
+
+TEST(ReadMesh, chooses_by_content_where_the_name_does_not_tell) {
+  EXPECT_TRUE(read_mesh(test::small_binary_ply(true), "<stdin>").ok());
+  EXPECT_TRUE(read_mesh("# by hand\n\nv 0 0 0\nf 1 1 1\n", "<stdin>").ok());
+  EXPECT_TRUE(read_mesh("o thing\nv 0 0 0\nf 1 1 1\n", "mesh.txt").ok());
+}
+
+TEST(ReadMesh, unknown_format_is_an_error_that_lists_what_can_be_read) {
+  for (const char* const bytes : {"", "solid cube\n", "plywood\n", "\x89PNG\r\n"}) {
+    const Result<MeshFrame> result = read_mesh(bytes, "cube.stl");
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(result.error().place, "cube.stl");
+    EXPECT_NE(result.error().message.find("ply (.ply), obj (.obj)"), std::string::npos) << result.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,275 @@
+// The tiles of faces against the public function of one face at a time, which uses no vectors of lanes, and against
+// sums of products in long double.
+
+#include "normals/control/kernels/face_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simd/targets.h"
+#include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+using fixtures::Point;
+
+// One by one: the kernel begins at four faces.
+ControlNormals one_face(const Segment& segment, std::size_t f) {
+  ControlNormals normals;
+  face_control_normals(segment, {f, 1}, {&normals, 1});
+  return normals;
+}
+
+std::vector<double> components(const ControlNormals& c) {
+  return {c.n0.x, c.n0.y, c.n0.z, c.m.x, c.m.y, c.m.z, c.n1.x, c.n1.y, c.n1.z};
+}
+
+template <class T>
+bool same_bits(T a, T b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+// The largest sum of absolute products of any component of any of the four cross products of a triangle.
+long double largest_products(const Segment& segment, std::size_t f) {
+  const auto face = segment.topology->face(f);
+  const auto edge = [&](const VectorView<const float>& points, std::size_t corner) {
+    const Vec3f a = points[face[0]], b = points[face[corner]];
+    return std::vector<long double>{std::fabs((long double)(b.x) - a.x), std::fabs((long double)(b.y) - a.y),
+                                    std::fabs((long double)(b.z) - a.z)};
+  };
+  long double largest = 0;
+  for (const auto* e_of : {&segment.from, &segment.to}) {
+    for (const auto* f_of : {&segment.from, &segment.to}) {
+      const auto e = edge(*e_of, 1), g = edge(*f_of, 2);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        largest = std::max(largest, e[i] * g[j] + e[j] * g[i]);
+      }
+    }
+  }
+  return largest;
+}
+
+// The first difference between the tiles of a range and its faces one by one, or nothing.
+std::string difference(const Segment& segment, IndexRange faces) {
+  std::vector<ControlTile> tiles((faces.count + kTile - 1) / kTile);
+  face_control_tiles(segment, faces, tiles);
+  for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
+    const std::size_t f = faces.first + std::min(i, faces.count - 1);
+    const ControlTile& tile = tiles[i / kTile];
+    const std::size_t lane = i % kTile;
+    const ControlNormals expected = one_face(segment, f);
+    std::string place = "lane ";
+    place += std::to_string(i) + ", face " + std::to_string(f) + " of " + target_name(current_target()) + ": ";
+    const auto c = components(expected);
+    for (std::size_t k = 0; k < 9; ++k) {
+      if (!same_bits(tile.normals[k][lane], static_cast<float>(c[k])))
+        return place + "component " + std::to_string(k) + " is " + std::to_string(tile.normals[k][lane]) + " and not " +
+               std::to_string(c[k]);
+    }
+    if (tile.degree[lane] != degree(expected)) return place + "degree " + std::to_string(tile.degree[lane]);
+    if (segment.topology->all_triangles() &&
+        !(static_cast<long double>(tile.magnitude[lane]) >= largest_products(segment, f)))
+      return place + "magnitude " + std::to_string(tile.magnitude[lane]);
+  }
+  return "";
+}
+
+std::string difference_on_all_targets(const Segment& segment, IndexRange faces) {
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    std::string found = difference(segment, faces);
+    if (!found.empty()) return found;
+  }
+  return "";
+}
+
+std::string difference_on_all_targets(const Segment& segment) {
+  return difference_on_all_targets(segment, {0, segment.topology->face_count()});
+}
+
+// Positions in a layout of their own, in memory that ends with the last coordinate.
+class Laid {
+ public:
+  enum class Layout { kPacked, kPlanes, kStrideFour, kStrideSeven };
+
+  Laid(const VectorView<const float>& points, Layout layout) : count_(points.count), layout_(layout) {
+    const std::size_t stride = stride_of(layout);
+    const std::size_t size = layout == Layout::kPlanes ? 3 * count_ : stride * (count_ - 1) + 3;
+    memory_ = std::make_unique<float[]>(size);
+    for (std::size_t i = 0; i < count_; ++i) view_of(memory_.get()).set(i, points[i]);
+  }
+
+  VectorView<const float> view() const { return view_of(memory_.get()); }
+
+ private:
+  static std::size_t stride_of(Layout layout) {
+    return layout == Layout::kPlanes ? 1 : layout == Layout::kPacked ? 3 : layout == Layout::kStrideFour ? 4 : 7;
+  }
+  VectorView<float> view_of(float* p) const {
+    if (layout_ == Layout::kPlanes) return VectorView<float>::planes(p, p + count_, p + 2 * count_, count_);
+    return {p, p + 1, p + 2, count_, stride_of(layout_)};
+  }
+
+  std::size_t count_;
+  Layout layout_;
+  std::unique_ptr<float[]> memory_;
+};
+
+constexpr Laid::Layout kLayouts[] = {Laid::Layout::kPacked, Laid::Layout::kPlanes, Laid::Layout::kStrideFour,
+                                     Laid::Layout::kStrideSeven};
+
+// Every motion over the same faces.
+std::vector<Motion> motions_of_every_degree() {
+  const Motion start = fixtures::smooth_morph(5);
+  const auto moved = [&start](auto change) {
+    Motion motion = start;
+    auto& to = motion.keyframes[1].positions;
+    const auto& from = motion.keyframes[0].positions;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = change(from[i], i);
+    return motion;
+  };
+  std::vector<Motion> motions = {start};
+  motions.push_back(moved([](float v, std::size_t) { return v; }));
+  motions.push_back(moved([](float v, std::size_t) { return v + 2; }));                     // rounded: not exactly one
+  motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
+  motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
+  motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));  // near the tolerance
+  return motions;
+}
+
+TEST(FaceTiles, have_the_bits_of_single_faces_for_every_count_and_offset) {
+  const Motion motion = fixtures::shaken(fixtures::icosphere(2), 0.3, 5);
+  const Segment segment = motion.segment(0);
+  for (std::size_t count = 1; count <= 40; ++count) {
+    for (const std::size_t first : std::initializer_list<std::size_t>{0, 1, 5, 15, 16, 37, 280})
+      ASSERT_EQ(difference_on_all_targets(segment, {first, std::min<std::size_t>(count, 320 - first)}), "");
+  }
+}
+
+TEST(FaceTiles, read_any_layout_of_positions_and_no_byte_beyond_the_last) {
+  const Motion motion = fixtures::moderate_soup(37);  // the last corner is the last vertex
+  const Segment packed = motion.segment(0);
+  for (const auto from : kLayouts) {
+    for (const auto to : kLayouts) {
+      const Laid laid_from(packed.from, from), laid_to(packed.to, to);
+      Segment segment = packed;
+      segment.from = laid_from.view();
+      segment.to = laid_to.view();
+      for (const std::size_t first : std::initializer_list<std::size_t>{0, 3, 21, 36})
+        ASSERT_EQ(difference_on_all_targets(segment, {first, 37 - first}), "");
+    }
+  }
+}
+
+TEST(FaceTiles, have_the_degree_of_single_faces) {
+  for (const Motion& motion : motions_of_every_degree()) ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "");
+}
+
+TEST(FaceTiles, agree_where_faces_are_thin_far_from_the_origin_tiny_or_huge) {
+  for (const Motion& motion :
+       {fixtures::large_soup(200), fixtures::needle_soup(200), fixtures::far_soup(200), fixtures::tiny_soup(200),
+        fixtures::huge_soup(200), fixtures::collapsing_soup(1e-9, 200), fixtures::inside_out_soup(200),
+        fixtures::thinnest_soup(true, 200), fixtures::thinnest_soup(false, 200), fixtures::graded_soup(200)})
+    ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "");
+}
+
+constexpr fixtures::Shape kShapes[] = {fixtures::Shape::kTriangle, fixtures::Shape::kLine, fixtures::Shape::kPoint};
+
+TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
+  for (const auto start : kShapes) {
+    for (const auto end : kShapes)
+      ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
+  }
+  // Planes through axes and diagonals, where products are zero or cancel, in every orientation.
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
+      const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {
+        Point q = p;
+        q[k] = slope * p[(k + 1) % 3];
+        return q;
+      });
+      ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "");
+    }
+  }
+}
+
+TEST(FaceTiles, overflow_to_infinity_and_underflow_to_zero_as_rounding_does) {
+  for (const double scale : {3e38, 1e25, 1e19, 1e-19, 1e-25, 1e-37, 1e-44}) {
+    const Motion motion = test::with_positions(fixtures::large_soup(100), [scale](const Point& p) {
+      return Point{scale * p[0], scale * p[1], scale * p[2]};
+    });
+    ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "") << scale;
+  }
+  // Edges beyond the range of float, of which the other is zero or tiny.
+  const float huge = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
+  Motion motion = fixtures::moderate_soup(16);
+  for (auto& keyframe : motion.keyframes) {
+    for (std::size_t f = 0; f < 16; ++f) {
+      const float other = f % 2 == 0 ? 0 : tiny;
+      const float corners[9] = {-huge, 0, 0, huge, huge, 1, -huge, other, 0};
+      std::copy_n(corners, 9, keyframe.positions.data() + 9 * f);
+    }
+  }
+  ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "");
+}
+
+TEST(FaceTiles, have_a_magnitude_that_is_not_far_above_the_products) {
+  const Motion motion = fixtures::large_soup(320);
+  const Segment segment = motion.segment(0);
+  std::vector<ControlTile> tiles(20);
+  face_control_tiles(segment, {0, 320}, tiles);
+  for (std::size_t f = 0; f < 320; ++f)
+    ASSERT_LE(static_cast<long double>(tiles[f / kTile].magnitude[f % kTile]), 12 * largest_products(segment, f));
+}
+
+TEST(FaceTiles, take_polygons) {
+  const Motion motion = fixtures::shaken(fixtures::box_grid(3), 0.3, 6);
+  ASSERT_FALSE(motion.topology.all_triangles());
+  const Segment segment = motion.segment(0);
+  for (std::size_t count = 1; count <= 40; ++count) ASSERT_EQ(difference_on_all_targets(segment, {7, count}), "");
+}
+
+TEST(FaceTiles, agree_where_neighbours_are_far_apart_in_memory) {
+  // Vertices in any order, so that the kernel asks for positions ahead.
+  fixtures::Random random(9);
+  Motion motion = fixtures::moderate_soup(30000);
+  std::vector<std::uint32_t> corners(3000);
+  for (auto& c : corners) c = static_cast<std::uint32_t>(random.below(90000));
+  motion.topology = fixtures::make_triangles(90000, corners);
+  ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "");
+}
+
+TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
+  for (const Motion& motion : {fixtures::shaken(fixtures::icosphere(2), 0.3, 5), fixtures::needle_soup(200),
+                               fixtures::degenerate_soup(fixtures::Shape::kLine, fixtures::Shape::kTriangle)}) {
+    const Segment segment = motion.segment(0);
+    for (const auto target : supported_targets()) {
+      const ScopedTarget scope(target);
+      for (std::size_t count = 1; count <= 40; ++count) {
+        const std::size_t first = count % 7;
+        std::vector<ControlNormals> found(count + 1, ControlNormals{{7, 7, 7}, {7, 7, 7}, {7, 7, 7}});
+        face_control_normals(segment, {first, count}, std::span(found).first(count));
+        for (std::size_t i = 0; i < count; ++i) {
+          const auto a = components(found[i]), b = components(one_face(segment, first + i));
+          ASSERT_TRUE(std::equal(a.begin(), a.end(), b.begin(), same_bits<double>)) << target_name(target) << " " << i;
+        }
+        ASSERT_EQ(found[count].n0.x, 7);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,139 @@
+// The same bits from every instruction set, number of threads and compiler: one constant for all of them.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <ios>
+#include <span>
+#include <vector>
+
+#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/playback.h"
+#include "chronormal/normals/recompute.h"
+#include "simd/targets.h"
+#include "tests/support/integer_mesh.h"
+
+namespace chronormal {
+namespace {
+
+// FNV-1a over words of 32 bits, so that the order of bytes does not matter.
+class Hash {
+ public:
+  void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
+  void add(float v) { add(std::bit_cast<std::uint32_t>(v)); }
+  void add(double v) {
+    const auto bits = std::bit_cast<std::uint64_t>(v);
+    add(static_cast<std::uint32_t>(bits));
+    add(static_cast<std::uint32_t>(bits >> 32));
+  }
+  void add(std::size_t v) { add(static_cast<std::uint32_t>(v)); }
+  void add(const Vec3d& v) {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xCBF29CE484222325u;
+};
+
+struct Results {
+  std::vector<float> xyz, three;
+  std::vector<Octahedral> octahedral;
+  std::vector<Rgb10A2> rgb;
+};
+
+void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
+  const std::size_t n = curves.size();
+  results.xyz.resize(3 * n);
+  results.octahedral.resize(n);
+  results.rgb.resize(n);
+  hash.add(n);
+  hash.add(curves.flagged_count());
+  for (const std::size_t count : curves.degree_counts()) hash.add(count);
+  for (const auto& count : curves.byte_counts()) {
+    hash.add(count.bytes);
+    hash.add(count.elements);
+  }
+  float* const x = results.xyz.data();
+  const auto packed = VectorView<float>::packed(x, n), planes = VectorView<float>::planes(x, x + n, x + 2 * n, n);
+  hash.add(curves.unit_normals(0.34375, packed, Threads::kAll));
+  for (const float v : results.xyz) hash.add(v);
+  hash.add(curves.unit_normals(1, planes, Threads::kAll));
+  for (const float v : results.xyz) hash.add(v);
+  hash.add(curves.unit_normals(0, results.octahedral, Threads::kAll));
+  for (const Octahedral v : results.octahedral) hash.add(v.bits);
+  hash.add(curves.unit_normals(0.8125, results.rgb, Threads::kAll));
+  for (const Rgb10A2 v : results.rgb) hash.add(v.bits);
+  if (curves.keeps_lengths()) {
+    curves.normals(0.34375, packed);
+    for (const float v : results.xyz) hash.add(v);
+  }
+  // Three times at once, and three steps of a playback that is not anchored in between.
+  results.three.resize(9 * n);
+  const double times[] = {0.125, 0.5, 0.9375};
+  VectorView<float> three[3];
+  for (std::size_t k = 0; k < 3; ++k) three[k] = VectorView<float>::packed(results.three.data() + 3 * n * k, n);
+  hash.add(curves.unit_normals(times, three, Threads::kAll));
+  for (const float v : results.three) hash.add(v);
+  NormalPlayback playback(curves, 0.25, 0.0625, 0);
+  hash.add(playback.unplayed_count());
+  for (int step = 0; step < 3; ++step) {
+    hash.add(playback.next(packed));
+    for (const float v : results.xyz) hash.add(v);
+  }
+}
+
+void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
+  results.xyz.resize(3 * recompute.size());
+  const auto packed = VectorView<float>::packed(results.xyz.data(), recompute.size());
+  for (const double t : {0.0, 0.34375, 1.0}) {
+    hash.add(recompute.unit_normals(t, packed, Threads::kAll));
+    for (const float v : results.xyz) hash.add(v);
+  }
+}
+
+// Changes with any bit of any result, and with which format a block gets: to be replaced where that is meant.
+constexpr std::uint64_t kGolden = 0xCC988DB914BAA9AF;
+
+TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {
+  // 67,712 faces are nine parts when they are prepared, and 34,225 vertices three pieces when they are evaluated.
+  const Motion motion = test::integer_grid(184);
+  const Segment segment = motion.segment(0);
+  const NormalGroups groups =
+      NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+  Results results;
+  const auto targets = supported_targets();
+  ASSERT_GE(targets.size(), 1u);
+  for (const std::int64_t target : targets) {
+    const ScopedTarget scoped(target);
+    ASSERT_EQ(current_target(), target);
+    for (const std::size_t threads : {1u, 2u, 3u, 8u}) {
+      const ThreadLimit limit(threads);
+      Hash hash;
+      std::vector<ControlNormals> normals(motion.topology.face_count());
+      face_control_normals(segment, {0, normals.size()}, normals);
+      for (const ControlNormals& c : normals) {
+        hash.add(c.n0);
+        hash.add(c.m);
+        hash.add(c.n1);
+      }
+      for (const double tolerance : {1e-6, 1e-3, 5e-3}) {
+        const CurveOptions options{tolerance};
+        add_curves(hash, NormalCurves::of_faces(segment, options, Threads::kAll), results);
+        add_curves(hash, NormalCurves::of_groups(segment, groups, options, Threads::kAll), results);
+      }
+      add_recompute(hash, NormalRecompute(segment), results);
+      add_recompute(hash, NormalRecompute(segment, groups), results);
+      EXPECT_EQ(hash.value(), kGolden) << std::hex << "0x" << hash.value() << std::dec << " on " << target_name(target)
+                                       << " with " << threads << " threads";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chronormal

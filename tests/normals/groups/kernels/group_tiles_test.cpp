@@ -1,0 +1,301 @@
+// The tiles of vertices and corners against sums in the order that NormalGroups keeps, of faces taken one by one.
+
+#include "normals/groups/kernels/group_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/normals/group_normals.h"
+#include "simd/targets.h"
+#include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+using fixtures::Point;
+
+NormalGroups vertices_of(const Motion& motion) {
+  return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+}
+
+// What the tiles must hold: the public sums of faces, each computed alone and so without vectors of lanes.
+struct Expected {
+  std::vector<ControlNormals> normals;
+  std::vector<double> magnitudes;  // of the terms
+};
+
+Expected expected_of(const Segment& segment, const NormalGroups& groups) {
+  std::vector<ControlNormals> faces(segment.topology->face_count());
+  for (std::size_t f = 0; f < faces.size(); ++f) face_control_normals(segment, {f, 1}, {&faces[f], 1});
+  Expected expected;
+  expected.normals.resize(groups.size());
+  group_control_normals(groups, faces, {0, groups.size()}, expected.normals);
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    double sum = 0;
+    for (const std::uint32_t f : groups.faces(e))
+      sum += std::max({max_abs(faces[f].n0), max_abs(faces[f].m), max_abs(faces[f].n1)});
+    expected.magnitudes.push_back(sum);
+  }
+  return expected;
+}
+
+std::string difference(const Expected& expected, IndexRange elements, std::span<const ControlTile> tiles) {
+  for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
+    const std::size_t e = elements.first + std::min(i, elements.count - 1);
+    const ControlTile& tile = tiles[i / kTile];
+    const std::size_t lane = i % kTile;
+    const ControlNormals& c = expected.normals[e];
+    std::string place = "lane ";
+    place += std::to_string(i) + ", element " + std::to_string(e) + " of " + target_name(current_target()) + ": ";
+    const double components[9] = {c.n0.x, c.n0.y, c.n0.z, c.m.x, c.m.y, c.m.z, c.n1.x, c.n1.y, c.n1.z};
+    for (std::size_t k = 0; k < 9; ++k) {
+      const float rounded = static_cast<float>(components[k]);
+      if (std::memcmp(&tile.normals[k][lane], &rounded, sizeof(float)) != 0)
+        return place + "component " + std::to_string(k) + " is " + std::to_string(tile.normals[k][lane]) + " and not " +
+               std::to_string(rounded);
+    }
+    if (tile.degree[lane] != degree(c)) return place + "degree " + std::to_string(tile.degree[lane]);
+    if (!(static_cast<double>(tile.magnitude[lane]) >= expected.magnitudes[e]))
+      return place + "magnitude " + std::to_string(tile.magnitude[lane]);
+  }
+  return "";
+}
+
+// All elements in ranges of `step`, the first from `first` on, by one object.
+std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
+                                      std::size_t step = 256) {
+  const Expected expected = expected_of(segment, groups);
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    GroupTiles writer(segment, groups);
+    for (std::size_t e = first; e < groups.size(); e += step) {
+      const IndexRange elements{e, std::min(step, groups.size() - e)};
+      std::vector<ControlTile> tiles((elements.count + kTile - 1) / kTile);
+      writer.write(elements, tiles);
+      std::string found = difference(expected, elements, tiles);
+      if (!found.empty()) return found;
+    }
+  }
+  return "";
+}
+
+std::string difference_on_all_targets(const Motion& motion, std::size_t first = 0, std::size_t step = 256) {
+  return difference_on_all_targets(motion.segment(0), vertices_of(motion), first, step);
+}
+
+// A grid of columns x rows cells, twice as many triangles, row by row; every vertex moves.
+Motion grid(std::size_t columns, std::size_t rows) {
+  fixtures::Random random(11);
+  std::vector<Point> from, to;
+  for (std::size_t j = 0; j <= rows; ++j) {
+    for (std::size_t i = 0; i <= columns; ++i) {
+      for (auto* points : {&from, &to}) {
+        const Point noise = random.in_cube(0.3);
+        points->push_back({static_cast<double>(i) + noise[0], static_cast<double>(j) + noise[1], noise[2]});
+      }
+    }
+  }
+  std::vector<std::uint32_t> corners;
+  const auto vertex = [columns](std::size_t i, std::size_t j) {
+    return static_cast<std::uint32_t>(j * (columns + 1) + i);
+  };
+  for (std::size_t j = 0; j < rows; ++j) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      corners.insert(corners.end(), {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+      corners.insert(corners.end(), {vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+    }
+  }
+  return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
+}
+
+// The same mesh with faces, and vertices if asked for, in another order.
+Motion in_another_order(const Motion& motion, bool vertices_too) {
+  const std::size_t vertex_count = motion.topology.vertex_count();
+  std::vector<std::size_t> place(vertex_count);
+  for (std::size_t v = 0; v < vertex_count; ++v) place[v] = v;
+  if (vertices_too) place = test::shuffled_order(vertex_count, 3);
+  Motion result = motion;
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    for (std::size_t v = 0; v < vertex_count; ++v)
+      std::copy_n(motion.keyframes[k].positions.data() + 3 * v, 3, result.keyframes[k].positions.data() + 3 * place[v]);
+  }
+  std::vector<std::uint32_t> corners;
+  for (const std::size_t f : test::shuffled_order(motion.topology.face_count(), 4)) {
+    for (const std::uint32_t v : motion.topology.face(f)) corners.push_back(static_cast<std::uint32_t>(place[v]));
+  }
+  result.topology = fixtures::make_triangles(vertex_count, corners);
+  return result;
+}
+
+TEST(GroupTiles, have_the_bits_of_the_public_sums_for_every_count_and_offset) {
+  const Motion motion = fixtures::shaken(fixtures::icosphere(2), 0.3, 5);
+  const NormalGroups groups = vertices_of(motion);
+  for (std::size_t count = 1; count <= 40; ++count)
+    ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups, count % 11, count), "");
+}
+
+TEST(GroupTiles, agree_where_the_window_is_too_small_at_first) {
+  ASSERT_EQ(difference_on_all_targets(grid(1500, 6)), "");        // rows of 3000 faces
+  ASSERT_EQ(difference_on_all_targets(grid(1500, 6), 5003), "");  // begins in the middle
+  ASSERT_EQ(difference_on_all_targets(grid(9, 900)), "");
+}
+
+TEST(GroupTiles, agree_where_rows_are_longer_than_the_largest_window) {
+  ASSERT_EQ(difference_on_all_targets(grid(FaceWindow::kLargest * 2 / 3, 3)), "");
+}
+
+TEST(GroupTiles, agree_in_any_order_of_faces_and_vertices) {
+  for (const Motion& motion : {fixtures::shaken(fixtures::icosphere(2), 0.3, 5), grid(70, 70), grid(250, 60)}) {
+    ASSERT_EQ(difference_on_all_targets(in_another_order(motion, false)), "");
+    ASSERT_EQ(difference_on_all_targets(in_another_order(motion, true)), "");
+    ASSERT_EQ(difference_on_all_targets(in_another_order(motion, true), 1000, 48), "");
+  }
+}
+
+TEST(GroupTiles, do_not_depend_on_the_ranges_before) {
+  const Motion motion = grid(700, 12);
+  const Segment segment = motion.segment(0);
+  const NormalGroups groups = vertices_of(motion);
+  const Expected expected = expected_of(segment, groups);
+  fixtures::Random random(12);
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    GroupTiles writer(segment, groups);
+    for (int i = 0; i < 300; ++i) {
+      const std::size_t first = random.below(groups.size()), count = 1 + random.below(200);
+      const IndexRange elements{first, std::min(count, groups.size() - first)};
+      std::vector<ControlTile> tiles((elements.count + kTile - 1) / kTile);
+      writer.write(elements, tiles);
+      ASSERT_EQ(difference(expected, elements, tiles), "");
+    }
+  }
+}
+
+TEST(GroupTiles, take_corners_at_creases_and_polygons) {
+  for (const bool of_polygons : {false, true}) {
+    const Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(5) : fixtures::icosphere(2), 0.1, 6);
+    ASSERT_EQ(difference_on_all_targets(motion), "");
+    for (const double degrees : {0.0, 20.0, 60.0, 180.0}) {
+      const auto groups =
+          NormalGroups::by_crease_angle(motion, separate_points(motion.topology.vertex_count()), degrees);
+      ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups.value()), "");
+    }
+  }
+}
+
+TEST(GroupTiles, are_zero_where_no_face_is) {
+  // Faces between vertices 20 to 22 and 60 to 62 of 100.
+  std::vector<Point> from, to;
+  fixtures::Random random(13);
+  for (std::size_t v = 0; v < 100; ++v) {
+    from.push_back(random.in_cube(1));
+    to.push_back(random.in_cube(1));
+  }
+  const Motion motion = fixtures::make_motion(fixtures::make_triangles(100, {20, 21, 22, 60, 61, 62}), from, to);
+  ASSERT_EQ(difference_on_all_targets(motion), "");
+  const NormalGroups groups = vertices_of(motion);
+  GroupTiles writer(motion.segment(0), groups);
+  std::vector<ControlTile> tiles(1);
+  writer.write({3, 5}, tiles);
+  EXPECT_EQ(tiles[0].magnitude[0], 0);
+  EXPECT_EQ(tiles[0].degree[0], 0);
+
+  const Motion empty = fixtures::make_motion(fixtures::make_triangles(100, {}), from, to);
+  ASSERT_EQ(difference_on_all_targets(empty), "");
+}
+
+TEST(GroupTiles, take_a_vertex_of_many_faces) {
+  for (const std::size_t count : std::initializer_list<std::size_t>{99, 100, 101, 700, 5000}) {
+    std::vector<Point> from = {{0, 0, 1}}, to = {{0.1, 0.2, 1.5}};
+    std::vector<std::uint32_t> corners;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(count);
+      from.push_back({std::cos(angle), std::sin(angle), 0});
+      to.push_back({std::cos(angle), 2 * std::sin(angle), 0.25});
+      corners.insert(corners.end(),
+                     {0U, static_cast<std::uint32_t>(1 + i), static_cast<std::uint32_t>(1 + (i + 1) % count)});
+    }
+    ASSERT_EQ(difference_on_all_targets(fixtures::make_motion(fixtures::make_triangles(count + 1, corners), from, to)),
+              "")
+        << count;
+  }
+}
+
+TEST(GroupTiles, have_no_noise_where_faces_cancel) {
+  // Every face twice, the other way round, in an order of its own; then some of them once more.
+  for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
+    Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
+    std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
+    const std::size_t faces = corners.size() / 3;
+    for (std::size_t f = 0; f < faces; ++f)
+      corners.insert(corners.end(), {corners[3 * f + 1], corners[3 * f], corners[3 * f + 2]});
+    for (std::size_t i = 0; i < 3 * more; ++i) corners.push_back(corners[i]);
+    motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
+    ASSERT_EQ(difference_on_all_targets(motion), "");
+  }
+  // A flat sheet, and one that stands on an axis.
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double slope : {0.0, 1.0, 1.0 / 3}) {
+      const Motion flat = test::with_positions(grid(20, 20), [k, slope](const Point& p) {
+        Point q = p;
+        q[k] = slope * p[(k + 1) % 3];
+        return q;
+      });
+      ASSERT_EQ(difference_on_all_targets(flat), "");
+    }
+  }
+}
+
+TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
+  for (const double scale : {1e25, 1e19, 1e6, 1e-6, 1e-19, 1e-25, 1e-40}) {
+    for (const double offset : {0.0, 1000.0}) {
+      const Motion motion = test::with_positions(grid(12, 12), [scale, offset](const Point& p) {
+        return Point{scale * (p[0] + offset), scale * (p[1] - offset), scale * p[2]};
+      });
+      ASSERT_EQ(difference_on_all_targets(motion), "") << scale << " " << offset;
+    }
+  }
+}
+
+TEST(GroupTiles, have_the_degree_of_the_sum) {
+  Motion motion = grid(30, 30);
+  auto& to = motion.keyframes[1].positions;
+  const auto& from = motion.keyframes[0].positions;
+  to = from;
+  ASSERT_EQ(difference_on_all_targets(motion), "");
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = i % 3 == 0 ? 4 * from[i] : from[i];
+  ASSERT_EQ(difference_on_all_targets(motion), "");
+  for (std::size_t i = 0; i < to.size() / 2; ++i) to[i] = from[i];
+  ASSERT_EQ(difference_on_all_targets(motion), "");
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + static_cast<float>(i % 7) * 1e-6F;
+  ASSERT_EQ(difference_on_all_targets(motion), "");
+}
+
+TEST(GroupTiles, read_positions_in_planes) {
+  const Motion motion = grid(40, 40);
+  Segment segment = motion.segment(0);
+  const std::size_t n = segment.from.count;
+  std::vector<float> planes(6 * n);
+  const auto from = VectorView<float>::planes(planes.data(), planes.data() + n, planes.data() + 2 * n, n);
+  const auto to = VectorView<float>::planes(planes.data() + 3 * n, planes.data() + 4 * n, planes.data() + 5 * n, n);
+  for (std::size_t v = 0; v < n; ++v) {
+    from.set(v, segment.from[v]);
+    to.set(v, segment.to[v]);
+  }
+  segment.from = from;
+  segment.to = to;
+  ASSERT_EQ(difference_on_all_targets(segment, vertices_of(motion)), "");
+}
+
+}  // namespace
+}  // namespace chronormal

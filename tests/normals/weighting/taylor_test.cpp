@@ -1,0 +1,111 @@
+// Intervals and Taylor coefficients in them: what they promise to contain.
+
+#include "normals/weighting/taylor.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+using Real = long double;
+
+bool contains(const Interval& a, Real x) { return Real(a.low) <= x && x <= Real(a.high); }
+
+RC_GTEST_PROP(Interval, results_contain_those_of_all_numbers_inside, ()) {
+  fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
+  const auto any = [&] {
+    const double middle = random.uniform(-2, 2) * std::pow(10, random.uniform(-9, 9));
+    const double radius = std::fabs(middle) * random.uniform(0, 1.5) * (random.below(3) == 0 ? 0 : 1);
+    return Interval{middle - radius, middle + radius};
+  };
+  const auto inside = [&](const Interval& a) {
+    const double x = a.low + random.uniform(0, 1) * (a.high - a.low);
+    return Real(std::fmin(std::fmax(x, a.low), a.high));
+  };
+  for (int round = 0; round < 50; ++round) {
+    const Interval a = any(), b = any();
+    const Real x = inside(a), y = inside(b);
+    RC_ASSERT(contains(a + b, x + y));
+    RC_ASSERT(contains(a - b, x - y));
+    RC_ASSERT(contains(a * b, x * y));
+    RC_ASSERT(contains((1 / 3.0) * b, y / 3));
+    RC_ASSERT(contains(square(a), x * x) && square(a).low >= 0);
+    RC_ASSERT(contains(reciprocal(a), 1 / x));
+    if (a.low >= 0) RC_ASSERT(contains(square_root(a), std::sqrt(x)));
+    const Interval upper = square(b);
+    const Real z = y * y;
+    RC_ASSERT(contains(angle_of(upper, a), std::atan2(z, x)));
+  }
+}
+
+TEST(Interval, what_is_not_defined_everywhere_is_the_whole_line) {
+  EXPECT_FALSE(reciprocal({-1, 2}).finite());
+  EXPECT_FALSE(reciprocal({0, 2}).finite());
+  EXPECT_FALSE(square_root({-1e-300, 2}).finite());
+  EXPECT_FALSE(angle_of({0, 1}, {-1, 1}).finite()) << "the origin is inside";
+  EXPECT_FALSE((Interval::whole() * Interval{0, 0}).finite());
+  EXPECT_FALSE((Interval::whole() - Interval::whole()).finite());
+}
+
+// p(t) = 1 + a t + b t^2 with coefficients so small that it stays positive over [-1, 1].
+struct Quadratic {
+  double a, b;
+
+  [[nodiscard]] Real operator()(Real t) const { return 1 + a * t + b * t * t; }
+  [[nodiscard]] Series<3> about(double c) const {
+    const auto point = Interval::point;
+    const Interval first = point(a) + 2.0 * (point(b) * point(c));
+    return {point(1) + point(c) * (point(a) + point(b) * point(c)), first, point(b)};
+  }
+};
+
+RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
+  fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
+  const Quadratic p{random.uniform(-0.6, 0.6), random.uniform(-0.3, 0.3)};
+  const double centre = random.uniform(-0.5, 0.5), half = random.uniform(0.01, 0.4);
+  for (const double exponent : {-0.5, 0.5, -1.0}) {
+    const auto series = [&](const Interval& around) {
+      const Series<3> here = shifted(p.about(centre), around);
+      const Interval root = exponent == -1 ? here[0] : square_root(here[0]);
+      return power<6>(here, exponent, exponent == 0.5 ? root : reciprocal(root));
+    };
+    const Series<6> at_centre = series({0, 0}), everywhere = series({-half, half});
+    for (int round = 0; round < 20; ++round) {
+      const double s = random.uniform(-half, half);
+      Interval value = everywhere[5] * Interval::point(s);
+      for (std::size_t k = 5; k > 1; --k) value = (value + at_centre[k - 1]) * Interval::point(s);
+      value = value + at_centre[0];
+      const Real truth = std::pow(p(Real(centre) + Real(s)), Real(exponent));
+      RC_ASSERT(Real(value.low) <= truth + 1e-18L && truth <= Real(value.high) + 1e-18L);
+      // And every coefficient about another point of the interval lies in that about all of them.
+      const Series<3> there = p.about(centre + s);
+      const Interval root = exponent == -1 ? there[0] : square_root(there[0]);
+      const Series<6> other = power<6>(there, exponent, exponent == 0.5 ? root : reciprocal(root));
+      for (std::size_t k = 0; k < 6; ++k) {
+        RC_ASSERT(everywhere[k].low <= other[k].high && other[k].low <= everywhere[k].high);
+      }
+    }
+  }
+}
+
+RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
+  // So the enclosure is not so wide that it would hide a remainder that is missing.
+  fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
+  const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
+  const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));
+  Interval value;
+  for (std::size_t k = 5; k > 0; --k) value = value * Interval::point(0.4) + taylor[k - 1];
+  RC_ASSERT(value.high - value.low < 1e-14);
+  RC_ASSERT(!contains(value, 1 / std::sqrt(p(0.4L))));
+}
+
+}  // namespace
+}  // namespace chronormal

@@ -1,0 +1,212 @@
+#include "chronormal/workflow/inspect.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/normal_curves.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+constexpr double kDegree = 1 / kDegreesPerRadian;
+
+using Positions = std::vector<float>;
+
+// A triangle with a fourth vertex in no face, at as many keyframes as there are lists of positions.
+Motion triangle_motion(const std::vector<Positions>& keyframes) {
+  Motion motion;
+  motion.topology = fixtures::make_triangles(3, {0, 1, 2});
+  for (const Positions& positions : keyframes)
+    motion.keyframes.push_back({positions, static_cast<double>(motion.keyframes.size()), ""});
+  if (keyframes.size() > 1) motion.connect_as_sequence();
+  return motion;
+}
+
+const Positions kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const Positions kMirrored = {0, 0, 0, 1, 0, 0, 0, -1, 0};
+const Positions kLine = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+const Positions kOtherLine = {0, 0, 0, 0, 1, 0, 0, 3, 0};
+const Positions kStanding = {0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+TEST(Inspect, numbers_of_a_small_motion_by_hand) {
+  Motion motion = triangle_motion({kTriangle, kStanding, kStanding});
+  motion.keyframes[2].time = 5;
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.vertices, 3U);
+  EXPECT_EQ(found.faces, 1U);
+  EXPECT_EQ(found.keyframes, 3U);
+  EXPECT_EQ(found.first_time, 0);
+  EXPECT_EQ(found.last_time, 5);
+  EXPECT_EQ(found.high, (Vec3d{1, 1, 1}));
+  EXPECT_NEAR(found.diagonal, std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(found.motion.value, std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(found.motion.element, 2U);
+  EXPECT_NEAR(found.turn.value, 90 * kDegree, 1e-12);
+  ASSERT_EQ(found.segments.size(), 2U);
+  EXPECT_EQ(found.segments[0].moved_vertices, 1U);
+  EXPECT_EQ(found.segments[1].moved_vertices, 0U);
+  EXPECT_EQ(found.segments[1].turn.value, 0);
+  EXPECT_EQ(found.turned_far.pairs, 0U);
+  EXPECT_EQ(found.no_area.pairs + found.slivers.pairs + found.collapses.pairs + found.without_normals.pairs, 0U);
+  EXPECT_EQ(found.keyframe_bytes, 3U * 36U);
+}
+
+TEST(Inspect, face_without_area_is_found_at_its_keyframe_and_once_for_all_segments_there) {
+  const Inspection found = inspect(triangle_motion({kTriangle, kLine, kTriangle, kLine}));
+  EXPECT_EQ(found.no_area.pairs, 2U);
+  EXPECT_EQ(found.no_area.faces, 1U);
+  EXPECT_EQ(found.no_area.first_at, 1U);
+  EXPECT_EQ(found.without_normals.pairs, 0U);
+  EXPECT_EQ(found.collapses.pairs, 0U);
+}
+
+TEST(Inspect, face_that_turns_over_is_found_with_its_segment_and_instant) {
+  Motion motion = triangle_motion({kTriangle, kTriangle, kMirrored, kTriangle});
+  motion.keyframes[3].positions[7] = 3;
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.collapses.pairs, 2U);
+  EXPECT_EQ(found.collapses.faces, 1U);
+  EXPECT_EQ(found.turned_over.pairs, 2U);
+  EXPECT_EQ(found.turned_over.first_at, 1U);
+  EXPECT_NEAR(found.turned_over.first_t, 0.5, 1e-12);
+  EXPECT_EQ(found.segments[2].turned_over, 1U);
+  EXPECT_EQ(found.turned_far.pairs, 2U);
+  EXPECT_NEAR(found.turn.value, 180 * kDegree, 1e-12);
+  EXPECT_EQ(found.no_area.pairs, 0U);
+}
+
+TEST(Inspect, face_that_shrinks_and_comes_back_collapses_but_does_not_turn_over) {
+  const Inspection found = inspect(fixtures::point_reflected_soup(50));
+  EXPECT_EQ(found.collapses.faces, 50U);
+  EXPECT_EQ(found.turned_over.faces, 0U);
+  EXPECT_EQ(found.turned_far.faces, 0U);
+}
+
+TEST(Inspect, face_on_a_line_throughout_has_no_normal_and_one_between_two_lines_has) {
+  const Inspection still = inspect(triangle_motion({kLine, kLine}));
+  EXPECT_EQ(still.without_normals.pairs, 1U);
+  EXPECT_EQ(still.no_area.pairs, 2U);
+  EXPECT_EQ(inspect(triangle_motion({kLine, kOtherLine})).without_normals.pairs, 0U);
+}
+
+TEST(Inspect, sliver_is_what_rounding_can_turn) {
+  // At a distance of 1000 neighbouring floats are 6e-5 apart.
+  Positions sliver = {1000, 0, 0, 1001, 0, 0, 1002, 0, 0}, narrow = sliver;
+  sliver[7] = 0x1p-14F;
+  narrow[7] = 0x1p-9F;
+  const Inspection found = inspect(triangle_motion({sliver, narrow}));
+  EXPECT_EQ(found.slivers.pairs, 1U);
+  EXPECT_EQ(found.slivers.first_at, 0U);
+  EXPECT_EQ(found.no_area.pairs, 0U);
+}
+
+TEST(Inspect, mesh_without_motion_and_keyframe_without_segment_are_inspected_too) {
+  const Inspection mesh = inspect(triangle_motion({kLine}));
+  EXPECT_EQ(mesh.no_area.pairs, 1U);
+  EXPECT_TRUE(mesh.segments.empty());
+  EXPECT_EQ(mesh.normal_bytes, 0U);
+  Motion motion = triangle_motion({kTriangle, kStanding, kLine});
+  motion.segments = {{0, 1}};
+  EXPECT_EQ(inspect(motion).no_area.first_at, 2U);
+}
+
+TEST(Inspect, vertices_that_part_later_are_doubled_at_the_start_only) {
+  Motion motion;
+  motion.topology = fixtures::make_triangles(7, {0, 1, 2, 3, 4, 5});
+  // 3 stays on 0, 4 leaves 1, 6 is in no face.
+  motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0, 9, 9, 9}, 0, ""},
+                      {{0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0, 0, -1, 0, 9, 9, 9}, 1, ""}};
+  motion.connect_as_sequence();
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.doubled, (Found{1, 3}));
+  EXPECT_EQ(found.doubled_at_start, (Found{2, 3}));
+  EXPECT_EQ(found.surface.unreferenced, (Found{1, 6}));
+  EXPECT_EQ(found.surface.pieces, 1U);
+  EXPECT_EQ(found.surface.edges, 6U);
+
+  // Of two bodies they are two triangles that only lie on each other.
+  motion.body_of_vertex = {0, 0, 0, 1, 1, 1, 1};
+  const Inspection apart = inspect(motion);
+  EXPECT_EQ(apart.doubled.count, 0U);
+  EXPECT_EQ(apart.doubled_at_start.count, 0U);
+  EXPECT_EQ(apart.surface.pieces, 2U);
+}
+
+TEST(Inspect, flagged_and_bytes_are_those_of_normal_curves) {
+  for (const Motion& motion :
+       {fixtures::large_soup(3000), fixtures::smooth_morph(16), make_builtin_morph("eversion").value()}) {
+    const Inspection found = inspect(motion);
+    std::size_t flagged = 0, bytes = 0;
+    for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+      std::vector<ControlNormals> normals(motion.topology.face_count());
+      face_control_normals(motion.segment(s), {0, normals.size()}, normals);
+      const NormalCurves curves(normals);
+      flagged += curves.flagged_count();
+      bytes += curves.bytes();
+    }
+    EXPECT_EQ(found.flagged, flagged);
+    EXPECT_EQ(found.normal_bytes, bytes);
+  }
+}
+
+TEST(Inspect, knows_a_star_from_a_sequence_by_its_segments) {
+  Motion motion = triangle_motion({kTriangle, kMirrored, kStanding, kMirrored});
+  motion.segments = {{0, 1}, {0, 2}, {0, 3}};
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.turned_over.pairs, 2U);
+  EXPECT_EQ(found.turned_over.faces, 1U);
+  EXPECT_EQ(found.segments[1].collapses, 0U);
+  EXPECT_EQ(found.segments[2].collapses, 1U);
+}
+
+TEST(Inspect, many_segments_count_each_face_once_and_each_pair) {
+  Motion motion = fixtures::inside_out_soup(100);
+  const auto first = motion.keyframes[0], second = motion.keyframes[1];
+  for (int k = 2; k < 40; ++k) {
+    motion.keyframes.push_back(k % 2 == 0 ? first : second);
+    motion.keyframes.back().time = k;
+  }
+  motion.segments.clear();
+  motion.connect_as_sequence();
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.turned_over.pairs, 39U * 100U);
+  EXPECT_EQ(found.turned_over.faces, 100U);
+  EXPECT_EQ(found.turned_over.first_at, 0U);
+  EXPECT_EQ(found.turned_over.first_face, 0U);
+}
+
+TEST(Inspect, same_shape_in_another_unit_has_the_same_trouble) {
+  Motion motion = fixtures::large_soup(2000);
+  const Inspection found = inspect(motion);
+  for (Motion::Keyframe& keyframe : motion.keyframes) {
+    for (float& c : keyframe.positions) c *= 0x1p40F;
+  }
+  const Inspection scaled = inspect(motion);
+  EXPECT_GT(found.turned_far.pairs, 500U);
+  EXPECT_EQ(scaled.turned_far.pairs, found.turned_far.pairs);
+  EXPECT_EQ(scaled.slivers.pairs, found.slivers.pairs);
+  EXPECT_EQ(scaled.flagged, found.flagged);
+  EXPECT_EQ(scaled.diagonal, found.diagonal * 0x1p40);
+  EXPECT_EQ(scaled.turn.value, found.turn.value);
+}
+
+TEST(Inspect, progress_reaches_its_end) {
+  std::size_t last = 0, total = 0;
+  (void)inspect(triangle_motion({kTriangle, kLine, kTriangle, kLine, kTriangle}),
+                [&](std::size_t done, std::size_t all) {
+                  EXPECT_GT(done, last);
+                  last = done;
+                  total = all;
+                });
+  EXPECT_EQ(last, 4U);
+  EXPECT_EQ(total, 4U);
+}
+
+}  // namespace
+}  // namespace chronormal
