@@ -32,8 +32,9 @@
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
-#include "chronormal/analysis/quality.h"  // angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
+#include "chronormal/analysis/surface.h"            // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
 #include "chronormal/io/file.h"            // whole files in, and out without ever half a one

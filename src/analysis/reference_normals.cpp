@@ -1,4 +1,4 @@
-#include "analysis/reference_normals.h"
+#include "chronormal/analysis/reference_normals.h"
 
 #include <cassert>
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/reference_normals.h"
+#include "chronormal/analysis/reference_normals.h"
 
 namespace chronormal {
 namespace {

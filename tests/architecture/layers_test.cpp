@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +35,7 @@ const std::vector<Floor> kFloors = {
     {"cli", {}},
 };
 
-const fs::path kRoot = CHRONORMAL_SOURCE_DIR;
+const fs::path kRoot = chronormal::kSourceFolder;
 
 std::string read(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -164,7 +166,7 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
 }
 
 TEST(Layers, the_reference_includes_no_scheme_and_no_control_normals) {
-  for (const char* file : {"src/analysis/reference_normals.h", "src/analysis/reference_normals.cpp",
+  for (const char* file : {"include/chronormal/analysis/reference_normals.h", "src/analysis/reference_normals.cpp",
                            "include/chronormal/analysis/quality.h", "src/analysis/quality.cpp"}) {
     const std::string text = read(kRoot / file);
     EXPECT_FALSE(text.empty()) << file;

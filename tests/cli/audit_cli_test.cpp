@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/gltf_builder.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
@@ -32,7 +33,7 @@ class AuditCli : public testing::Test {
     folder_.write("hinge.glb", builder.glb());
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " audit " + arguments, folder_.path(), input);
+    return run_shell(std::string(kProgram) + " audit " + arguments, folder_.path(), input);
   }
   [[nodiscard]] std::string text_of(const std::string& arguments, const std::string& input = "") const {
     const ProcessResult result = run(arguments, input);

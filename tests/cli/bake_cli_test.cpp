@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/bake_fixture.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -29,7 +30,7 @@ class BakeCli : public testing::Test {
     folder_.write("f_2.obj", "v 0 0 1\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 3 2 4\n");
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " bake " + arguments, folder_.path(), input);
+    return run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), input);
   }
   [[nodiscard]] std::string bytes_of(const std::string& name) const { return test::read_whole(folder_ / name); }
   void expect_error(const std::string& arguments, int exit_code, const std::string& word) const {
@@ -82,7 +83,7 @@ TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
   const ProcessResult hard = run("roof_0.obj roof_1.obj -o hard.glb");
   EXPECT_EQ(hard.exit_code, 0) << hard.err;
   expect_words(hard.out, {" 6 vertices"});
-  EXPECT_EQ(run_shell(CHRONORMAL_PROGRAM " audit hard.glb --tolerance 0.01", folder_.path()).exit_code, 0);
+  EXPECT_EQ(run_shell(std::string(kProgram) + " audit hard.glb --tolerance 0.01", folder_.path()).exit_code, 0);
 }
 
 TEST_F(BakeCli, json_is_one_object_with_schema_1) {
@@ -133,7 +134,7 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
                            " fitted to the weights of the file\n"});
   EXPECT_EQ(Json::parse(run("moving.glb -o json.glb --encode endpoint --json").out)["meshes"][0]["fitted_normals"], 24);
   const auto audit = [&](const std::string& name) {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " audit " + name, folder_.path()).out;
+    return run_shell(std::string(kProgram) + " audit " + name, folder_.path()).out;
   };
   expect_words(audit("moving.glb"), {"chronormal bake moving.glb"});
   expect_words(audit("out.glb"), {"the file was baked before, with one delta per target", "--encode exact"});

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,7 +26,7 @@ class InterruptedBake : public testing::Test {
   }
 
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
-    return run_shell(before + CHRONORMAL_PROGRAM " " + arguments, folder_.path());
+    return run_shell(before + kProgram + " " + arguments, folder_.path());
   }
   // Bakes over a file in a folder, which must fail with exit code 1 and leave it.
   void expect_refused(const std::string& folder) const {

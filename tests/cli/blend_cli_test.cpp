@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/gltf_builder.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
@@ -32,7 +33,7 @@ class BlendCli : public testing::Test {
     folder_.write("sheet.glb", builder.glb());
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments) const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " compare " + arguments, folder_.path());
+    return run_shell(std::string(kProgram) + " compare " + arguments, folder_.path());
   }
   [[nodiscard]] Json json_of(const std::string& arguments) const {
     const ProcessResult result = run("--json " + arguments);

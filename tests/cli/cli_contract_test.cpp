@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace chronormal {
@@ -29,7 +30,7 @@ class Cli : public testing::Test {
 
   // Runs `chronormal ARGUMENTS` in a folder of its own.
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " " + arguments, folder_.string(), input);
+    return run_shell(std::string(kProgram) + " " + arguments, folder_.string(), input);
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   [[nodiscard]] std::string read(const std::string& name) const {
@@ -54,7 +55,7 @@ void expect_error(const ProcessResult& result, int exit_code, const std::vector<
 }
 
 TEST_F(Cli, version_and_help_go_to_stdout) {
-  EXPECT_EQ(run("--version").out, "chronormal " CHRONORMAL_VERSION "\n");
+  EXPECT_EQ(run("--version").out, std::string("chronormal ") + kVersion + "\n");
   EXPECT_EQ(run("--version").exit_code, 0);
   const ProcessResult help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
@@ -149,7 +150,7 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
   const Json json = Json::parse(result.out);
-  EXPECT_EQ(json["chronormal"], CHRONORMAL_VERSION);
+  EXPECT_EQ(json["chronormal"], kVersion);
   EXPECT_EQ(json["command"], "compare");
   EXPECT_EQ(json["schema"], 1);
   EXPECT_EQ(json["input"]["vertices"], 3);
@@ -342,8 +343,8 @@ TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) {
 
 TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
   if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";
-  const std::string command = std::string(CHRONORMAL_PROGRAM) +
-                              " compare --sample eversion --schemes linear:scaled,quaternion:optimal --samples 101";
+  const std::string command =
+      std::string(kProgram) + " compare --sample eversion --schemes linear:scaled,quaternion:optimal --samples 101";
   const ProcessResult shown = run_shell("script -qec '" + command + "' /dev/null", folder_.string());
   EXPECT_NE(shown.out.find("comparing ["), std::string::npos);
   EXPECT_NE(shown.out.find("\033[K"), std::string::npos);

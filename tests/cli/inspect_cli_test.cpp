@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/gltf_builder.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -26,7 +27,7 @@ class InspectCli : public testing::Test {
     folder_.write("quad.glb", test::quad_document().glb());
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " inspect " + arguments, folder_.path(), input);
+    return run_shell(std::string(kProgram) + " inspect " + arguments, folder_.path(), input);
   }
   [[nodiscard]] std::string text_of(const std::string& arguments, const std::string& input = "") const {
     const ProcessResult result = run(arguments, input);
@@ -78,7 +79,7 @@ TEST_F(InspectCli, trouble_says_what_where_and_what_it_means) {
 
 TEST_F(InspectCli, json_is_one_object_with_schema_1) {
   const Json json = json_of("a.obj over.obj a.obj");
-  EXPECT_EQ(json["chronormal"], CHRONORMAL_VERSION);
+  EXPECT_EQ(json["chronormal"], kVersion);
   EXPECT_EQ(json["command"], "inspect");
   EXPECT_EQ(json["schema"], 1);
   EXPECT_EQ(json["input"],

@@ -18,6 +18,7 @@
 
 #include "tests/support/array_file.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -40,7 +41,7 @@ class SampleCli : public testing::Test {
   }
 
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " sample " + arguments, folder_.path(), input);
+    return run_shell(std::string(kProgram) + " sample " + arguments, folder_.path(), input);
   }
   void expect_error(const std::string& arguments, int exit_code, const std::string& word) const {
     const ProcessResult result = run(arguments);
@@ -240,8 +241,7 @@ TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
 }
 
 TEST_F(SampleCli, hard_edges_are_those_of_the_first_mesh) {
-  ASSERT_EQ(run_shell(std::string(CHRONORMAL_PROGRAM) + " convert b.obj a.obj -o cache.pc2", folder_.path()).exit_code,
-            0);
+  ASSERT_EQ(run_shell(std::string(kProgram) + " convert b.obj a.obj -o cache.pc2", folder_.path()).exit_code, 0);
   const std::string options = " --elements corners --hard-edges groups ";
   const std::string expected = array_of("b.obj a.obj --times 0.25" + options).elements;
   EXPECT_NE(array_of("b.obj a.obj --times 0.25 --elements corners").elements, expected);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
@@ -25,7 +26,7 @@ class TargetsCli : public testing::Test {
     folder_.write("smile.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 2\nf 1 2 3\nf 1 3 4\n");
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
-    return run_shell(std::string(CHRONORMAL_PROGRAM) + " " + arguments, folder_.path(), input);
+    return run_shell(std::string(kProgram) + " " + arguments, folder_.path(), input);
   }
   [[nodiscard]] Json json_of(const std::string& arguments, const std::string& input = "") const {
     const ProcessResult result = run("compare --json --no-times --schemes linear " + arguments, input);

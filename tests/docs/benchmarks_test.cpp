@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,11 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-const fs::path kDocs = fs::path(CHRONORMAL_SOURCE_DIR) / "docs";
-const fs::path kResults = fs::path(CHRONORMAL_SOURCE_DIR) / "bench" / "results";
+const fs::path kDocs = fs::path(kSourceFolder) / "docs";
+const fs::path kResults = fs::path(kSourceFolder) / "bench" / "results";
 
 ProcessResult generate(const std::string& results, const std::string& folder) {
-  std::string command = CHRONORMAL_BUILD_DIR;
+  std::string command = kBuildFolder;
   command += "/tools/benchmarks/chronormal_benchmarks '" + results + "' .";
   return run_shell(command, folder);
 }

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace chronormal {
@@ -25,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
-const fs::path kRoot = CHRONORMAL_SOURCE_DIR;
+const fs::path kRoot = kSourceFolder;
 
 Lines lines_of(const std::string& text) {
   Lines lines;
@@ -73,8 +74,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 // Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
-  command = replaced(command, "build/release", CHRONORMAL_BUILD_DIR);
-  command = replaced(command, "./run ", CHRONORMAL_PROGRAM " ");
+  command = replaced(command, "build/release", kBuildFolder);
+  command = replaced(command, "./run ", std::string(kProgram) + " ");
   return run_shell("{ " + command + "\n} 2>&1", folder.string());
 }
 
@@ -197,7 +198,7 @@ TEST(Documents, links_to_files_lead_somewhere) {
 }
 
 TEST(Documents, the_changelog_knows_the_version) {
-  EXPECT_NE(read(kRoot / "CHANGELOG.md").find("## " CHRONORMAL_VERSION), std::string::npos);
+  EXPECT_NE(read(kRoot / "CHANGELOG.md").find(std::string("## ") + kVersion), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/support/child_process.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kDocs = fs::path(CHRONORMAL_SOURCE_DIR) / "docs";
+const fs::path kDocs = fs::path(kSourceFolder) / "docs";
 
 // The page without what stands between the marks of the block of times; "" where there is not one such block.
 std::string without_times(const std::string& page) {
@@ -48,8 +49,7 @@ std::string first_difference(const std::string& a, const std::string& b) {
 TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
   if (test::is_sanitized()) GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
   const test::TemporaryFolder folder;
-  const ProcessResult result =
-      run_shell(std::string(CHRONORMAL_BUILD_DIR) + "/tools/paper/chronormal_paper .", folder.path());
+  const ProcessResult result = run_shell(std::string(kBuildFolder) + "/tools/paper/chronormal_paper .", folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
 
   const std::string committed = without_times(test::read_whole((kDocs / "paper.md").string()));

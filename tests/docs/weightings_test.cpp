@@ -14,6 +14,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "tests/support/child_process.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kDocs = fs::path(CHRONORMAL_SOURCE_DIR) / "docs";
+const fs::path kDocs = fs::path(kSourceFolder) / "docs";
 
 std::string begin_of(const std::string& block) { return "<!-- " + block + " -->\n"; }
 std::string end_of(const std::string& block) { return "<!-- end of " + block + " -->\n"; }
@@ -60,8 +61,8 @@ std::string first_difference(const std::string& a, const std::string& b) {
 TEST(Weightings, page_and_picture_are_what_the_generator_writes) {
   if (test::is_sanitized()) GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
   const test::TemporaryFolder folder;
-  const ProcessResult result = run_shell(
-      std::string(CHRONORMAL_BUILD_DIR) + "/tools/weightings/chronormal_weightings --partial .", folder.path());
+  const ProcessResult result =
+      run_shell(std::string(kBuildFolder) + "/tools/weightings/chronormal_weightings --partial .", folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string page = test::read_whole((kDocs / "weightings.md").string());
   std::string committed = page, generated = test::read_whole(folder / "weightings.md");

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/mesh/obj.h"
 #include "weightings/sections.h"
 
 namespace chronormal::weightings {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/reference_normals.h"
+#include "chronormal/analysis/reference_normals.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/group_normals.h"
 

@@ -17,6 +17,7 @@
 #include "chronormal/motion/validate.h"
 #include "io/cache/maya_cache.h"
 #include "tests/support/cache_bytes.h"
+#include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 
 namespace chronormal {
@@ -125,7 +126,7 @@ TEST_P(MotionReaders, have_fixtures_that_they_read) {
 }
 
 TEST_P(MotionReaders, have_a_fuzz_target_and_seeds) {
-  const std::filesystem::path fuzz = std::filesystem::path(CHRONORMAL_SOURCE_DIR) / "fuzz";
+  const std::filesystem::path fuzz = std::filesystem::path(kSourceFolder) / "fuzz";
   EXPECT_TRUE(std::filesystem::is_regular_file(fuzz / (GetParam() + "_fuzz.cpp")));
   ASSERT_TRUE(std::filesystem::is_directory(fuzz / "seeds" / GetParam()));
   EXPECT_FALSE(std::filesystem::is_empty(fuzz / "seeds" / GetParam()));

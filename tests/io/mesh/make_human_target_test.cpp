@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 #include "tests/support/target_bytes.h"
 
@@ -248,7 +249,7 @@ TEST(MakeHumanTarget, is_known_by_its_extension) {
 }
 
 TEST(MakeHumanTarget, has_a_fuzz_target_and_seeds) {
-  const std::filesystem::path fuzz = std::filesystem::path(CHRONORMAL_SOURCE_DIR) / "fuzz";
+  const std::filesystem::path fuzz = std::filesystem::path(kSourceFolder) / "fuzz";
   EXPECT_TRUE(std::filesystem::is_regular_file(fuzz / "target_fuzz.cpp"));
   ASSERT_TRUE(std::filesystem::is_directory(fuzz / "seeds/target"));
   EXPECT_FALSE(std::filesystem::is_empty(fuzz / "seeds/target"));

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/random_edits.h"
 
@@ -102,7 +103,7 @@ TEST_P(Readers, have_fixtures_that_they_read) {
 }
 
 TEST_P(Readers, have_a_fuzz_target_and_seeds) {
-  const std::filesystem::path fuzz = std::filesystem::path(CHRONORMAL_SOURCE_DIR) / "fuzz";
+  const std::filesystem::path fuzz = std::filesystem::path(kSourceFolder) / "fuzz";
   const std::string name(reader().name);
   EXPECT_TRUE(std::filesystem::is_regular_file(fuzz / (name + "_fuzz.cpp")));
   ASSERT_TRUE(std::filesystem::is_directory(fuzz / "seeds" / name));

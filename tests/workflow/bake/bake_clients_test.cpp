@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/gltf_builder.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -69,7 +70,7 @@ class BakedQuad : public ::testing::Test {
     }
     builder.add_track<float>(builder.add_animation("lift"), node, {0, 1}, {0, 1});
     folder_.write("quad.glb", builder.glb());
-    const std::string program = CHRONORMAL_PROGRAM;
+    const std::string program = kProgram;
     const ProcessResult bake =
         run_shell(program + " bake quad.glb -o baked.glb --encode exact --dense-zeros", folder_.path());
     ASSERT_EQ(bake.exit_code, 0) << bake.err;

@@ -1,0 +1,15 @@
+/// Where the tests find what they test: the program, the sources and the build folder. One source, places.cpp, is
+/// compiled with these paths, so that all other tests are the same objects whatever build they are linked into.
+#ifndef TESTS_SUPPORT_PLACES_H_
+#define TESTS_SUPPORT_PLACES_H_
+
+namespace chronormal {
+
+extern const char* const kProgram;       ///< path of the program
+extern const char* const kVersion;       ///< what the program calls its version
+extern const char* const kSourceFolder;  ///< root of the repository
+extern const char* const kBuildFolder;   ///< root of the build
+
+}  // namespace chronormal
+
+#endif  // TESTS_SUPPORT_PLACES_H_
