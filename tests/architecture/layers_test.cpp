@@ -14,6 +14,7 @@
 
 #include "tests/support/places.h"
 
+namespace chronormal::layers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -207,3 +208,4 @@ TEST(Layers, files_can_be_seen_at_a_glance) {
 }
 
 }  // namespace
+}  // namespace chronormal::layers_test

@@ -12,7 +12,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::benchmarks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -168,4 +168,4 @@ TEST(Benchmarks, results_that_were_wrong_or_cannot_be_read_make_no_page) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::benchmarks_test

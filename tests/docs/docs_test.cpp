@@ -20,7 +20,7 @@
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 
-namespace chronormal {
+namespace chronormal::docs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -202,4 +202,4 @@ TEST(Documents, the_changelog_knows_the_version) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::docs_test

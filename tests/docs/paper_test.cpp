@@ -11,7 +11,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::paper_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,4 +69,4 @@ TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::paper_test

@@ -18,7 +18,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::weightings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ TEST(Weightings, are_along_what_the_theory_says_of_two_triangles) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weightings_test

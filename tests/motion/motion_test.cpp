@@ -8,7 +8,7 @@
 #include "chronormal/motion/topology.h"
 #include "chronormal/motion/validate.h"
 
-namespace chronormal {
+namespace chronormal::motion_test {
 namespace {
 
 TEST(Topology, mixes_triangles_and_polygons) {
@@ -104,4 +104,4 @@ TEST(Validate, refuses_segments_that_lead_nowhere) {
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_test

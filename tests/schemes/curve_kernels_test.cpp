@@ -18,7 +18,7 @@
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::curve_kernels_test {
 namespace {
 
 // All formulas, and each that is played.
@@ -357,4 +357,4 @@ TEST(CurveFormulas, take_no_elements_at_all) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::curve_kernels_test

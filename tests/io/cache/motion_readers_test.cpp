@@ -20,7 +20,7 @@
 #include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal {
+namespace chronormal::motion_readers_test {
 namespace {
 
 struct Fixture {
@@ -243,4 +243,4 @@ TEST(MotionReaderLists, recognise_files_by_their_first_bytes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_readers_test

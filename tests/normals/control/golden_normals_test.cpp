@@ -24,7 +24,7 @@
 #include "io/mesh/obj.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::golden_normals_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,4 +201,4 @@ TEST_F(GoldenNormals, pytorch3d_sums_areas_and_leaves_faces_without_area_zero) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::golden_normals_test

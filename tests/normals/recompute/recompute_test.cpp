@@ -26,7 +26,7 @@
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::recompute_test {
 namespace {
 
 constexpr double kPromised = 1e-6;  // radians
@@ -509,4 +509,4 @@ TEST(Recompute, nothing_is_no_trouble) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::recompute_test

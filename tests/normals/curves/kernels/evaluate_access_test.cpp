@@ -15,7 +15,7 @@
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::evaluate_access_test {
 namespace {
 
 constexpr std::size_t kMost = 208;  // elements, of whole blocks
@@ -114,4 +114,4 @@ TEST(EvaluateAccess, changes_no_bit_and_writes_nothing_else) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::evaluate_access_test

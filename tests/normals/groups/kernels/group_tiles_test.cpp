@@ -19,7 +19,7 @@
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::group_tiles_test {
 namespace {
 
 using fixtures::Point;
@@ -298,4 +298,4 @@ TEST(GroupTiles, read_positions_in_planes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::group_tiles_test
