@@ -217,49 +217,41 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_bake_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("bake", "Write right normals into a glTF file, or make one of a sequence");
-  command->group("Commands");
+Command bake_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command
-      ->add_option("--encode", options->encode,
-                   "exact: extra targets for the quadratic terms, driven by the animations;\n"
-                   "endpoint: the best single delta per target, by least squares where several are\n"
-                   "active at once. Default: exact where an animation drives the weights")
-      ->type_name("HOW");
-  command
-      ->add_option("--weighting", options->weighting,
-                   "how faces count: area (default, exact), angle, uniform, area-angle, max")
-      ->type_name("NAME");
-  command
-      ->add_option("--crease", options->crease_angle,
-                   "of sequences, and with --smooth: edges between faces that differ by\n"
-                   "more than this are hard (default 180: none)")
-      ->type_name("DEG");
-  command->add_flag("--recompute-base", options->recompute_base, "replace the base normals by those of the geometry");
-  command->add_flag("--smooth", options->smooth, "give normals to primitives that have none, which are flat");
-  command->add_option("--max-bytes", options->most_bytes, "fail where more bytes of arrays would be added")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
-  command->add_flag("--dense-zeros", options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "leave out targets that turn no normal by more than this, and cut cubic\n"
-                   "splines so finely (default 0.001)")
-      ->type_name("DEG");
-  command->add_flag("--no-audit", options->no_audit, "do not compare the errors before and after");
-  command->add_flag("--json", options->json, "one JSON object");
-  options->common.add_to(*command, true);
-  command->footer(
-      "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
-      "targets. OUT may be INPUT, with --force.\n"
-      "\nExamples:\n"
-      "  chronormal bake face.glb -o face.exact.glb\n"
-      "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
-      "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"bake",
+          "Write right normals into a glTF file, or make one of a sequence",
+          {options->input.table(),
+           {{"--encode HOW", &options->encode,
+             "exact: extra targets for the quadratic terms, driven by the animations;\n"
+             "endpoint: the best single delta per target, by least squares where several are\n"
+             "active at once. Default: exact where an animation drives the weights"},
+            {"--weighting NAME", &options->weighting,
+             "how faces count: area (default, exact), angle, uniform, area-angle, max"},
+            {"--crease DEG", &options->crease_angle,
+             "of sequences, and with --smooth: edges between faces that differ by\n"
+             "more than this are hard (default 180: none)"},
+            {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
+            {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
+            {"--max-bytes N:NONNEGATIVE",
+             &options->most_bytes,
+             "fail where more bytes of arrays would be added",
+             {.check = check_not_negative}},
+            {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
+            {"--tolerance DEG", &options->tolerance,
+             "leave out targets that turn no normal by more than this, and cut cubic\n"
+             "splines so finely (default 0.001)"},
+            {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
+            {"--json", &options->json, "one JSON object"}},
+           options->common.table(true)},
+          "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
+          "targets. OUT may be INPUT, with --force.\n"
+          "\nExamples:\n"
+          "  chronormal bake face.glb -o face.exact.glb\n"
+          "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
+          "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -112,23 +112,20 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_inspect_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("inspect", "What is in a file, and what in it will trouble you");
-  command->group("Commands");
+Command inspect_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command->add_flag("--json", options->json, "one JSON object");
-  options->common.add_to(*command, false);
-  command->footer(
-      "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
-      "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
-      "It does not change the exit code.\n"
-      "\nExamples:\n"
-      "  chronormal inspect head.glb\n"
-      "  chronormal inspect walk/ --json\n"
-      "  chronormal inspect --base face.obj targets/\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"inspect",
+          "What is in a file, and what in it will trouble you",
+          {options->input.table(), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
+          "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
+          "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
+          "It does not change the exit code.\n"
+          "\nExamples:\n"
+          "  chronormal inspect head.glb\n"
+          "  chronormal inspect walk/ --json\n"
+          "  chronormal inspect --base face.obj targets/\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -317,43 +317,33 @@ int run(const Options& options) {
   if (!written) return fail(written.error());
   if (written.value().zeros > 0)
     fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
-               written.value().zeros, written.value().normals, options.elements.kind);
+               written.value().zeros, written.value().normals, options.elements.kind());
   return kExitDone;
 }
 
 }  // namespace
 
-void add_sample_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("sample", "Write the normals of a motion at chosen times");
-  command->group("Commands");
+Command sample_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command
-      ->add_option("--times", options->times,
-                   "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
-                   "a mesh does not move")
-      ->type_name("LIST");
-  command
-      ->add_option("--weights", options->weights,
-                   "a pose of blend shapes: one weight for each target; repeat it\n"
-                   "for more poses")
-      ->type_name("W1,W2,...")
-      ->take_all()
-      ->allow_extra_args(false);
-  options->elements.add_to(*command);
-  command->add_option("--weighting", options->weighting, "how the faces around a vertex count (listed below)")
-      ->type_name("NAME");
-  command->add_option("--length", options->length, "unit (default), or area: of weighting area, n itself")
-      ->type_name("KIND");
-  command
-      ->add_option("--hard-edges", options->hard_edges,
-                   "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
-                   "smoothing groups (s) or by its own normals (vn): groups, normals")
-      ->type_name("KIND");
-  command->add_option("--format", options->format, "of OUT: npy (default for -), npz, ply, obj")->type_name("NAME");
-  options->common.add_to(*command, true);
-  command->footer(footer());
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"sample",
+          "Write the normals of a motion at chosen times",
+          {options->input.table(),
+           {{"--times LIST", &options->times,
+             "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
+             "a mesh does not move"},
+            {"--weights W1,W2,...", &options->weights,
+             "a pose of blend shapes: one weight for each target; repeat it\n"
+             "for more poses"}},
+           options->elements.table(),
+           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+            {"--length KIND", &options->length, "unit (default), or area: of weighting area, n itself"},
+            {"--hard-edges KIND", &options->hard_edges,
+             "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
+             "smoothing groups (s) or by its own normals (vn): groups, normals"},
+            {"--format NAME", &options->format, "of OUT: npy (default for -), npz, ply, obj"}},
+           options->common.table(true)},
+          footer(),
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli
