@@ -3,18 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/compare_report.h"
 #include "cli/inspect_trouble.h"
+#include "cli/json.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Align = Table::Align;
 
 constexpr std::size_t kShownTargets = 3, kShownName = 24;
@@ -160,7 +159,8 @@ std::string blend_table(const NamedBlendComparison& input) {
 }
 
 std::string blend_json(const NamedBlendComparison& input) {
-  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "compare"}, {"schema", 1}, {"input", input.name}};
+  Json json = json_of_command("compare");
+  json["input"] = input.name;
   json["weights"] = input.animation.empty() ? "random" : "animation";
   if (!input.animation.empty()) json["animation"] = input.animation;
   json["meshes"] = Json::array();
@@ -182,8 +182,7 @@ std::string blend_json(const NamedBlendComparison& input) {
   }
   json["flat_meshes"] = input.comparison.flat;
   json["still_meshes"] = input.comparison.still;
-  // Names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 std::string blend_csv(const NamedBlendComparison& input) {

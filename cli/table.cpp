@@ -58,6 +58,10 @@ std::string grouped(std::size_t value) {
   return digits;
 }
 
+std::string counted(std::size_t count, const char* singular, const char* plural) {
+  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
+}
+
 std::string four_decimals(double value) {
   if (value == 0) return "0";
   return value < 5e-4 ? fmt::format("{:.1e}", value) : fmt::format("{:.4f}", value);
