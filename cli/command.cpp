@@ -2,10 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cstdio>
-
 #include "chronormal/io/builtin_morphs.h"
-#include "cli/text.h"
 #include "io/input/targets.h"
 #include "io/mesh/make_human_target.h"
 
@@ -136,12 +133,6 @@ Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& pr
 
 Error misuse(std::string place, std::string message) {
   return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
-
-int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
-  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
-  return static_cast<int>(error.code);
 }
 
 }  // namespace chronormal::cli

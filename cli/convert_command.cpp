@@ -11,12 +11,12 @@ struct Options {
   CommonOptions common;
 };
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const auto input = read_input_or_mesh(options.input, progress);
-  if (!input) return report("convert", input.error());
+  if (!input) return input.error();
   if (const Status written = write_motion(input.value().motion, options.common.output, options.common.force); !written)
-    return report("convert", written.error());
+    return written.error();
   return kExitDone;
 }
 

@@ -288,22 +288,21 @@ Result<ObjShading> read_shading(const InputOptions& input, const std::string& wh
   return shading;
 }
 
-int run(const Options& options) {
-  const auto fail = [](const Error& error) { return report("sample", error); };
+Result<int> run(const Options& options) {
   Result<Request> understood = understand(options);
-  if (!understood) return fail(understood.error());
+  if (!understood) return understood.error();
   Request& request = understood.value();
   Progress progress(options.common.quiet);
   const auto input = read_input_or_mesh(options.input, progress);
-  if (!input) return fail(input.error());
+  if (!input) return input.error();
   const Motion& motion = input.value().motion;
   const bool targets = are_targets(options.input) || (motion.segments.size() > 1 && is_blend_shapes(motion));
-  if (const Status status = fit_moments(motion, targets, request.moments); !status) return fail(status.error());
+  if (const Status status = fit_moments(motion, targets, request.moments); !status) return status.error();
 
   ObjShading shading;  // outlives the sampling
   if (!options.hard_edges.empty()) {
     Result<ObjShading> read = read_shading(options.input, options.hard_edges, motion.topology);
-    if (!read) return fail(read.error());
+    if (!read) return read.error();
     shading = std::move(read).value();
     if (options.hard_edges == "groups")
       request.sample.elements.group_of_face = shading.group_of_face;
@@ -314,7 +313,7 @@ int run(const Options& options) {
   const auto written =
       write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
   progress.clear();
-  if (!written) return fail(written.error());
+  if (!written) return written.error();
   if (written.value().zeros > 0)
     fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
                written.value().zeros, written.value().normals, options.elements.kind());
