@@ -19,7 +19,7 @@
 
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_motion.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "io/input/targets.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/blend_oracle.h"
