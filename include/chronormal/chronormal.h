@@ -3,7 +3,6 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
-#include "chronormal/core/memory.h"      // arrays that are streamed: aligned, in huge pages
 #include "chronormal/core/parallel.h"    // one loop over all cores
 #include "chronormal/core/polynomial.h"  // small polynomials: Bernstein and power form, roots, restriction
 #include "chronormal/core/result.h"      // errors as values: code, place, message

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "core/trigonometry.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
@@ -225,7 +225,7 @@ struct Blocks {
   }
 
   AlignedArray<float> values;
-  CurveBlocks curves;
+  CoefficientBlocks curves;
 };
 
 struct Kernel {

@@ -75,8 +75,8 @@ struct Instant {
   double t = 0;  ///< in [0, 1]
 };
 
-/// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the later
-/// one, and the end of the motion is the end of the last one. The motion must be valid, or stand still. O(segments).
+/// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
+/// later one, and the end of the motion that of the last one. The motion must be valid, or stand still. O(segments).
 /// Errors: kUsage for a time at which there is no motion, with the range; for blend shapes of two targets or more, and
 /// for a mesh that stands still.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);

@@ -9,7 +9,7 @@
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "normals/control/kernels/control_tile.h"
 
 namespace chronormal {
