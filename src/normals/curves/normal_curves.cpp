@@ -137,8 +137,9 @@ NormalCurves NormalCurves::of_groups(const Segment& segment, const NormalGroups&
 }
 
 const CurveData& NormalCurves::data() const noexcept {
+  if (data_) return *data_;
   static const CurveData none;
-  return data_ ? *data_ : none;
+  return none;
 }
 
 // Curves of no elements have no data, but are a place for memory to be kept all the same.
