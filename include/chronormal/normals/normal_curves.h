@@ -67,7 +67,7 @@ class NormalCurves {
   /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
-  /// The same of all faces of a segment, or of all elements of the groups, straight from positions, without an array
+  /// Prepares those of all faces of a segment, or of all elements of groups, straight from positions, without an array
   /// of control normals in between. (Meshes in no order need more for a while: 32 bytes a vertex, and groups of them
   /// 128 a face up to half a gigabyte.) Where many segments are prepared one after the other, name the curves of the
   /// one before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new
@@ -117,7 +117,7 @@ class NormalCurves {
  private:
   friend class NormalPlayback;
 
-  explicit NormalCurves(CurveData data);
+  explicit NormalCurves(std::unique_ptr<CurveData> data) noexcept;
   [[nodiscard]] const CurveData& data() const noexcept;
   [[nodiscard]] static CurveData* data_of(NormalCurves* reuse);
 

@@ -34,7 +34,8 @@ inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
 class NormalPlayback {
  public:
-  /// start and every start + k step that is played lie in [0, 1]. anchor_interval 0 means: never after the first time.
+  /// Begins at start. It and every start + k step that is played must lie in [0, 1]. With an anchor_interval of 0 the
+  /// state is never made anew.
   NormalPlayback(const NormalCurves& curves, double start, double step,
                  std::size_t anchor_interval = kDefaultAnchorInterval);
   NormalPlayback(NormalPlayback&&) noexcept;

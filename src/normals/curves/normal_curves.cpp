@@ -121,19 +121,19 @@ NormalCurves::NormalCurves(NormalCurves&&) noexcept = default;
 NormalCurves& NormalCurves::operator=(NormalCurves&&) noexcept = default;
 NormalCurves::~NormalCurves() = default;
 
-NormalCurves::NormalCurves(CurveData data) : data_(std::make_unique<CurveData>(std::move(data))) {}
+NormalCurves::NormalCurves(std::unique_ptr<CurveData> data) noexcept : data_(std::move(data)) {}
 
 NormalCurves::NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options)
-    : NormalCurves(build_curves(normals, options)) {}
+    : NormalCurves(std::make_unique<CurveData>(build_curves(normals, options))) {}
 
 NormalCurves NormalCurves::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
                                     NormalCurves* reuse) {
-  return NormalCurves(build_curves(segment, options, threads, data_of(reuse)));
+  return NormalCurves(std::make_unique<CurveData>(build_curves(segment, options, threads, data_of(reuse))));
 }
 
 NormalCurves NormalCurves::of_groups(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, NormalCurves* reuse) {
-  return NormalCurves(build_curves(segment, groups, options, threads, data_of(reuse)));
+  return NormalCurves(std::make_unique<CurveData>(build_curves(segment, groups, options, threads, data_of(reuse))));
 }
 
 const CurveData& NormalCurves::data() const noexcept {
