@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/schemes/scheme.h"
+#include "core/memory.h"
 #include "core/trigonometry.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
@@ -225,7 +225,7 @@ struct Blocks {
   }
 
   AlignedArray<float> values;
-  CurveBlocks curves;
+  CoefficientBlocks curves;
 };
 
 struct Kernel {
