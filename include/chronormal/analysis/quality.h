@@ -16,8 +16,6 @@
 
 namespace chronormal {
 
-inline constexpr double kDegreesPerRadian = 57.295779513082320877;
-
 /// Where an angular error was found.
 struct ErrorPlace {
   std::size_t segment = 0;

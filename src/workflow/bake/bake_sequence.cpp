@@ -25,7 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kNoElement = static_cast<std::uint32_t>(-1);
 constexpr Vec3d kAnyNormal{0, 0, 1};  // of elements that have none
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 // Vertices of the file. Those of the motion come first, and behind them their copies, one for each further normal.
 struct Outputs {
