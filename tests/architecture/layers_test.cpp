@@ -139,6 +139,20 @@ std::vector<fs::path> product_files() {
   return files;
 }
 
+// The lines of a file that use an instruction set by itself and not through Highway.
+std::vector<std::string> raw_intrinsics(const std::string& path, const std::string& text) {
+  std::vector<std::string> found;
+  for (const std::string& line : lines_of(text)) {
+    for (const char* mark : {"_mm_", "_mm256_", "_mm512_", "__m128", "__m256", "__m512", "__mmask", "intrin.h",
+                             "arm_neon.h", "wasm_simd128.h"}) {
+      if (line.find(mark) == std::string::npos) continue;
+      found.push_back(path + ": " + line);
+      break;
+    }
+  }
+  return found;
+}
+
 TEST(Layers, a_planted_violation_is_found) {
   EXPECT_EQ(violations("src/normals/x.cpp", "#include \"chronormal/schemes/scheme.h\"\n").size(), 1u);
   EXPECT_EQ(violations("include/chronormal/core/x.h", "  #include \"chronormal/motion/motion.h\"\n").size(), 1u);
@@ -208,6 +222,18 @@ TEST(Layers, the_umbrella_header_lists_every_public_header_in_the_order_of_the_l
   std::sort(listed.begin(), listed.end());
   std::sort(there.begin(), there.end());
   EXPECT_EQ(listed, there);
+}
+
+TEST(Layers, raw_intrinsics_stand_in_one_file) {
+  const std::string planted = "  __m512 v = _mm512_loadu_ps(p);\n#include <immintrin.h>\n#include <arm_neon.h>\n";
+  EXPECT_EQ(raw_intrinsics("src/normals/x.cpp", planted).size(), 3u);
+
+  const fs::path home = "src/simd/intrinsics-inl.h";
+  EXPECT_FALSE(raw_intrinsics(home.string(), read(kRoot / home)).empty());
+  for (const fs::path& file : product_files()) {
+    if (file == home) continue;
+    for (const std::string& line : raw_intrinsics(file.string(), read(kRoot / file))) ADD_FAILURE() << line;
+  }
 }
 
 TEST(Layers, files_can_be_seen_at_a_glance) {

@@ -12,8 +12,6 @@ namespace chronormal::weightings {
 
 using namespace pages;
 
-inline constexpr double kDegreesPerRadian = 57.29577951308232;
-
 void write_rules(Page& page);  ///< our weightings, and those of other libraries where they are built
 void write_files(Page& page, const std::filesystem::path& data);  ///< normals in files; no data: none are measured
 void write_fits(Page& page);        ///< quadratics in place of weighted normals: error, bound, cost

@@ -22,8 +22,6 @@
 
 namespace chronormal {
 
-inline constexpr double kDegreesPerRadian = 57.295779513082320877;
-
 /// Writes n(t) of a range of faces, and (0, 0, 0) where n(t) is zero: where it is so small against the positions that
 /// it is made of (below 1e-10 of their products) that rounding would decide its direction. Threads: pure.
 /// result must have faces.count elements; t in [0, 1]

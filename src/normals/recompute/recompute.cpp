@@ -15,8 +15,11 @@
 #include "chronormal/normals/control_normals.h"
 #include "core/blocks.h"
 #include "core/memory.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 #include "motion/coherence.h"
 #include "normals/curves/curve_elements.h"
+#include "normals/groups/face_window.h"
 #include "normals/groups/group_sum.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
 
@@ -36,18 +39,13 @@ constexpr std::size_t kMostParts = 64;
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 constexpr double kMostLinesPerFace = 1;
 
-constexpr double kHalfEpsilon = 0x1p-53;
-constexpr double kFloatHalfEpsilon = 0x1p-24;
-
 // n(t) in double from the positions, and what it may be off by.
 struct NormalAtTime {
   Vec3d n;
   double error = 0;
 };
 
-double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-
-// With u = 2^-53: edges, and both products of each component after them, are within 10 u of the absolute products; and
+// Edges, and both products of each component after them, are within 10 u of the absolute products; and
 // each triangle of a fan adds a rounding.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
@@ -57,19 +55,16 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
     Vec3d at;
     double size;
   };
-  const auto edge = [&](std::size_t c) {
+  const auto edge_to = [&](std::size_t c) {
     const Vec3d e0 = to_double(segment.from[face[c]]) - a0, e1 = to_double(segment.to[face[c]]) - a1;
     return Edge{s * e0 + t * e1, s * sum_abs(e0) + t * sum_abs(e1)};
   };
   NormalAtTime result;
-  Edge e = edge(1);
-  for (std::size_t c = 2; c < face.size(); ++c) {
-    const Edge f_c = edge(c);
-    result.n = result.n + cross(e.at, f_c.at);
-    result.error += e.size * f_c.size;
-    e = f_c;
-  }
-  result.error *= kHalfEpsilon * static_cast<double>(10 + face.size());
+  for_fan(face.size(), edge_to, [&result](const Edge& e, const Edge& g) {
+    result.n = result.n + cross(e.at, g.at);
+    result.error += e.size * g.size;
+  });
+  result.error *= kUnitRoundoff * static_cast<double>(10 + face.size());
   return result;
 }
 
@@ -77,7 +72,7 @@ constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
   // A little more, for the rounding of the bound.
-  const double error = 1.01 * (length(normal.n) + normal.error / kFloatHalfEpsilon);
+  const double error = 1.01 * (length(normal.n) + normal.error / kFloatUnitRoundoff);
   if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
   const Vec3f n = to_float(normal.n);
   return {n.x, n.y, n.z, static_cast<float>(error)};
@@ -235,7 +230,7 @@ class Call {
   std::size_t elements(IndexRange elements, std::size_t part) const noexcept {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
-    IndexRange ready;  // in the window
+    FaceWindow window{window_};
     // Faces that may be written there, so that elements which jump to and fro cost no more than a few times their own.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
@@ -247,7 +242,7 @@ class Call {
       const auto around = faces_of(*groups_, batch);
       const IndexRange needed = around.empty() ? IndexRange{} : range_of(around);
       credit = std::min(credit + 4 * around.size(), 4 * window_);
-      if (bring(needed, normals, ready, credit))
+      if (bring(needed, normals, window, credit))
         zeros += batch_of_groups(batch, {normals, window_ - 1, false});
       else
         zeros += scattered_groups(batch);
@@ -300,25 +295,17 @@ class Call {
     }
   }
 
-  // Makes the window hold the needed faces. Those in it follow on each other up to ready.end(), and more are added
-  // there; false where the needed ones do not fit, or would cost more than there is credit for.
-  bool bring(IndexRange needed, FaceNormal* normals, IndexRange& ready, std::size_t& credit) const {
-    if (needed.count == 0) return true;
-    const bool follows = ready.first <= needed.first && needed.first <= ready.end();
-    if (follows && needed.end() <= ready.end()) return true;
-    std::size_t first = follows ? ready.end() : needed.first / kFaceBlock * kFaceBlock;
+  // Makes the window hold the needed faces. False where they do not fit, or would cost more than there is credit for.
+  bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
+    if (needed.count == 0 || window.holds(needed)) return true;
+    const bool follows = window.begin <= needed.first && needed.first <= window.end;
+    const std::size_t first = follows ? window.end : needed.first / kFaceBlock * kFaceBlock;
     const std::size_t end =
         std::min((needed.end() + kFaceBlock - 1) / kFaceBlock * kFaceBlock, segment_.topology->face_count());
-    if (end - needed.first > window_ || end - first > credit) return false;
+    if (end - needed.first > window.capacity || end - first > credit) return false;
     credit -= end - first;
-    const std::size_t oldest = follows ? ready.first : first;
-    while (first < end) {
-      const std::size_t place = first & (window_ - 1), count = std::min(end - first, window_ - place);
-      write_normals({first, count}, normals + place);
-      first += count;
-    }
-    const std::size_t held = std::min(end - oldest, window_);
-    ready = {end - held, held};
+    if (!follows) window.start_at(first);
+    window.extend(end, [&](IndexRange faces, std::size_t place) { write_normals(faces, normals + place); });
     return true;
   }
 

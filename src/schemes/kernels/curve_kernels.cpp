@@ -15,6 +15,7 @@
 #include <hwy/cache_control.h>
 
 #include "schemes/kernels/formulas-inl.h"
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

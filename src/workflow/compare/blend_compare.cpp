@@ -14,6 +14,7 @@
 #include "chronormal/workflow/gltf_shading.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
+#include "core/vector_area.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
@@ -62,7 +63,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
         const double* p = positions.data() + 3 * std::size_t{face[c]};
         return Vec3d{p[0], p[1], p[2]};
       };
-      for (std::size_t c = 1; c + 1 < face.size(); ++c) faces[f] = faces[f] + cross(at(c) - at(0), at(c + 1) - at(0));
+      faces[f] = twice_vector_area(face.size(), at);
     }
   });
   if (subject.groups == nullptr) return faces;

@@ -28,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
 // What the reader of the product leaves out: the normal of each corner, and the smoothing group of each face.
 struct Golden {
   Motion motion;  // the mesh, twice
