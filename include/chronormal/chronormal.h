@@ -43,7 +43,6 @@
 #include "chronormal/workflow/blend_compare.h"  // normal deltas of blend shapes against exact normals
 #include "chronormal/workflow/compare.h"        // the paper's Table 1 for any motion
 #include "chronormal/workflow/elements.h"       // faces, vertices or corners, and their hard edges
-#include "chronormal/workflow/gltf_shading.h"   // the vertices of a glTF mesh: what they show and should
 #include "chronormal/workflow/inspect.h"        // what a motion holds, and what in it is trouble for normals
 #include "chronormal/workflow/inspect_gltf.h"   // the same of a glTF file: stored normals, targets, tracks
 #include "chronormal/workflow/sample.h"         // normals at chosen times, or at weights of blend shapes

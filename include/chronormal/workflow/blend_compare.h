@@ -11,7 +11,7 @@
 /// Compared   normals that a target of weight other than 0 moves: those with a face that it moves, and those that a
 ///            file moves by a delta. One for each different normal; of a glTF file, for each vertex.
 /// glTF       Each mesh on its own, with elements by its stored normals. Where an author gave base normals of his own,
-///            the truth is turned as these are, as in an audit (workflow/gltf_shading.h). Flat primitives are right in
+///            the truth is turned as these are, as in an audit (workflow/audit.h). Flat primitives are right in
 ///            hosts and are left out. Targets that a bake added get products of weights.
 #ifndef CHRONORMAL_WORKFLOW_BLEND_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_BLEND_COMPARE_H_

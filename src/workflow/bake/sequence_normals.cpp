@@ -87,15 +87,11 @@ std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
 std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
   const Topology& topology = motion_->topology;
   std::vector<Vec3d> faces(topology.face_count()), result(elements());
-  numbered_blocks(faces.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t f = first; f < end; ++f) faces[f] = polygon_normal(topology.face(f), positions);
-  });
-  numbered_blocks(result.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t e = first; e < end; ++e) {
-      VectorSum sum;
-      for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
-      result[e] = sum.without_rounding();
-    }
+  parallel_each(faces.size(), kBlock, [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
+  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+    VectorSum sum;
+    for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
+    result[e] = sum.without_rounding();
   });
   return result;
 }

@@ -11,7 +11,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/workflow/gltf_shading.h"
+#include "workflow/shading/gltf_shading.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
 #include "core/vector_area.h"

@@ -11,6 +11,7 @@
 
 #include "fuzz/json_tokens.h"
 #include "io/json/json.h"
+#include "io/json/json_writer.h"
 
 namespace chronormal::json_text_test {
 namespace {

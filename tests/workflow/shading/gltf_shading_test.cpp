@@ -1,4 +1,4 @@
-#include "chronormal/workflow/gltf_shading.h"
+#include "workflow/shading/gltf_shading.h"
 
 #include <gtest/gtest.h>
 

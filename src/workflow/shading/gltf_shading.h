@@ -1,4 +1,4 @@
-/// What the vertices of one mesh of a glTF file show, and what they should show.
+/// What the vertices of one mesh of a glTF file show, and what they should show. Private to workflow.
 ///
 /// A host shows normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. What it should show follows
 /// from the geometry: n(w) of eq. 32, area-weighted, over the faces whose corners share the stored base normal at one
@@ -12,8 +12,8 @@
 ///
 /// Shapes     V = vertices of all primitives with faces, one primitive after the other (parts); K = targets of the
 /// mesh.
-#ifndef CHRONORMAL_WORKFLOW_GLTF_SHADING_H_
-#define CHRONORMAL_WORKFLOW_GLTF_SHADING_H_
+#ifndef CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
+#define CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -92,4 +92,4 @@ void fill_extra_weights(const GltfShading& shading, std::span<double> weights) n
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_WORKFLOW_GLTF_SHADING_H_
+#endif  // CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_

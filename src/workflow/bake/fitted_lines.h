@@ -1,6 +1,6 @@
 /// The best single deltas of targets that move a normal together. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_BAKE_LINES_H_
-#define CHRONORMAL_WORKFLOW_BAKE_BAKE_LINES_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_FITTED_LINES_H_
+#define CHRONORMAL_WORKFLOW_BAKE_FITTED_LINES_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
-#include "workflow/bake/bake_terms.h"
+#include "workflow/bake/terms.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
@@ -20,9 +20,9 @@ namespace chronormal {
 /// those, as it does where more than 64 targets move it.
 class FittedLines {
  public:
-  /// None.
+  /// Has no deltas.
   FittedLines() = default;
-  /// Of the elements that are shown, of which `largest` are the lengths of the largest terms. Cost: the normals of all
+  /// Fits deltas of the elements that are shown, of which `largest` are the lengths of the largest terms. Cost: the normals of all
   /// elements at 17 to 2,000 poses to fit to and more to state the error at, and for each element and pose some ten
   /// times the square of its active targets.
   FittedLines(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use,
@@ -45,4 +45,4 @@ class FittedLines {
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_BAKE_LINES_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_FITTED_LINES_H_

@@ -9,7 +9,7 @@
 #include "chronormal/normals/transform.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
-#include "workflow/audit/audit_judge.h"
+#include "workflow/audit/measure.h"
 
 namespace chronormal {
 namespace {
@@ -35,9 +35,8 @@ class SequenceSource {
     t_ = t;
     const Segment s = motion_.segment(segments_[segment]);
     const auto vertices = part_.vertices();
-    numbered_blocks(vertices.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
+    parallel_each(vertices.size(), kRange, [&](std::size_t i) {
+      positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
     });
     return true;
   }
@@ -163,16 +162,6 @@ std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::siz
   return moves;
 }
 
-void find_faults(const AuditSubject& subject, Audit& result) {
-  if (!(subject.error.worst > kAuditFault)) return;
-  const bool off_at_keys = subject.at_keys.worst > kAuditFault;
-  AuditFinding& finding = result.findings.emplace_back();
-  finding.kind = off_at_keys ? AuditFinding::Kind::kWrongAtKeys : AuditFinding::Kind::kWrongBetween;
-  finding.target = subject.target;
-  finding.degrees = off_at_keys ? subject.at_keys.worst : subject.error.worst;
-  finding.worst_at = off_at_keys ? subject.at_keys.worst_at : subject.error.worst_at;
-}
-
 }  // namespace
 
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets, const AuditOptions& options) {
@@ -232,8 +221,8 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_
     PartNormals first;
     part.normals(positions, first);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, subjects[i]);
-    Judge(source, part, result.rule).run(subject, progress);
-    find_faults(subject, result);
+    measure(source, part, result.rule, progress, subject);
+    if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }
   finish(result);

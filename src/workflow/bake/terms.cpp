@@ -1,4 +1,4 @@
-#include "workflow/bake/bake_terms.h"
+#include "workflow/bake/terms.h"
 
 #include <algorithm>
 #include <cassert>

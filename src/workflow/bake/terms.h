@@ -1,7 +1,7 @@
 /// The terms of the normals of one mesh, whichever the weighting, and how they become deltas of its vertices. Private
 /// to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_BAKE_TERMS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_BAKE_TERMS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/gltf_shading.h"
 #include "normals/blend/blend_terms.h"
+#include "workflow/shading/gltf_shading.h"
 
 namespace chronormal {
 
@@ -108,7 +108,7 @@ class VertexTerms {
   [[nodiscard]] Vec3d operator()(const Vec3d& term) const noexcept { return scale_ * turn(term); }
   /// Of the best single delta, for which |n(0)| is 1.
   [[nodiscard]] Vec3d end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept;
-  /// Of a fitted one (bake_lines.h), likewise.
+  /// Of a fitted one (fitted_lines.h), likewise.
   [[nodiscard]] Vec3d fitted_delta(const Vec3d& delta) const noexcept;
 
  private:
@@ -122,4 +122,4 @@ class VertexTerms {
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_BAKE_TERMS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_TERMS_H_

@@ -1,4 +1,4 @@
-#include "workflow/bake/bake_tracks.h"
+#include "workflow/bake/tracks.h"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,14 @@
 /// What the bake of one mesh needs: which pairs of targets get an extra one, and what is left out. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_BAKE_PLAN_H_
-#define CHRONORMAL_WORKFLOW_BAKE_BAKE_PLAN_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
+#define CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
 
 #include <cstddef>
 #include <vector>
 
 #include "chronormal/workflow/bake.h"
-#include "workflow/bake/bake_lines.h"
-#include "workflow/bake/bake_terms.h"
-#include "workflow/bake/bake_tracks.h"
+#include "workflow/bake/fitted_lines.h"
+#include "workflow/bake/terms.h"
+#include "workflow/bake/tracks.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
@@ -19,7 +19,6 @@ struct WeightRange {
 };
 
 struct MeshPlan {
-  std::size_t mesh = 0;
   BakeEncoding encoding = BakeEncoding::kExact;
   bool is_driven = false;             ///< an animation gives some moving target a weight
   std::vector<bool> is_line;          ///< of each target: it gets the best single delta
@@ -28,7 +27,7 @@ struct MeshPlan {
   std::vector<WeightProduct> extras;  ///< ascending (i, j)
   std::vector<bool> is_shown;         ///< of each element: some vertex shows it
   std::vector<double> largest;        ///< of each element: the length of its largest term
-  double left_out = 0;                ///< degrees: what the pairs turn that were left out
+  double left_out = 0;                ///< degrees: how far the pairs that were left out turn a normal
 };
 
 /// Decides. use has the weights of the file; is_driven, whether animations give some. Errors: kUsage where a fitted
@@ -43,4 +42,4 @@ struct MeshPlan {
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_BAKE_PLAN_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_PLAN_H_

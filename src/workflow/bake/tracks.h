@@ -4,8 +4,8 @@
 /// right tangents passes through exactly; so all weights become one. The product of two cubics has degree 6: keys are
 /// inserted (the weights that are there stay as they are: a cubic is cut exactly by its value and slope at the new key)
 /// until cubics between them are close enough.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_BAKE_TRACKS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_BAKE_TRACKS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_
 
 #include <cstddef>
 #include <span>
@@ -36,4 +36,4 @@ struct ExtendedTrack {
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_BAKE_TRACKS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_

@@ -1,4 +1,4 @@
-#include "workflow/bake/bake_lines.h"
+#include "workflow/bake/fitted_lines.h"
 
 #include <algorithm>
 #include <array>
@@ -94,8 +94,8 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // The best deltas of all rounds. Returns whether these are better than those of each target alone.
-  bool run(std::vector<Vec3d>& deltas) {
+  // Replaces the deltas of each target alone by the best of all rounds. Returns whether these are better.
+  bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
     for (int round = 0; round < kRounds; ++round) {
@@ -216,9 +216,7 @@ class Together {
     }
     for (const std::size_t i : active_) {
       const NormalTerms::Term linear = terms_.linear_by_element(i), square = terms_.pair_by_element(i, i);
-      numbered_blocks(result.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) add(i, linear, square, result[n]);
-      });
+      parallel_each(result.size(), kBlock, [&](std::size_t n) { add(i, linear, square, result[n]); });
     }
     return result;
   }
@@ -265,12 +263,10 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
     const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();
     const std::vector<Vec3d>& exact = terms.is_fitted() ? weighted : by_area;
-    numbered_blocks(elements.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-      for (std::size_t n = first; n < last; ++n) {
-        const std::uint32_t e = elements[n].index;
-        const double least = kLeastLength * std::fmax(length(terms.base_of(e)), largest[e]);
-        if (length(by_area[e]) > least && max_abs(exact[e]) > 0) body(n, unit(exact[e]));
-      }
+    parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+      const std::uint32_t e = elements[n].index;
+      const double least = kLeastLength * std::fmax(length(terms.base_of(e)), largest[e]);
+      if (length(by_area[e]) > least && max_abs(exact[e]) > 0) body(n, unit(exact[e]));
     });
   };
   const std::size_t least = std::clamp(kPosesPerTarget * together.active(), kLeastPoses, kEnoughPoses);
@@ -283,14 +279,12 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     judge(poses[p], [&](std::size_t n, const Vec3d& unit) { right[n * poses.size() + p] = rounded(unit); });
   std::vector<char> is_fitted(elements.size());
   std::vector<double> errors(elements.size());
-  numbered_blocks(elements.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) {
-      std::vector<Vec3d> deltas = elements[n].deltas;
-      Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
-      is_fitted[n] = fit.run(deltas) ? 1 : 0;
-      if (fit.worst() > kLeastError) errors[n] = fit.worst();  // else it is the rounding
-      elements[n].deltas = std::move(deltas);
-    }
+  parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+    std::vector<Vec3d> deltas = elements[n].deltas;
+    Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
+    is_fitted[n] = fit.improve(deltas) ? 1 : 0;
+    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // else it is the rounding
+    elements[n].deltas = std::move(deltas);
   });
   right = std::vector<Rounded>();
   const std::size_t stated = std::clamp(4 * kSums / sums, 2 * most, kMostStated);
