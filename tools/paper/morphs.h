@@ -1,4 +1,4 @@
-/// The meshes of the document, and what several sections measure on them.
+/// The meshes of docs/paper.md, and what several of its sections measure on them.
 #ifndef PAPER_MORPHS_H_
 #define PAPER_MORPHS_H_
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/chronormal.h"
-#include "support/statistics.h"
+#include "support/numbers.h"
 
 namespace chronormal::paper {
 
