@@ -48,7 +48,7 @@ std::string machine_part(const Results& results, const std::string& folder) {
   part.set({{"name", results.name},
             {"cpu", results.machine_value("cpu")},
             {"facts", facts},
-            {"quick", results.quick ? " **A quick run, with few and short repetitions: rough figures.**" : ""},
+            {"quick", results.quick ? " **This was a quick run with few and short repetitions; its figures are rough.**" : ""},
             {"blend", blend_part(results, folder)}});
   add_costs(part, results);
   add_aims(part, results);

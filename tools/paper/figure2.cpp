@@ -168,7 +168,7 @@ AgainstDegree against_degree(const std::string& name) {
   }
   double inside = 0;
   for (std::size_t s = 0; s < part.segments.size(); ++s) {
-    for (const ControlNormals& normals : control_normals_of(part.segment(s))) {
+    for (const ControlNormals& normals : all_face_control_normals(part.segment(s))) {
       if (nearest_singularity(normals).margin < 0) ++inside;
     }
   }
@@ -233,7 +233,7 @@ struct Face {
 };
 
 std::vector<Face> faces_of_soup() {
-  const std::vector<ControlNormals> normals = control_normals_of(some_faces(morph("soup"), 2000).segment(0));
+  const std::vector<ControlNormals> normals = all_face_control_normals(some_faces(morph("soup"), 2000).segment(0));
   std::vector<Face> faces(normals.size());
   parallel_for(faces.size(), [&](std::size_t f) {
     faces[f] = {normals[f], nearest_singularity(normals[f]),

@@ -31,9 +31,6 @@ struct Morph {
 /// The faces of a motion so that (face, segment) pairs are about `pairs`.
 [[nodiscard]] Motion some_pairs(const Motion& motion, std::size_t pairs);
 
-/// Control normals of all faces of one segment.
-[[nodiscard]] std::vector<ControlNormals> control_normals_of(const Segment& segment);
-
 /// Angle between unit vectors, in degrees.
 [[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);
 

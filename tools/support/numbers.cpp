@@ -1,3 +1,4 @@
+// Formats build on fmt; quantiles are those of the nearest rank, so that a value of the data is shown.
 #include "support/numbers.h"
 
 #include <fmt/core.h>

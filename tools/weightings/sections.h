@@ -13,8 +13,6 @@ namespace chronormal::weightings {
 
 using namespace pages;
 
-inline constexpr double kDegreesPerRadian = 57.29577951308232;
-
 /// Our weightings beside those of other libraries: the part of the page, empty where they are not built.
 [[nodiscard]] std::string peers_part(const std::string& folder);
 /// Normals in files: the part of the page, empty where there is no data.
