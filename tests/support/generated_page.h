@@ -53,7 +53,7 @@ inline void expect_same_text(const std::string& committed, const std::string& ge
                 << "\ngenerated: " << line_at(generated) << "\n(tools/make_* writes it anew)";
 }
 
-/// Expects every picture in FOLDER/pictures to be committed, the same, and shown in the page. Returns how many there are.
+/// Expects every picture in FOLDER/pictures to be committed, the same, and shown in the page. Returns their number.
 inline std::size_t expect_same_pictures(const TemporaryFolder& folder, const std::string& page) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "pictures")) {

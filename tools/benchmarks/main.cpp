@@ -45,11 +45,12 @@ std::string machine_part(const Results& results, const std::string& folder) {
   }
   for (const auto& [name, version] : results.rivals) add(name, version);
   Page part("benchmarks/machine.md.in", folder);
-  part.set({{"name", results.name},
-            {"cpu", results.machine_value("cpu")},
-            {"facts", facts},
-            {"quick", results.quick ? " **This was a quick run with few and short repetitions; its figures are rough.**" : ""},
-            {"blend", blend_part(results, folder)}});
+  part.set(
+      {{"name", results.name},
+       {"cpu", results.machine_value("cpu")},
+       {"facts", facts},
+       {"quick", results.quick ? " **Repetitions were few and short in this quick run; its figures are rough.**" : ""},
+       {"blend", blend_part(results, folder)}});
   add_costs(part, results);
   add_aims(part, results);
   add_memory(part, results);

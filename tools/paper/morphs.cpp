@@ -51,7 +51,7 @@ Motion some_pairs(const Motion& motion, std::size_t pairs) {
   return some_faces(motion, pairs / motion.segments.size());
 }
 
-// As angle_between(), without its care for lengths that overflow: the program asks for millions of angles of unit vectors.
+// As angle_between(), without its care for lengths that overflow: this is asked for millions of pairs of unit vectors.
 double degrees_between(const Vec3d& a, const Vec3d& b) {
   const Vec3d c = cross(a, b);
   return kDegreesPerRadian * std::atan2(std::sqrt(dot(c, c)), dot(a, b));

@@ -7,8 +7,8 @@
 ///     {{table/row/column}}    a cell of a table: the row whose first cell, and the column whose title, is that text or
 ///                             has it in backticks
 ///
-/// Paragraphs and items of lists are wrapped anew when their places are filled, and tables are aligned. A part of a page
-/// that is repeated, or that may be missing, is a template of its own, and its text is a value of the page.
+/// Paragraphs and items of lists are wrapped anew when their places are filled, and tables are aligned. A part of a
+/// page that is repeated, or that may be missing, is a template of its own, and its text is a value of the page.
 ///
 /// A place without a value is an error, and so is a value without a place: neither a template nor a program can be
 /// changed alone. No figure is typed into prose. Where a sentence claims more than its figures say ("worse than
