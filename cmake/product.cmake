@@ -27,6 +27,8 @@ file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
 file(GLOB cli_sources CONFIGURE_DEPENDS cli/*.cpp)
 set_source_files_properties(src/io/gltf/glb_builder.cpp PROPERTIES COMPILE_DEFINITIONS
                                                                    CHRONORMAL_VERSION="${PROJECT_VERSION}")
+# What the parser of the command line makes of options compiles four times as fast when it is not optimised.
+set_source_files_properties(cli/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
 
 # chronormal_add_product(SUFFIX FLAGS): the three targets with this suffix to their names, compiled with what the
 # interface library FLAGS says.

@@ -10,6 +10,7 @@
 
 #include "tests/support/places.h"
 
+namespace chronormal::every_header_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 TEST(EveryHeader, is_compiled_in_one_translation_unit) {
   std::size_t count = 0;
   for (const char* folder : {"include", "src"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(chronormal::kSourceFolder) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(kSourceFolder) / folder)) {
       const std::string name = entry.path().filename().string();
       if (name.ends_with(".h") && !name.ends_with("-inl.h")) ++count;
     }
@@ -27,3 +28,4 @@ TEST(EveryHeader, is_compiled_in_one_translation_unit) {
 }
 
 }  // namespace
+}  // namespace chronormal::every_header_test

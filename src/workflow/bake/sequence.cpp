@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/sequence_deltas.h"
 #include "workflow/bake/sequence_file.h"
