@@ -30,10 +30,10 @@ void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
   parallel_for(block_count(count, block), [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
 }
 
-/// parallel_blocks() on all cores, or body of the whole range on this one.
+/// parallel_blocks() on all cores, or body of the whole range on this one. One block alone is not worth a task.
 template <class Body>
 void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
-  if (threads == Threads::kOne) {
+  if (threads == Threads::kOne || (0 < count && count <= block)) {
     body(IndexRange{0, count});
   } else {
     parallel_blocks(count, block, body);
