@@ -52,10 +52,10 @@ template <class T, class Body, class Merge>
   return all;
 }
 
-/// parallel_blocks() on all cores, or body of the whole range on this one.
+/// parallel_blocks() on all cores, or body of the whole range on this one. One block alone is not worth a task.
 template <class Body>
 void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
-  if (threads == Threads::kOne) {
+  if (threads == Threads::kOne || (0 < count && count <= block)) {
     body(IndexRange{0, count});
   } else {
     parallel_blocks(count, block, body);

@@ -55,6 +55,9 @@ struct VectorView {
     z[i * stride] = value.z;
   }
 
+  /// Whether it is one array of shape (n, 3).
+  [[nodiscard]] bool is_packed() const noexcept { return stride == 3 && y == x + 1 && z == x + 2; }
+
   /// The vectors of a range, as a view of their own.
   [[nodiscard]] VectorView part(IndexRange range) const noexcept {
     assert(range.end() <= count);

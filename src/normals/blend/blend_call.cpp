@@ -177,7 +177,7 @@ class Call {
 
   void copy_base(IndexRange elements) const {
     const float* const units = source_.base.units.data();
-    if (result_.stride == 3 && result_.y == result_.x + 1 && result_.z == result_.x + 2) {
+    if (result_.is_packed()) {
       std::memcpy(result_.x + 3 * elements.first, units + 3 * elements.first, 3 * sizeof(float) * elements.count);
       return;
     }

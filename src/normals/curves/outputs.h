@@ -17,7 +17,7 @@
 namespace chronormal {
 
 [[nodiscard]] inline bool is_packed(const VectorView<float>& view) {
-  return view.stride == 3 && view.y == view.x + 1 && view.z == view.x + 2;
+  return view.is_packed();
 }
 
 /// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.

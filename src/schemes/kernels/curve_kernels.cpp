@@ -128,7 +128,7 @@ template <class Write>
 void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;
   std::size_t done = 0;  // blocks
-  const bool packed = result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2;
+  const bool packed = result.is_packed();
   if (packed || result.stride == 1) {
     done = result.count / kBlock;
     const bool stream = packed && result.count * (curves.plane_count + 3) * sizeof(float) > stream_from &&

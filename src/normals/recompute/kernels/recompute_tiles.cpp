@@ -245,7 +245,7 @@ HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float
 template <class Body>
 HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
   if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
-  if (result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2) {
+  if (result.is_packed()) {
     if (stream && reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0)
       return body(std::integral_constant<ResultLayout, ResultLayout::kStreamed>());
     return body(std::integral_constant<ResultLayout, ResultLayout::kPacked>());
