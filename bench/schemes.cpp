@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/compare.h"
 #include "groups.h"
 
@@ -80,7 +80,7 @@ Expectation expectation(const std::string& scheme, double t) {
 
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
-  std::unique_ptr<Playback> playback;
+  std::unique_ptr<SchemePlayback> playback;
   std::size_t step = kSteps;
 };
 

@@ -46,7 +46,8 @@ std::string words_of(const InputOptions& input) {
   constexpr std::size_t kMost = 4;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
     if (i == kMost) return words + " ...";
-    words += (i > 0 ? " " : "") + shell_word(input.files[i]);
+    if (i > 0) words += ' ';
+    words += shell_word(input.files[i]);
   }
   for (const std::string& sample : input.samples) words += "--sample " + sample;
   return words;
@@ -114,21 +115,19 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   return how;
 }
 
-int run(const Options& options) {
-  const auto fail = [](const Error& error) { return report("audit", error); };
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
-  if (!how) return fail(how.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return fail(output.error());
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Result<Audited> audited = audit_input(options, how.value(), progress);
   progress.clear();
-  if (!audited) return fail(audited.error());
+  if (!audited) return audited.error();
   audited.value().tolerance = options.tolerance;
   if (options.input.base.empty()) audited.value().bake = words_of(options.input);
   const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return fail(written.error());
+    return written.error();
   if (audited.value().passed()) return kExitDone;
   fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
              audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));
@@ -137,39 +136,32 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_audit_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("audit", "How wrong are the normals that a file makes hosts show");
-  command->group("Commands");
+Command audit_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command
-      ->add_option("--rule", options->rule,
-                   "what a host makes of stored normals between keyframes: gltf (default for\n"
-                   "glTF), lerp, nlerp (default for the rest), slerp, step, flat")
-      ->type_name("NAME");
-  command
-      ->add_option("--weighting", options->weighting,
-                   "of the right normals: area (default), angle, uniform, area-angle, max")
-      ->type_name("NAME");
-  command
-      ->add_option("--samples", options->samples,
-                   "per segment, ends included (default 21; 5 in animations of more than\n"
-                   "32 key intervals)")
-      ->type_name("N");
-  command->add_option("--tolerance", options->tolerance, "exit with 4 if the worst error is beyond this")
-      ->type_name("DEG");
-  command->add_flag("--no-weld", options->no_weld, "sequences: vertices at one point in all keyframes stay apart");
-  command->add_flag("--json", options->json, "one JSON object");
-  options->common.add_to(*command, false);
-  command->footer(
+  return {
+      "audit",
+      "How wrong are the normals that a file makes hosts show",
+      {options->input.table(),
+       {{"--rule NAME", &options->rule,
+         "what a host makes of stored normals between keyframes: gltf (default for\n"
+         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
+        {"--weighting NAME", &options->weighting,
+         "of the right normals: area (default), angle, uniform, area-angle, max"},
+        {"--samples N", &options->samples,
+         "per segment, ends included (default 21; 5 in animations of more than\n"
+         "32 key intervals)"},
+        {"--tolerance DEG", &options->tolerance, "exit with 4 if the worst error is beyond this"},
+        {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
+        {"--json", &options->json, "one JSON object"}},
+       options->common.table(false)},
       "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
       "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
       "\nExamples:\n"
       "  chronormal audit face.glb\n"
       "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
       "  chronormal audit walk/ --rule slerp --json\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -1,22 +1,15 @@
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "chronormal/normals/weighting.h"
 #include "cli/audit_report.h"
+#include "cli/json.h"
 
 namespace chronormal::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kKinds[] = {"missing_normals", "wrong_at_keys",  "wrong_between", "wrong_together",
                                   "stale_tangents",  "flat_primitive", "skin",          "baked",
                                   "baked_keyframes"};
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -97,7 +90,7 @@ Json finding_json(const AuditFinding& finding) {
 
 std::string audit_json(const Audited& input) {
   const Audit& audit = input.audit;
-  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "audit"}, {"schema", 1}};
+  Json json = json_of_command("audit");
   json["input"] = {{"name", input.name}};
   json["rule"] = audit_rule_name(audit.rule);
   json["weighting"] = weighting_name(audit.weighting);
@@ -115,8 +108,7 @@ std::string audit_json(const Audited& input) {
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();
   for (const AuditFinding& finding : audit.findings) json["findings"].push_back(finding_json(finding));
-  // File names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 }  // namespace chronormal::cli

@@ -96,28 +96,27 @@ std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& 
   return BeforeAndAfter{first.value().error, second.value().error};
 }
 
-int run_gltf(const Options& options, BakeOptions how, FileBytes file, Progress& progress) {
-  const auto fail = [](const Error& error) { return report("bake", error); };
+Result<int> run_gltf(const Options& options, BakeOptions how, FileBytes file, Progress& progress) {
   const std::string &input = options.input.files[0], &output = options.common.output;
   if (!options.input.animation.empty())
-    return fail(misuse("--animation", "all animations of a glTF file are baked: leave it out"));
-  if (options.input.world) return fail(misuse("--world", "meshes are baked where they are: leave it out"));
+    return misuse("--animation", "all animations of a glTF file are baked: leave it out");
+  if (options.input.world) return misuse("--world", "meshes are baked where they are: leave it out");
   if (options.input.frames_per_second != 1)
-    return fail(misuse("--fps", "the animations of a glTF file have times of their own"));
+    return misuse("--fps", "the animations of a glTF file have times of their own");
   if (options.crease_angle != 180 && !options.smooth)
-    return fail(misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth"));
+    return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
   std::optional<std::string> folder;
   if (input != "-") folder = std::filesystem::path(input).parent_path().string();
   const std::size_t size = file.bytes().size();
   const Result<GltfDocument> document =
       GltfDocument::read(std::move(file), input == "-" ? "<stdin>" : short_name(input), folder,
                          {.allow_external = options.input.allow_external});
-  if (!document) return fail(document.error());
+  if (!document) return document.error();
   how.progress = progress.callback("baking");
   GltfEdit edit(document.value());
   const Result<GltfBake> baked = bake(document.value(), how, edit);
   progress.clear();
-  if (!baked) return fail(baked.error());
+  if (!baked) return baked.error();
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
@@ -125,16 +124,16 @@ int run_gltf(const Options& options, BakeOptions how, FileBytes file, Progress& 
   const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
   if (has_drivers) {
     told.drivers_file = drivers_path(output);
-    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return fail(free.error());
+    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return free.error();
   }
   std::vector<std::string> warnings = baked.value().warnings;
   if (!baked.value().drivers.empty() && !has_drivers)
     warnings.emplace_back("what drives the extra targets is written beside a file only: give -o a name");
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  if (const Status written = edit.write(output, options.common.force); !written) return fail(written.error());
+  if (const Status written = edit.write(output, options.common.force); !written) return written.error();
   if (has_drivers) {
     if (const Status written = write_output(*told.drivers_file, baked.value().drivers, options.common.force); !written)
-      return fail(written.error());
+      return written.error();
   }
   warn(warnings);
   if (baked.value().changed && size <= kMostAudited) {
@@ -152,26 +151,25 @@ bool is_sequence(const Motion& motion) {
   return !motion.segments.empty();
 }
 
-int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
-  const auto fail = [](const Error& error) { return report("bake", error); };
+Result<int> run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   const std::string& output = options.common.output;
   if (!options.input.base.empty())
-    return fail(misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file"));
-  if (options.smooth) return fail(misuse("--smooth", "it is for primitives of glTF files that have no normals"));
-  if (options.recompute_base) return fail(misuse("--recompute-base", "it is for glTF files that have normals"));
+    return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
+  if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
+  if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
-    return fail(misuse(output, "a sequence is written as .glb"));
+    return misuse(output, "a sequence is written as .glb");
   const Result<NamedMotion> read = read_input(options.input, progress);
-  if (!read) return fail(read.error());
+  if (!read) return read.error();
   if (!is_sequence(read.value().motion)) {
-    return fail(invalid_input(read.value().name, "it is no sequence of keyframes that follow each other"));
+    return invalid_input(read.value().name, "it is no sequence of keyframes that follow each other");
   }
   // Hard edges are those that the file shows, where nothing else is asked for.
   StoredNormals stored;
   if (options.crease_angle == 180) {
     Result<StoredNormals> normals = read_stored_normals(options.input, read.value().motion.topology);
-    if (!normals) return fail(normals.error());
+    if (!normals) return normals.error();
     stored = std::move(normals).value();
     if (!stored.of_keyframes.empty()) {
       const std::vector<float>& first = stored.of_keyframes.front();
@@ -182,8 +180,8 @@ int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   std::string glb;
   const Result<SequenceBake> baked = bake_sequence(read.value().motion, how, glb);
   progress.clear();
-  if (!baked) return fail(baked.error());
-  if (const Status written = write_output(output, glb, options.common.force); !written) return fail(written.error());
+  if (!baked) return baked.error();
+  if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
   warn(baked.value().warnings);
   BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
@@ -198,68 +196,59 @@ int run_sequence(const Options& options, BakeOptions how, Progress& progress) {
   return kExitDone;
 }
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
-  if (!how) return report("bake", how.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("bake", output.error());
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   if (is_one_file(options.input)) {
     Result<FileBytes> file = FileBytes::open(options.input.files.front());
-    if (!file) return report("bake", file.error());
+    if (!file) return file.error();
     if (is_gltf(options.input.files.front(), file.value().bytes()))
       return run_gltf(options, how.value(), std::move(file).value(), progress);
     if (options.input.files.front() == "-")
-      return report("bake", invalid_input("<stdin>", "one keyframe does not move: give a glTF file"));
+      return invalid_input("<stdin>", "one keyframe does not move: give a glTF file");
   }
   return run_sequence(options, how.value(), progress);
 }
 
 }  // namespace
 
-void add_bake_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("bake", "Write right normals into a glTF file, or make one of a sequence");
-  command->group("Commands");
+Command bake_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command
-      ->add_option("--encode", options->encode,
-                   "exact: extra targets for the quadratic terms, driven by the animations;\n"
-                   "endpoint: the best single delta per target, by least squares where several are\n"
-                   "active at once. Default: exact where an animation drives the weights")
-      ->type_name("HOW");
-  command
-      ->add_option("--weighting", options->weighting,
-                   "how faces count: area (default, exact), angle, uniform, area-angle, max")
-      ->type_name("NAME");
-  command
-      ->add_option("--crease", options->crease_angle,
-                   "of sequences, and with --smooth: edges between faces that differ by\n"
-                   "more than this are hard (default 180: none)")
-      ->type_name("DEG");
-  command->add_flag("--recompute-base", options->recompute_base, "replace the base normals by those of the geometry");
-  command->add_flag("--smooth", options->smooth, "give normals to primitives that have none, which are flat");
-  command->add_option("--max-bytes", options->most_bytes, "fail where more bytes of arrays would be added")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
-  command->add_flag("--dense-zeros", options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "leave out targets that turn no normal by more than this, and cut cubic\n"
-                   "splines so finely (default 0.001)")
-      ->type_name("DEG");
-  command->add_flag("--no-audit", options->no_audit, "do not compare the errors before and after");
-  command->add_flag("--json", options->json, "one JSON object");
-  options->common.add_to(*command, true);
-  command->footer(
-      "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
-      "targets. OUT may be INPUT, with --force.\n"
-      "\nExamples:\n"
-      "  chronormal bake face.glb -o face.exact.glb\n"
-      "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
-      "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"bake",
+          "Write right normals into a glTF file, or make one of a sequence",
+          {options->input.table(),
+           {{"--encode HOW", &options->encode,
+             "exact: extra targets for the quadratic terms, driven by the animations;\n"
+             "endpoint: the best single delta per target, by least squares where several are\n"
+             "active at once. Default: exact where an animation drives the weights"},
+            {"--weighting NAME", &options->weighting,
+             "how faces count: area (default, exact), angle, uniform, area-angle, max"},
+            {"--crease DEG", &options->crease_angle,
+             "of sequences, and with --smooth: edges between faces that differ by\n"
+             "more than this are hard (default 180: none)"},
+            {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
+            {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
+            {"--max-bytes N:NONNEGATIVE",
+             &options->most_bytes,
+             "fail where more bytes of arrays would be added",
+             {.check = check_not_negative}},
+            {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
+            {"--tolerance DEG", &options->tolerance,
+             "leave out targets that turn no normal by more than this, and cut cubic\n"
+             "splines so finely (default 0.001)"},
+            {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
+            {"--json", &options->json, "one JSON object"}},
+           options->common.table(true)},
+          "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
+          "targets. OUT may be INPUT, with --force.\n"
+          "\nExamples:\n"
+          "  chronormal bake face.glb -o face.exact.glb\n"
+          "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
+          "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -2,23 +2,16 @@
 
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
+#include "cli/json.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kLongestName = 32;
 
 const char* encoding_name(BakeEncoding encoding) { return encoding == BakeEncoding::kExact ? "exact" : "endpoint"; }
-
-std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
-}
 
 std::string headline(const BakeReport& report) {
   return fmt::format("{} -> {}\n", printable(report.input), printable(report.output));
@@ -52,11 +45,10 @@ std::string lines_after(const BakeReport& report) {
 }
 
 Json common_json(const BakeReport& report) {
-  return {{"chronormal", CHRONORMAL_VERSION},
-          {"command", "bake"},
-          {"schema", 1},
-          {"input", {{"name", report.input}}},
-          {"output", report.output}};
+  Json json = json_of_command("bake");
+  json["input"] = {{"name", report.input}};
+  json["output"] = report.output;
+  return json;
 }
 
 Json mesh_json(const BakedMesh& mesh) {
@@ -87,8 +79,6 @@ void add_audit(const BakeReport& report, Json& json) {
                    {"mean_degrees_before", before.mean()},
                    {"mean_degrees_after", after.mean()}};
 }
-
-std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace).append("\n"); }
 
 }  // namespace
 
@@ -154,9 +144,9 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
   json["converted_tracks"] = bake.converted_tracks;
   json["pointers"] = bake.pointers;
   json["warnings"] = bake.warnings;
-  json["drivers"] = report.drivers_file ? Json(*report.drivers_file) : Json();
+  json["drivers"] = or_null(report.drivers_file);
   add_audit(report, json);
-  return dumped(json);
+  return json_text(json);
 }
 
 std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
@@ -171,7 +161,7 @@ std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const Bak
   json["without_normals"] = bake.without_normals;
   json["warnings"] = bake.warnings;
   add_audit(report, json);
-  return dumped(json);
+  return json_text(json);
 }
 
 }  // namespace chronormal::cli

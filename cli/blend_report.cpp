@@ -3,28 +3,22 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/compare_report.h"
 #include "cli/inspect_trouble.h"
+#include "cli/json.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Align = Table::Align;
 
 constexpr std::size_t kShownTargets = 3, kShownName = 24;
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
-
-std::string one_output(ElementKind kind) {
-  if (kind == ElementKind::kVertices) return "vertex";
-  return kind == ElementKind::kCorners ? "corner" : "face";
-}
 
 bool is_several_primitives(const BlendSubject& subject) {
   for (const BlendErrors& errors : subject.errors)
@@ -83,7 +77,7 @@ std::string table_of(const BlendSubject& subject) {
   for (const char* const title : {"mean", "rms", "max"}) table.add_column(title, "degrees", Align::kRight);
   const bool several = is_several_primitives(subject);
   if (several) table.add_column("worst at", "primitive", Align::kRight);
-  table.add_column(several ? "" : "worst at", one_output(subject.kind), Align::kRight);
+  table.add_column(several ? "" : "worst at", one_element(subject.kind), Align::kRight);
   table.add_column("", "targets", Align::kLeft);
   for (const BlendErrors& errors : subject.errors) {
     for (const BlendError& error : errors.deltas) {
@@ -134,7 +128,7 @@ Json error_json(const BlendSubject& subject, const BlendError& error) {
     weights.push_back({{"target", w.target}, {"name", subject.targets[w.target]}, {"weight", w.weight}});
   Json at = {{"row", q.max_at.segment}};
   if (error.worst_primitive) at["primitive"] = *error.worst_primitive;
-  at[one_output(subject.kind)] = error.worst_output;
+  at[one_element(subject.kind)] = error.worst_output;
   at["weights"] = std::move(weights);
   return {{"deltas", name_of(error.deltas)},
           {"mean_degrees", degrees(q.mean())},
@@ -160,7 +154,8 @@ std::string blend_table(const NamedBlendComparison& input) {
 }
 
 std::string blend_json(const NamedBlendComparison& input) {
-  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "compare"}, {"schema", 1}, {"input", input.name}};
+  Json json = json_of_command("compare");
+  json["input"] = input.name;
   json["weights"] = input.animation.empty() ? "random" : "animation";
   if (!input.animation.empty()) json["animation"] = input.animation;
   json["meshes"] = Json::array();
@@ -182,8 +177,7 @@ std::string blend_json(const NamedBlendComparison& input) {
   }
   json["flat_meshes"] = input.comparison.flat;
   json["still_meshes"] = input.comparison.still;
-  // Names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 std::string blend_csv(const NamedBlendComparison& input) {

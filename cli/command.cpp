@@ -2,10 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cstdio>
-
 #include "chronormal/io/builtin_morphs.h"
-#include "cli/text.h"
 #include "io/input/targets.h"
 #include "io/mesh/make_human_target.h"
 
@@ -28,59 +25,48 @@ std::string short_name(std::string path) {
   return slash == std::string::npos || slash + 1 == path.size() ? path : path.substr(slash + 1);
 }
 
-void CommonOptions::add_to(CLI::App& command, bool output_required) {
-  CLI::Option* option = command.add_option(
-      "-o,--output", output, output_required ? "where to write" : "where to write (default: standard output)");
-  option->type_name("OUT");
-  if (output_required) option->required();
-  command.add_flag("--force", force, "overwrite OUT if it exists");
-  command.add_flag("-q,--quiet", quiet, "no progress bar");
+std::vector<Option> CommonOptions::table(bool output_required) {
+  return {{"-o,--output OUT",
+           &output,
+           output_required ? "where to write" : "where to write (default: standard output)",
+           {.required = output_required}},
+          {"--force", &force, "overwrite OUT if it exists"},
+          {"-q,--quiet", &quiet, "no progress bar"}};
 }
 
-void InputOptions::add_to(CLI::App& command) {
-  command
-      .add_option("INPUT", files,
-                  "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
-                  "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
-                  ".gltf, .glb, .npz or .md2; - is one file on stdin")
-      ->type_name("");
-  command
-      .add_option("--base", base,
-                  "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
-                  ".target or .target.gz of MakeHuman, folders of them")
-      ->type_name("FILE")
-      ->check([](const std::string& name) { return name.empty() ? "it must name a file" : ""; }, "");
-  command
-      .add_option("--animation", animation,
-                  "an animation of a glTF file, by name or index; without it\n"
-                  "every morph target is a segment")
-      ->type_name("NAME")
-      ->check([](const std::string& name) { return name.empty() ? "it must be a name or an index" : ""; }, "");
-  command.add_flag("--world", world, "vertices of a glTF file are where its nodes put them");
-  command.add_flag("--allow-external", allow_external, "a glTF file may name files outside its folder");
-  command.add_option("--sample", samples, morph_list())->type_name("NAME")->take_all()->allow_extra_args(false);
-  command.add_option("--fps", frames_per_second, "frames per second of the keyframes (default 1)")->type_name("N");
+std::vector<Option> InputOptions::table() {
+  return {{"INPUT", &files,
+           "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
+           "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
+           ".gltf, .glb, .npz or .md2; - is one file on stdin"},
+          {"--base FILE",
+           &base,
+           "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
+           ".target or .target.gz of MakeHuman, folders of them",
+           {.check = check_given("it must name a file")}},
+          {"--animation NAME",
+           &animation,
+           "an animation of a glTF file, by name or index; without it\n"
+           "every morph target is a segment",
+           {.check = check_given("it must be a name or an index")}},
+          {"--world", &world, "vertices of a glTF file are where its nodes put them"},
+          {"--allow-external", &allow_external, "a glTF file may name files outside its folder"},
+          {"--sample NAME", &samples, morph_list()},
+          {"--fps N", &frames_per_second, "frames per second of the keyframes (default 1)"}};
 }
 
-void ElementArguments::add_to(CLI::App& command) {
-  const auto marked = [this](const char* name) { return kind == name ? fmt::format("{} (default)", name) : name; };
-  command
-      .add_option("--elements", kind,
-                  fmt::format("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners")))
-      ->type_name("KIND");
-  command
-      .add_option("--crease", crease_angle,
-                  "corners: edges between faces that differ by more than this\n"
-                  "in the first keyframe are hard (default 180: none)")
-      ->type_name("DEG");
-  command.add_flag("--no-weld", no_weld, "vertices at one point in all keyframes stay apart");
+std::vector<Option> ElementArguments::table() {
+  const auto marked = [this](const char* name) { return usual == name ? fmt::format("{} (default)", name) : name; };
+  return {{"--elements KIND", &asked,
+           fmt::format("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners"))},
+          {"--crease DEG", &crease_angle,
+           "corners: edges between faces that differ by more than this\n"
+           "in the first keyframe are hard (default 180: none)"},
+          {"--no-weld", &no_weld, "vertices at one point in all keyframes stay apart"}};
 }
 
 Result<ElementOptions> ElementArguments::options() const {
-  const auto misuse = [](std::string option, std::string message) {
-    return Error{ErrorCode::kUsage, std::move(option), std::move(message)};
-  };
-  const auto found = make_element_kind(kind);
+  const auto found = make_element_kind(kind());
   if (!found) return misuse("--elements", found.error().message);
   if (!(crease_angle >= 0 && crease_angle <= 180))
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
@@ -96,9 +82,6 @@ std::string name_of_files(const std::vector<std::string>& files) {
 }
 
 Status check_input(const InputOptions& options) {
-  const auto misuse = [](std::string place, std::string message) {
-    return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-  };
   if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
     return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
@@ -148,10 +131,8 @@ Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& pr
   return NamedMotion{name_of_files(options.files), std::move(motion).value()};
 }
 
-int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
-  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
-  return static_cast<int>(error.code);
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
 }
 
 }  // namespace chronormal::cli

@@ -1,11 +1,11 @@
 /// What all commands of the program share: the options that every one has, exit codes, and where output goes.
 ///
-/// One command is one file, NAME_command.cpp, with one function that adds it to the program. The contract that scripts
+/// One command is one file, NAME_command.cpp, with one function that describes it. The contract that scripts
 /// depend on (stdout, stderr, exit codes) is in docs/cli.md.
 #ifndef CLI_COMMAND_H_
 #define CLI_COMMAND_H_
 
-#include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "chronormal/io/motion_files.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/workflow/elements.h"
+#include "cli/options.h"
 #include "cli/progress.h"
 
 namespace chronormal::cli {
@@ -25,7 +26,7 @@ struct CommonOptions {
   bool force = false;
   bool quiet = false;
 
-  void add_to(CLI::App& command, bool output_required);
+  [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
 /// The options that choose what to read.
@@ -40,16 +41,18 @@ struct InputOptions {
 
   [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external, world}; }
 
-  void add_to(CLI::App& command);
+  [[nodiscard]] std::vector<Option> table();
 };
 
 /// The options that choose which normals: --elements, --crease, --no-weld.
 struct ElementArguments {
-  std::string kind;           ///< set to what is usual for the command
+  std::string usual;  ///< the kind where none was asked for
+  std::optional<std::string> asked = {};
   double crease_angle = 180;  ///< degrees
   bool no_weld = false;
 
-  void add_to(CLI::App& command);
+  [[nodiscard]] std::vector<Option> table();
+  [[nodiscard]] std::string kind() const { return asked.value_or(usual); }
   /// What was asked for. Errors: kUsage for a kind that does not exist, and for options that do not go with it.
   [[nodiscard]] Result<ElementOptions> options() const;
 };
@@ -75,16 +78,16 @@ struct NamedMotion {
 /// The same, but a mesh that does not move is taken as well: a keyframe without segments.
 [[nodiscard]] Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& progress);
 
-/// Prints an error to stderr, as "chronormal COMMAND: place: message", and returns its exit code.
-int report(const std::string& command, const Error& error);
+/// An error of kUsage.
+[[nodiscard]] Error misuse(std::string place, std::string message);
 
-// The commands. Each adds itself to the program and writes its exit code there when it has run.
-void add_audit_command(CLI::App& program, int& exit_code);
-void add_bake_command(CLI::App& program, int& exit_code);
-void add_compare_command(CLI::App& program, int& exit_code);
-void add_convert_command(CLI::App& program, int& exit_code);
-void add_inspect_command(CLI::App& program, int& exit_code);
-void add_sample_command(CLI::App& program, int& exit_code);
+// The commands.
+[[nodiscard]] Command audit_command();
+[[nodiscard]] Command bake_command();
+[[nodiscard]] Command compare_command();
+[[nodiscard]] Command convert_command();
+[[nodiscard]] Command inspect_command();
+[[nodiscard]] Command sample_command();
 
 }  // namespace chronormal::cli
 

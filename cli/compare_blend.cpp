@@ -6,10 +6,6 @@
 namespace chronormal::cli {
 namespace {
 
-Error misuse(std::string place, std::string message) {
-  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
-
 bool is_one_gltf_file(const InputOptions& input) {
   return input.base.empty() && input.files.size() == 1 && is_gltf_file(input.files.front());
 }
@@ -36,21 +32,18 @@ Error blamed(Error error, const std::string& option) {
 
 }  // namespace
 
-void BlendArguments::add_to(CLI::App& command) {
-  CLI::Option* const blend = command
-                                 .add_option("--blend", rows,
-                                             "blend shapes: normal deltas of targets against exact normals at\n"
-                                             "N random weight vectors, or N of an --animation")
-                                 ->type_name("N");
-  command.add_option("--active", active, "only for this many targets at once (default 1, 2, 4, 8, 16, all)")
-      ->type_name("N")
-      ->needs(blend);
-  command.add_option("--seed", seed, "of random weights (default 1)")->type_name("N")->needs(blend);
+std::vector<Option> BlendArguments::table() {
+  return {
+      {"--blend N", &rows,
+       "blend shapes: normal deltas of targets against exact normals at\n"
+       "N random weight vectors, or N of an --animation"},
+      {"--active N", &active, "only for this many targets at once (default 1, 2, 4, 8, 16, all)", {.needs = "--blend"}},
+      {"--seed N", &seed, "of random weights (default 1)", {.needs = "--blend"}}};
 }
 
 Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, const ElementArguments& elements,
-                                                 bool elements_given, const BlendArguments& arguments,
-                                                 Progress& progress) {
+                                                 const BlendArguments& arguments, Progress& progress) {
+  const bool elements_given = elements.asked.has_value();
   if (const Status status = check(input, elements_given, arguments); !status) return status.error();
   if (const Status status = check_input(input); !status) return status.error();
   BlendCompareOptions options;
@@ -73,7 +66,7 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   }
 
   ElementArguments wanted = elements;
-  if (!elements_given) wanted.kind = "vertices";
+  wanted.usual = "vertices";
   const Result<ElementOptions> understood = wanted.options();
   if (!understood) return understood.error();
   options.elements = understood.value();

@@ -2,10 +2,9 @@
 #ifndef CLI_COMPARE_BLEND_H_
 #define CLI_COMPARE_BLEND_H_
 
-#include <CLI/CLI.hpp>
-#include <cstdint>
+#include <cstddef>
 #include <optional>
-#include <string>
+#include <vector>
 
 #include "cli/blend_report.h"
 #include "cli/command.h"
@@ -15,16 +14,15 @@ namespace chronormal::cli {
 struct BlendArguments {
   std::optional<std::size_t> rows;  ///< given: --blend
   std::optional<std::size_t> active;
-  std::uint64_t seed = 1;
+  std::size_t seed = 1;
 
-  /// Adds --blend, --active and --seed.
-  void add_to(CLI::App& command);
+  [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input and compares. elements_given: --elements was, so that those of a glTF file are by its geometry.
+/// Reads the input and compares. Where elements were asked for, those of a glTF file are by its geometry.
 /// Errors: kUsage for what does not go together; those of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
-                                                               const ElementArguments& elements, bool elements_given,
+                                                               const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);
 
 }  // namespace chronormal::cli

@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <memory>
+#include <optional>
+
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/file.h"
 #include "chronormal/workflow/compare.h"
@@ -11,21 +14,22 @@ namespace chronormal::cli {
 namespace {
 
 constexpr std::size_t kMostSamples = 1000000;
+constexpr const char* kSampleRange = "it must be a whole number from 2 to 1,000,000";
 
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::vector<std::string> schemes;  // empty: those that are usual for the elements
-  std::size_t samples = 21;
+  std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
+  std::optional<std::size_t> samples;
   ElementArguments elements{"faces"};
-  std::string access = "random";
+  std::string access;  // empty: random
   bool each = false;
   bool json = false;
   bool csv = false;
   bool no_times = false;
   BlendArguments blend;
-  bool elements_given = false;
-  std::string of_schemes;  // an option that was given, which has no meaning with --blend
+
+  [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
 };
 
 std::vector<std::string> split_at_commas(const std::string& list) {
@@ -39,6 +43,18 @@ std::vector<std::string> split_at_commas(const std::string& list) {
     if (comma == std::string::npos) return parts;
     first = comma + 1;
   }
+}
+
+std::vector<std::string> scheme_names(const Options& options) {
+  return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
+}
+
+// An option that was given, and has no meaning with --blend.
+std::string option_of_schemes(const Options& options) {
+  if (!options.access.empty()) return "--access";
+  if (options.samples) return "--samples";
+  if (options.schemes) return "--schemes";
+  return options.each ? "--each" : "";
 }
 
 std::string footer() {
@@ -57,7 +73,7 @@ std::string footer() {
 }
 
 Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
-  const CompareOptions compare_options{options.schemes, options.samples,
+  const CompareOptions compare_options{scheme_names(options), options.sample_count(),
                                        options.access == "sequential" ? Access::kSequential : Access::kRandom,
                                        progress.callback("comparing"), options.elements.options().value()};
   auto comparison = compare(input.motion, compare_options);
@@ -108,40 +124,35 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   return comparisons;
 }
 
-int run_blend(const Options& options) {
-  if (!options.of_schemes.empty())
-    return report("compare",
-                  {ErrorCode::kUsage, options.of_schemes, "it is about schemes, and does not go with --blend"});
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("compare", output.error());
+Result<int> run_blend(const Options& options) {
+  if (const std::string option = option_of_schemes(options); !option.empty())
+    return misuse(option, "it is about schemes, and does not go with --blend");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
-  const auto comparison =
-      compare_blend_input(options.input, options.elements, options.elements_given, options.blend, progress);
-  if (!comparison) return report("compare", comparison.error());
+  const auto comparison = compare_blend_input(options.input, options.elements, options.blend, progress);
+  if (!comparison) return comparison.error();
   const std::string text = options.json  ? blend_json(comparison.value())
                            : options.csv ? blend_csv(comparison.value())
                                          : blend_table(comparison.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("compare", written.error());
+    return written.error();
   return kExitDone;
 }
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
-  if (options.samples < 2 || options.samples > kMostSamples)
-    return report("compare", {ErrorCode::kUsage, "--samples", "it must be a whole number from 2 to 1,000,000"});
-  for (const std::string& name : options.schemes) {
-    if (name.empty()) return report("compare", {ErrorCode::kUsage, "--schemes", "there is an empty name in the list"});
-    if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
+  if (options.sample_count() < 2 || options.sample_count() > kMostSamples) return misuse("--samples", kSampleRange);
+  for (const std::string& name : scheme_names(options)) {
+    if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
+    if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
-  if (const auto elements = options.elements.options(); !elements) return report("compare", elements.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("compare", output.error());
+  if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   Progress progress(options.common.quiet);
   const auto comparisons = compare_inputs(options, progress);
-  if (!comparisons) return report("compare", comparisons.error());
+  if (!comparisons) return comparisons.error();
 
   const bool with_times = !options.no_times;
   std::string text;
@@ -154,41 +165,38 @@ int run(const Options& options) {
   else
     text = compare_table(comparisons.value().front(), with_times);
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("compare", written.error());
+    return written.error();
   return kExitDone;
 }
 
 }  // namespace
 
-void add_compare_command(CLI::App& program, int& exit_code) {
-  CLI::App* command =
-      program.add_subcommand("compare", "Hold ways to interpolate normals against the exact ones, on your mesh");
-  command->group("Commands");
+Command compare_command() {
+  const auto check_access = [](const std::string& value) {
+    return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
+  };
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command->add_flag("--each", options->each, "every INPUT and --sample is a motion of its own, side by side");
-  command
-      ->add_option_function<std::string>(
-          "--schemes", [options](const std::string& list) { options->schemes = split_at_commas(list); },
-          "which schemes, in which order (listed below)")
-      ->type_name("A,B,...");
-  command->add_option("--samples", options->samples, "samples per segment, ends included (default 21)")->type_name("N");
-  options->elements.add_to(*command);
-  command->add_option("--access", options->access, "random (default), or sequential: played step by step")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"random", "sequential"}).description(""));
-  options->blend.add_to(*command);
-  CLI::Option* json = command->add_flag("--json", options->json, "one JSON object");
-  command->add_flag("--csv", options->csv, "comma-separated values, a line per scheme")->excludes(json);
-  command->add_flag("--no-times", options->no_times, "leave out measured times: the same output on every run");
-  options->common.add_to(*command, false);
-  command->footer(footer());
-  command->callback([options, command, &exit_code] {
-    options->elements_given = command->count("--elements") > 0;
-    for (const char* const name : {"--each", "--schemes", "--samples", "--access"})
-      if (command->count(name) > 0) options->of_schemes = name;
-    exit_code = run(*options);
-  });
+  return {"compare",
+          "Hold ways to interpolate normals against the exact ones, on your mesh",
+          {options->input.table(),
+           {{"--each", &options->each, "every INPUT and --sample is a motion of its own, side by side"},
+            {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
+            {"--samples N",
+             &options->samples,
+             "samples per segment, ends included (default 21)",
+             {.check = check_given(kSampleRange)}}},
+           options->elements.table(),
+           {{"--access KIND",
+             &options->access,
+             "random (default), or sequential: played step by step",
+             {.check = check_access}}},
+           options->blend.table(),
+           {{"--json", &options->json, "one JSON object"},
+            {"--csv", &options->csv, "comma-separated values, a line per scheme", {.excludes = "--json"}},
+            {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
+           options->common.table(false)},
+          footer(),
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

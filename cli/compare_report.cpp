@@ -2,16 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/command.h"
 #include "cli/inspect_trouble.h"
+#include "cli/json.h"
 #include "cli/table.h"
 
 namespace chronormal::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Align = Table::Align;
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
@@ -39,7 +37,7 @@ Json scheme_json(const SchemeComparison& row, bool with_times) {
   const Quality& q = row.quality;
   Json json = {{"scheme", row.scheme},
                {"sum_degrees", degrees(q.sum)},
-               {"relative_to_linear", row.relative_to_linear ? Json(*row.relative_to_linear) : Json()},
+               {"relative_to_linear", or_null(row.relative_to_linear)},
                {"mean_degrees", degrees(q.mean())},
                {"rms_degrees", degrees(q.rms())},
                {"max_degrees", degrees(q.max)},
@@ -66,11 +64,6 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   Json schemes = Json::array();
   for (const SchemeComparison& row : input.comparison.schemes) schemes.push_back(scheme_json(row, with_times));
   return schemes;
-}
-
-std::string one_element(ElementKind kind) {
-  if (kind == ElementKind::kVertices) return "vertex";
-  return kind == ElementKind::kCorners ? "corner" : "face";
 }
 
 std::string sample_pairs(std::size_t count, const std::string& word) {
@@ -109,6 +102,11 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
+
+std::string one_element(ElementKind kind) {
+  if (kind == ElementKind::kVertices) return "vertex";
+  return kind == ElementKind::kCorners ? "corner" : "face";
+}
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -186,7 +184,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
 }
 
 std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
-  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "compare"}, {"schema", 1}};
+  Json json = json_of_command("compare");
   if (!several) json["input"] = input_json(inputs.front());
   json["elements"] = element_kind_name(inputs.front().comparison.kind);
   json["samples"] = inputs.front().comparison.samples;
@@ -197,8 +195,7 @@ std::string compare_json(const std::vector<NamedComparison>& inputs, bool severa
   } else {
     json["schemes"] = schemes_json(inputs.front(), with_times);
   }
-  // File names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {

@@ -11,33 +11,31 @@ struct Options {
   CommonOptions common;
 };
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const auto input = read_input_or_mesh(options.input, progress);
-  if (!input) return report("convert", input.error());
+  if (!input) return input.error();
   if (const Status written = write_motion(input.value().motion, options.common.output, options.common.force); !written)
-    return report("convert", written.error());
+    return written.error();
   return kExitDone;
 }
 
 }  // namespace
 
-void add_convert_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("convert", "Write a motion, or a built-in morph, in another format");
-  command->group("Commands");
+Command convert_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  options->common.add_to(*command, true);
-  command->footer(
-      "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
-      "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
-      "\nExamples:\n"
-      "  chronormal convert --sample twist -o twist_%d.obj\n"
-      "  chronormal convert scans/ -o frame_%03d.ply\n"
-      "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
-      "  chronormal convert face.glb --animation Smile -o smile.npz\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"convert",
+          "Write a motion, or a built-in morph, in another format",
+          {options->input.table(), options->common.table(true)},
+          "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
+          "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
+          "\nExamples:\n"
+          "  chronormal convert --sample twist -o twist_%d.obj\n"
+          "  chronormal convert scans/ -o frame_%03d.ply\n"
+          "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
+          "  chronormal convert face.glb --animation Smile -o smile.npz\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -47,10 +47,6 @@ Result<std::vector<std::string>> files_with_normals(const InputOptions& input) {
 
 }  // namespace
 
-Error misuse(std::string place, std::string message) {
-  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
-
 bool is_gltf(const std::string& path, std::string_view bytes) {
   const bool is_other = find_motion_reader(path) != nullptr || find_mesh_reader(path) != nullptr;
   return is_gltf_file(path) || (!is_other && GltfDocument::recognises(bytes));

@@ -12,9 +12,6 @@
 
 namespace chronormal::cli {
 
-/// An error of kUsage.
-[[nodiscard]] Error misuse(std::string place, std::string message);
-
 /// Whether the input is a single file, or the standard input.
 [[nodiscard]] bool is_one_file(const InputOptions& input);
 

@@ -98,37 +98,33 @@ Result<Inspected> inspect_input(const InputOptions& options, Progress& progress)
   return result;
 }
 
-int run(const Options& options) {
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("inspect", output.error());
+Result<int> run(const Options& options) {
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto inspected = inspect_input(options.input, progress);
-  if (!inspected) return report("inspect", inspected.error());
+  if (!inspected) return inspected.error();
   const std::string text = options.json ? inspect_json(inspected.value()) : inspect_text(inspected.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("inspect", written.error());
+    return written.error();
   return kExitDone;
 }
 
 }  // namespace
 
-void add_inspect_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("inspect", "What is in a file, and what in it will trouble you");
-  command->group("Commands");
+Command inspect_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command->add_flag("--json", options->json, "one JSON object");
-  options->common.add_to(*command, false);
-  command->footer(
-      "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
-      "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
-      "It does not change the exit code.\n"
-      "\nExamples:\n"
-      "  chronormal inspect head.glb\n"
-      "  chronormal inspect walk/ --json\n"
-      "  chronormal inspect --base face.obj targets/\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"inspect",
+          "What is in a file, and what in it will trouble you",
+          {options->input.table(), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
+          "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
+          "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
+          "It does not change the exit code.\n"
+          "\nExamples:\n"
+          "  chronormal inspect head.glb\n"
+          "  chronormal inspect walk/ --json\n"
+          "  chronormal inspect --base face.obj targets/\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

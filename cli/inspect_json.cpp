@@ -1,12 +1,9 @@
-#include <nlohmann/json.hpp>
-
 #include "chronormal/analysis/quality.h"
 #include "cli/inspect_report.h"
+#include "cli/json.h"
 
 namespace chronormal::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json found_json(const Found& found, const char* what) {
   return {{"count", found.count}, {what, found.count > 0 ? Json(found.first) : Json()}};
@@ -140,7 +137,7 @@ Json animations_json(const InspectedGltf& gltf) {
 Json gltf_json(const InspectedGltf& gltf) {
   Json parts = Json::array();
   for (const GltfPart& part : gltf.parts)
-    parts.push_back({{"node", part.node ? Json(*part.node) : Json()},
+    parts.push_back({{"node", or_null(part.node)},
                      {"mesh", part.mesh},
                      {"primitive", part.primitive},
                      {"first_vertex", part.first_vertex},
@@ -152,7 +149,7 @@ Json gltf_json(const InspectedGltf& gltf) {
           {"skinned_nodes", gltf.inspection.skinned_nodes},
           {"meshes", meshes_json(gltf)},
           {"animations", animations_json(gltf)},
-          {"animation", gltf.animation ? Json(*gltf.animation) : Json()},
+          {"animation", or_null(gltf.animation)},
           {"curve_error", gltf.curve_error},
           {"split_normals", gltf.split},
           {"parts", std::move(parts)}};
@@ -161,7 +158,7 @@ Json gltf_json(const InspectedGltf& gltf) {
 }  // namespace
 
 std::string inspect_json(const Inspected& input) {
-  Json json = {{"chronormal", CHRONORMAL_VERSION}, {"command", "inspect"}, {"schema", 1}};
+  Json json = json_of_command("inspect");
   const bool has_faces = input.inspection.has_value();
   json["input"] = {{"name", input.name},
                    {"vertices", has_faces ? input.inspection->vertices : 0},
@@ -177,8 +174,7 @@ std::string inspect_json(const Inspected& input) {
                                {"what", trouble.what},
                                {"where", trouble.where.empty() ? Json() : Json(trouble.where)},
                                {"meaning", trouble.meaning}});
-  // File names need not be UTF-8; what is not becomes U+FFFD rather than an exception.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 }  // namespace chronormal::cli

@@ -214,10 +214,6 @@ std::vector<Trouble> find_trouble(const Inspected& input) {
   return troubles.take();
 }
 
-std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
-}
-
 std::string keyframe_label(const Inspected& input, std::size_t keyframe) {
   return with_name(fmt::format("keyframe {}", keyframe), input.keyframe_names[keyframe]);
 }

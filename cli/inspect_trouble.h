@@ -48,9 +48,6 @@ struct Trouble {
 /// All that is bad news, the worst first.
 [[nodiscard]] std::vector<Trouble> find_trouble(const Inspected& input);
 
-/// "1 face", "1,234 faces".
-[[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
-
 /// "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of Head, primitive 1": as a person finds it again.
 [[nodiscard]] std::string keyframe_label(const Inspected& input, std::size_t keyframe);
 [[nodiscard]] std::string segment_label(const Inspected& input, std::size_t segment);

@@ -288,22 +288,21 @@ Result<ObjShading> read_shading(const InputOptions& input, const std::string& wh
   return shading;
 }
 
-int run(const Options& options) {
-  const auto fail = [](const Error& error) { return report("sample", error); };
+Result<int> run(const Options& options) {
   Result<Request> understood = understand(options);
-  if (!understood) return fail(understood.error());
+  if (!understood) return understood.error();
   Request& request = understood.value();
   Progress progress(options.common.quiet);
   const auto input = read_input_or_mesh(options.input, progress);
-  if (!input) return fail(input.error());
+  if (!input) return input.error();
   const Motion& motion = input.value().motion;
   const bool targets = are_targets(options.input) || (motion.segments.size() > 1 && is_blend_shapes(motion));
-  if (const Status status = fit_moments(motion, targets, request.moments); !status) return fail(status.error());
+  if (const Status status = fit_moments(motion, targets, request.moments); !status) return status.error();
 
   ObjShading shading;  // outlives the sampling
   if (!options.hard_edges.empty()) {
     Result<ObjShading> read = read_shading(options.input, options.hard_edges, motion.topology);
-    if (!read) return fail(read.error());
+    if (!read) return read.error();
     shading = std::move(read).value();
     if (options.hard_edges == "groups")
       request.sample.elements.group_of_face = shading.group_of_face;
@@ -314,46 +313,36 @@ int run(const Options& options) {
   const auto written =
       write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
   progress.clear();
-  if (!written) return fail(written.error());
+  if (!written) return written.error();
   if (written.value().zeros > 0)
     fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
-               written.value().zeros, written.value().normals, options.elements.kind);
+               written.value().zeros, written.value().normals, options.elements.kind());
   return kExitDone;
 }
 
 }  // namespace
 
-void add_sample_command(CLI::App& program, int& exit_code) {
-  CLI::App* command = program.add_subcommand("sample", "Write the normals of a motion at chosen times");
-  command->group("Commands");
+Command sample_command() {
   auto options = std::make_shared<Options>();
-  options->input.add_to(*command);
-  command
-      ->add_option("--times", options->times,
-                   "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
-                   "a mesh does not move")
-      ->type_name("LIST");
-  command
-      ->add_option("--weights", options->weights,
-                   "a pose of blend shapes: one weight for each target; repeat it\n"
-                   "for more poses")
-      ->type_name("W1,W2,...")
-      ->take_all()
-      ->allow_extra_args(false);
-  options->elements.add_to(*command);
-  command->add_option("--weighting", options->weighting, "how the faces around a vertex count (listed below)")
-      ->type_name("NAME");
-  command->add_option("--length", options->length, "unit (default), or area: of weighting area, n itself")
-      ->type_name("KIND");
-  command
-      ->add_option("--hard-edges", options->hard_edges,
-                   "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
-                   "smoothing groups (s) or by its own normals (vn): groups, normals")
-      ->type_name("KIND");
-  command->add_option("--format", options->format, "of OUT: npy (default for -), npz, ply, obj")->type_name("NAME");
-  options->common.add_to(*command, true);
-  command->footer(footer());
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  return {"sample",
+          "Write the normals of a motion at chosen times",
+          {options->input.table(),
+           {{"--times LIST", &options->times,
+             "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
+             "a mesh does not move"},
+            {"--weights W1,W2,...", &options->weights,
+             "a pose of blend shapes: one weight for each target; repeat it\n"
+             "for more poses"}},
+           options->elements.table(),
+           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+            {"--length KIND", &options->length, "unit (default), or area: of weighting area, n itself"},
+            {"--hard-edges KIND", &options->hard_edges,
+             "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
+             "smoothing groups (s) or by its own normals (vn): groups, normals"},
+            {"--format NAME", &options->format, "of OUT: npy (default for -), npz, ply, obj"}},
+           options->common.table(true)},
+          footer(),
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -11,7 +11,7 @@
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::targets_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -117,4 +117,4 @@ TEST_F(TargetsCli, convert_writes_the_base_and_the_targets_but_no_cache_of_them)
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::targets_cli_test

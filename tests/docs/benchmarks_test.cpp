@@ -11,7 +11,7 @@
 #include "tests/support/generated_page.h"
 #include "tests/support/process.h"
 
-namespace chronormal {
+namespace chronormal::benchmarks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ TEST(Benchmarks, results_that_were_wrong_or_cannot_be_read_make_no_page) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::benchmarks_test

@@ -21,7 +21,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::docs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -216,4 +216,4 @@ TEST(Documents, the_changelog_knows_the_version) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::docs_test

@@ -8,7 +8,7 @@
 #include "tests/support/generated_page.h"
 #include "tests/support/process.h"
 
-namespace chronormal {
+namespace chronormal::paper_test {
 namespace {
 
 TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
@@ -25,4 +25,4 @@ TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::paper_test

@@ -15,7 +15,7 @@
 #include "tests/support/generated_page.h"
 #include "tests/support/process.h"
 
-namespace chronormal {
+namespace chronormal::weightings_test {
 namespace {
 
 TEST(Weightings, page_and_picture_are_what_the_generator_writes) {
@@ -79,4 +79,4 @@ TEST(Weightings, are_along_what_the_theory_says_of_two_triangles) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weightings_test

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/rounding.h"
 #include "normals/blend/blend_scratch.h"
 
 namespace chronormal {
@@ -40,7 +41,7 @@ double largest_of(const BlendTerm& term) {
 }
 
 void put(const Vec3d& value, double noise, double scale, float* lanes) {
-  const double bound = (length(value) + noise / kFloatHalfEpsilon) / scale * kMargin + kSmallestBound;
+  const double bound = (length(value) + noise / kFloatUnitRoundoff) / scale * kMargin + kSmallestBound;
   lanes[0] = static_cast<float>(value.x / scale);
   lanes[1] = static_cast<float>(value.y / scale);
   lanes[2] = static_cast<float>(value.z / scale);
@@ -178,16 +179,6 @@ void BlendStorage::target_added() {
     if (targets_[i].pairs.empty() || targets_[i].pairs.back().other != k) continue;
     if (StoredPair& pair = targets_[i].pairs.back(); pair.term.is_stored) fill_pair(i, pair);
   }
-}
-
-void BlendStorage::target_removed(std::size_t k) {
-  terms_.target_removed(k);
-  targets_.erase(targets_.begin() + static_cast<std::ptrdiff_t>(k));
-  for (StoredTarget& target : targets_) {
-    std::erase_if(target.pairs, [k](const StoredPair& pair) { return pair.other == k; });
-    for (StoredPair& pair : target.pairs) pair.other -= pair.other > k ? 1 : 0;
-  }
-  update_cost();
 }
 
 std::size_t BlendStorage::list_bytes() const noexcept {

@@ -8,6 +8,8 @@
 
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 #include "workflow/audit/audit_judge.h"
 
 namespace chronormal {
@@ -130,7 +132,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
       }
       // What is left of terms that cancel is their rounding, and no direction.
       constexpr double kRounding = 1e-13;
-      result.elements[e] = max_abs(sum) > kRounding * size ? sum : Vec3d{};
+      result.elements[e] = without_rounding(sum, kRounding * size);
     }
   });
 }
@@ -138,9 +140,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
 Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face) const {
   const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[face] + c]]; };
   const std::size_t corners = face_offsets_[face + 1] - face_offsets_[face];
-  Vec3d sum;  // over a fan
-  for (std::size_t c = 2; c < corners; ++c) sum = sum + cross(at(c - 1) - at(0), at(c) - at(0));
-  return sum;
+  return twice_vector_area(corners, at);
 }
 
 Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,

@@ -14,7 +14,6 @@
 namespace chronormal {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kChunk = 1024;
 // Stored base normals must have length 1; hosts can show nothing right with those that are shorter than this.
 constexpr double kShortest = 1e-3;
@@ -64,7 +63,7 @@ class MeshWriter {
     for (std::size_t n = 0; n < plan_.extras.size(); ++n)
       report_.extras.push_back({mesh_.target_count + n, plan_.extras[n].i, plan_.extras[n].j});
     report_.encoding = plan_.encoding;
-    report_.largest_error = plan_.lines.largest_error() * kDegrees;
+    report_.largest_error = plan_.lines.largest_error() * kDegreesPerRadian;
     report_.fitted_elements = plan_.lines.elements();
     report_.resampling_error = plan_.left_out;
     if (Status status = take_stored(); !status) return status;
@@ -221,7 +220,7 @@ class MeshWriter {
     const std::size_t accessor = deltas_of(part, find);
     double error = 0;
     for (const double of_chunk : errors) error = std::fmax(error, of_chunk);
-    report_.largest_error = std::fmax(report_.largest_error, (error + terms_.bound(target)) * kDegrees);
+    report_.largest_error = std::fmax(report_.largest_error, (error + terms_.bound(target)) * kDegreesPerRadian);
     return accessor;
   }
 
@@ -231,7 +230,7 @@ class MeshWriter {
     if (rewritten) {
       linear.emplace(terms_.linear_by_element(i));
       if (plan_.is_line[i]) square.emplace(terms_.pair_by_element(i, i));
-      report_.largest_error = std::fmax(report_.largest_error, terms_.bound(i) * kDegrees);
+      report_.largest_error = std::fmax(report_.largest_error, terms_.bound(i) * kDegreesPerRadian);
     }
     const auto deltas = [&](const GltfPart& part) {
       return square ? deltas_of_line(part, i, *linear, *square) : deltas_of_term(part, *linear);

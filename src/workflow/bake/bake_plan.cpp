@@ -11,7 +11,6 @@
 namespace chronormal {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kChunk = 1024;
 constexpr std::size_t kMostExtras = 10000;
 // Poses to measure at: all of them on small meshes.
@@ -256,17 +255,17 @@ class Planner {
                      [this](std::size_t a, std::size_t b) { return candidates_[a].turn < candidates_[b].turn; });
     std::size_t count = 0;
     double turn = 0;
-    while (count < order.size() && (turn + candidates_[order[count]].turn) * kDegrees <= options_.tolerance)
+    while (count < order.size() && (turn + candidates_[order[count]].turn) * kDegreesPerRadian <= options_.tolerance)
       turn += candidates_[order[count++]].turn;
     order.resize(count);
     // Terms along a normal turn nothing one by one; together they may be longer than it is.
     while (!order.empty() && sees_all_) {
       turn = turn_without(order);
-      if (turn * kDegrees <= options_.tolerance) break;
+      if (turn * kDegreesPerRadian <= options_.tolerance) break;
       order.resize(order.size() / 2);
       turn = 0;
     }
-    plan_.left_out = turn * kDegrees;
+    plan_.left_out = turn * kDegreesPerRadian;
     std::vector<bool> leave_out(candidates_.size(), false);
     for (const std::size_t n : order) leave_out[n] = true;
     for (std::size_t n = 0; n < candidates_.size(); ++n) {

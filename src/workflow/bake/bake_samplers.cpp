@@ -1,7 +1,6 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -10,8 +9,6 @@
 
 namespace chronormal {
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::string item(const std::string& list, std::size_t index) {
   return std::string(list).append("/").append(std::to_string(index));
@@ -73,7 +70,7 @@ class TrackWriter {
     for (std::size_t a = 0; a < document_.animations().size(); ++a) {
       if (Status status = write_animation(a); !status) return status;
     }
-    for (std::size_t n = 0; n < plans_.size(); ++n) reports_[n]->resampling_error += errors_[n] * kDegrees;
+    for (std::size_t n = 0; n < plans_.size(); ++n) reports_[n]->resampling_error += errors_[n] * kDegreesPerRadian;
     return Success{};
   }
 
@@ -163,7 +160,7 @@ class TrackWriter {
       if (!keys) return keys.error();
       const WeightTrack weights{track.interpolation, std::move(keys).value(),
                                 document_.meshes()[plans_[plan].mesh].target_count};
-      const ExtendedTrack extended = extended_track(weights, plans_[plan].extras, tolerance_ / kDegrees);
+      const ExtendedTrack extended = extended_track(weights, plans_[plan].extras, tolerance_ / kDegreesPerRadian);
       errors_[plan] = std::fmax(errors_[plan], extended.error);
       Sampler& result = found->second;
       result.interpolation = extended.interpolation;

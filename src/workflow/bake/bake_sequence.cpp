@@ -11,9 +11,10 @@
 #include <utility>
 
 #include "analysis/end_delta.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
 #include "core/blocks.h"
+#include "core/vector_area.h"
 #include "io/gltf/glb_builder.h"
 #include "workflow/bake/sequence_normals.h"
 
@@ -24,7 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kNoElement = static_cast<std::uint32_t>(-1);
 constexpr Vec3d kAnyNormal{0, 0, 1};  // of elements that have none
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 // Vertices of the file. Those of the motion come first, and behind them their copies, one for each further normal.
 struct Outputs {
@@ -87,10 +87,11 @@ std::size_t count_not_convex(const Topology& topology, const std::vector<float>&
     const auto face = topology.face(f);
     std::vector<Vec3d> triangles;
     Vec3d normal;
-    for (std::size_t c = 2; c < face.size(); ++c) {
-      triangles.push_back(cross(at(face[c - 1]) - at(face[0]), at(face[c]) - at(face[0])));
+    const auto edge_to = [&](std::size_t c) { return at(face[c]) - at(face[0]); };
+    for_fan(face.size(), edge_to, [&](const Vec3d& e, const Vec3d& g) {
+      triangles.push_back(cross(e, g));
       normal = normal + triangles.back();
-    }
+    });
     const bool turns =
         std::any_of(triangles.begin(), triangles.end(), [&](const Vec3d& n) { return dot(n, normal) < 0; });
     count += turns ? 1 : 0;

@@ -16,7 +16,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::file_test {
 namespace {
 
 using test::read_whole;
@@ -242,4 +242,4 @@ TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::file_test

@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/cache/maya_cache.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal {
+namespace chronormal::motion_readers_test {
 namespace {
 
 struct Fixture {
@@ -243,4 +243,4 @@ TEST(MotionReaderLists, recognise_files_by_their_first_bytes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_readers_test

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 
-namespace chronormal {
+namespace chronormal::gltf_motion_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture, test::positions_at;
@@ -466,4 +466,4 @@ TEST(GltfMemory, keyframes_beyond_what_is_allowed_are_refused_before_they_are_ma
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_motion_test

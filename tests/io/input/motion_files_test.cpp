@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_mesh.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::motion_files_test {
 namespace {
 
 constexpr const char* kObj = "v 9 9 9\nv 8 8 8\nv 7 7 7\nf 1 2 3\n";
@@ -143,4 +143,4 @@ TEST_F(MotionFiles, nothing_is_overwritten_without_force_or_left_after_an_error)
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_files_test

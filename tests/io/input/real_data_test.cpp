@@ -12,7 +12,7 @@
 #include "chronormal/io/sequence.h"
 #include "io/mesh/mesh_readers.h"
 
-namespace chronormal {
+namespace chronormal::real_data_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_F(RealData, files_that_break_the_ply_grammar_are_refused) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::real_data_test

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/input/targets.h"
 
-namespace chronormal {
+namespace chronormal::real_targets_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,4 +82,4 @@ TEST(RealTargets, face_and_all_its_targets_are_one_star_of_base_plus_deltas) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::real_targets_test

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "chronormal/io/file.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/mesh/ply.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::sequence_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -238,4 +238,4 @@ TEST(WriteSequence, one_file_that_exists_keeps_all_from_being_written) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::sequence_test

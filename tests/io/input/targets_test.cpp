@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::targets_test {
 namespace {
 
 using test::gzip, test::kLift, test::kSquare, test::kSquareObj, test::TemporaryFolder;
@@ -167,4 +167,4 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::targets_test

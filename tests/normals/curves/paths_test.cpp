@@ -12,13 +12,13 @@
 #include <initializer_list>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::paths_test {
 namespace {
 
 using reference::Real;
@@ -253,4 +253,4 @@ TEST(PolynomialMotion, a_straight_motion_is_one_piece_and_one_too_curved_is_an_e
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::paths_test

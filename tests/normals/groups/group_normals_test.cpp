@@ -1,6 +1,6 @@
 // Theorems about the normals of vertices and corners, and what degenerate ones are.
 
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -18,7 +18,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::group_normals_test {
 namespace {
 
 using fixtures::Point;
@@ -288,4 +288,4 @@ TEST(GroupNormals, a_polygon_with_two_corners_at_a_point_counts_with_both) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::group_normals_test

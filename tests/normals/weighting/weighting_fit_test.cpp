@@ -1,6 +1,6 @@
 // The quadratics that stand for weighted normals: their bounds are never below the error, and not far above it.
 
-#include "chronormal/normals/weighting_fit.h"
+#include "chronormal/normals/weighting.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/normals/group_normals.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::weighting_fit_test {
 namespace {
 
 using fixtures::Point;
@@ -335,4 +335,4 @@ TEST(WeightingFit, elements_without_area_are_zero_with_bound_0) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weighting_fit_test

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::weighting_test {
 namespace {
 
 using fixtures::Point;
@@ -181,4 +181,4 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weighting_test

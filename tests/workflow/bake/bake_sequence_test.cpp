@@ -17,13 +17,13 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_motion.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/workflow/bake.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 #include "tests/support/shown_glb.h"
 
-namespace chronormal {
+namespace chronormal::bake_sequence_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -568,4 +568,4 @@ TEST(BakeSequence, real_sequences_are_exact) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_sequence_test

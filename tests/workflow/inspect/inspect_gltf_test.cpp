@@ -7,7 +7,7 @@
 
 #include "tests/support/gltf_builder.h"
 
-namespace chronormal {
+namespace chronormal::inspect_gltf_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -133,4 +133,4 @@ TEST(InspectGltf, broken_geometry_is_an_error) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::inspect_gltf_test

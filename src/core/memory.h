@@ -12,11 +12,11 @@ namespace chronormal {
 /// Where one pass reads and writes more bytes than this, results go past the caches if all their arrays are aligned to
 /// 64 bytes (those of recompute and of the schemes: if they are packed as well). In a shared cache of 32 MiB they would
 /// push out what is read next, and be pushed out before anybody reads them. Measured there, with and without a reader
-/// after it: better from 20 to 30 MiB on.
+/// after it, that is better from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
-/// Bytes aligned to 64, not initialised; from 8 MiB on aligned to 2 MiB and, on Linux, marked for huge pages, which
-/// spares most misses of the address translation. Pages that are never written cost no memory.
+/// Uninitialised bytes, aligned to 64. From 8 MiB on they are aligned to 2 MiB and, on Linux, marked for huge pages,
+/// which spares most misses of the address translation. Pages that are never written cost no memory.
 class AlignedBytes {
  public:
   AlignedBytes() = default;
@@ -32,13 +32,13 @@ class AlignedBytes {
 
   /// Sets the size, without touching the bytes or moving them. size must not be larger than capacity()
   void resize(std::size_t size) noexcept;
-  /// Gives the memory behind size() back to the system where it comes in huge pages; it stays to be had.
+  /// Gives the memory behind size() back to the system where it comes in huge pages; it remains available.
   void release_rest() noexcept;
 
   [[nodiscard]] std::byte* data() noexcept { return data_.get(); }
   [[nodiscard]] const std::byte* data() const noexcept { return data_.get(); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// How many bytes there are to be had: the size that it was made with.
+  /// The largest size that there is memory for: the one that the object was made with.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
  private:
@@ -49,7 +49,7 @@ class AlignedBytes {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// An array of `count` values of a trivial type, not initialised.
+/// An array of `count` uninitialised values of a trivial type.
 template <class T>
 class AlignedArray {
   static_assert(std::is_trivially_copyable_v<T>);
