@@ -14,6 +14,11 @@
 namespace chronormal {
 namespace {
 
+Vec3d stored_normal(const StoredNormals& normals, std::size_t keyframe, const JudgedOutput& output) {
+  const float* n = normals.of_keyframes[keyframe].data() + 3 * std::size_t{output.corner};
+  return to_double(Vec3f{n[0], n[1], n[2]});
+}
+
 class SequenceSource {
  public:
   static constexpr bool kNeedsEnds = true;
@@ -73,8 +78,7 @@ class SequenceSource {
   [[nodiscard]] const Motion::SegmentKeys& keys() const { return motion_.segments[segments_[segment_]]; }
 
   [[nodiscard]] Vec3d stored_at(std::size_t keyframe, const JudgedOutput& output) const {
-    const float* n = normals_.of_keyframes[keyframe].data() + 3 * std::size_t{output.corner};
-    return to_double(Vec3f{n[0], n[1], n[2]});
+    return stored_normal(normals_, keyframe, output);
   }
 
   // A direction turned as the author turned the geometry at a keyframe, by no more than in keyframe 0.
@@ -162,6 +166,30 @@ std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::siz
   return moves;
 }
 
+// Which corners share a normal: those of smooth edges, as the stored normals of keyframe 0 say, where there are any.
+Result<NormalGroups> groups_of(const Motion& motion, const StoredNormals& normals, bool weld) {
+  const Topology& topology = motion.topology;
+  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+  if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
+  const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
+  return NormalGroups::by_split_normals(topology, points, of_corners);
+}
+
+// A sequence is one subject; each target is one.
+std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion, bool is_targets) {
+  std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) subjects[is_targets ? s : 0].push_back(s);
+  return subjects;
+}
+
+PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
+  std::vector<Vec3d> positions;
+  for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
+  PartNormals normals;
+  part.normals(positions, normals);
+  return normals;
+}
+
 }  // namespace
 
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets, const AuditOptions& options) {
@@ -173,54 +201,41 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Topology& topology = motion.topology;
-  const Points points = options.weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
-  Result<NormalGroups> groups = NormalGroups::of_vertices(topology, points);
-  if (!normals.of_keyframes.empty())
-    groups = NormalGroups::by_split_normals(
-        topology, points, VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count()));
+  const Result<NormalGroups> groups = groups_of(motion, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
   };
 
+  const Topology& topology = motion.topology;
   const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
   if (!normals.of_keyframes.empty()) {
     const std::vector<JudgedOutput> all = outputs_of(std::vector<bool>(topology.vertex_count(), true));
-    result.offsets.push_back(
-        authored_offset(topology, base, groups.value(), result.weighting, all, [&](const JudgedOutput& output) {
-          const float* n = normals.of_keyframes[0].data() + 3 * std::size_t{output.corner};
-          return to_double(Vec3f{n[0], n[1], n[2]});
-        }));
+    const auto stored = [&](const JudgedOutput& output) { return stored_normal(normals, 0, output); };
+    result.offsets.push_back(authored_offset(topology, base, groups.value(), result.weighting, all, stored));
   }
 
-  // A sequence is one subject; each target is one.
-  std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
-  for (std::size_t s = 0; s < motion.segments.size(); ++s) subjects[is_targets ? s : 0].push_back(s);
   std::size_t done = 0;
   const auto progress = [&] {
     if (options.progress) options.progress(++done, motion.segments.size());
   };
-  for (std::size_t i = 0; i < subjects.size(); ++i) {
+  for (const std::vector<std::size_t>& segments : segments_of_subjects(motion, is_targets)) {
     AuditSubject subject;
     subject.kind = is_targets ? AuditSubject::Kind::kTarget : AuditSubject::Kind::kSequence;
     if (is_targets) {
-      subject.target = i;
-      subject.name = motion.keyframes[motion.segments[i].to].name;
+      subject.target = segments[0];
+      subject.name = motion.keyframes[motion.segments[segments[0]].to].name;
     }
-    subject.segments = subjects[i].size();
+    subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const JudgedPart part(topology, groups.value(), result.weighting, outputs_of(moving_vertices(motion, subjects[i])));
+    const JudgedPart part(topology, groups.value(), result.weighting, outputs_of(moving_vertices(motion, segments)));
     if (part.outputs().empty()) {
       ++result.still;
       for (std::size_t s = 0; s < subject.segments; ++s) progress();
       continue;
     }
-    std::vector<Vec3d> positions;
-    for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
-    PartNormals first;
-    part.normals(positions, first);
-    SequenceSource source(motion, normals, result.stored, part, result.rule, first, subjects[i]);
+    const PartNormals first = normals_at_first_keyframe(part, base);
+    SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
     measure(source, part, result.rule, progress, subject);
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));

@@ -16,10 +16,9 @@
 
 #include "chronormal/analysis/quality.h"
 #include "workflow/bake/deltas.h"
-#include "workflow/bake/drivers.h"
+#include "workflow/bake/messages.h"
 #include "workflow/bake/plan.h"
 #include "workflow/bake/terms.h"
-#include "workflow/bake/warnings.h"
 #include "workflow/bake/write_mesh.h"
 #include "workflow/bake/write_tracks.h"
 #include "workflow/shading/gltf_shading.h"

@@ -30,8 +30,9 @@ struct MeshPlan {
   double left_out = 0;                ///< degrees: how far the pairs that were left out turn a normal
 };
 
-/// Decides. use has the weights of the file; is_driven, whether animations give some. Errors: kUsage where a fitted
-/// weighting is asked for targets that are active together; kInvalidInput where there would be too many pairs.
+/// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
+/// Pure. Errors: kUsage where a fitted weighting is asked for targets that are active together; kInvalidInput where
+/// there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
                                          const NormalTerms& terms, const WeightUse& use, bool is_driven,
                                          const BakeOptions& options);

@@ -2,7 +2,6 @@
 // target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
 //
 //     SequenceNormals     normals at keys, and their bends between                            sequence_normals
-//     sequence_vertices   who shows them: vertices, and their copies at hard edges            sequence_vertices
 //     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
 //     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
@@ -17,7 +16,6 @@
 #include "workflow/bake/sequence_deltas.h"
 #include "workflow/bake/sequence_file.h"
 #include "workflow/bake/sequence_normals.h"
-#include "workflow/bake/sequence_vertices.h"
 
 namespace chronormal {
 namespace {
@@ -45,6 +43,27 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
     times.push_back(time);
   }
   return times;
+}
+
+// How many polygons a fan does not fit: one of its triangles looks the other way.
+std::size_t count_not_convex(const Topology& topology, const std::vector<float>& positions) {
+  const auto at = [&](std::uint32_t v) {
+    return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
+  };
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < topology.face_count() && !topology.all_triangles(); ++f) {
+    const auto face = topology.face(f);
+    std::vector<Vec3d> triangles;
+    Vec3d normal;
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      triangles.push_back(cross(at(face[c - 1]) - at(face[0]), at(face[c]) - at(face[0])));
+      normal = normal + triangles.back();
+    }
+    const bool turns =
+        std::any_of(triangles.begin(), triangles.end(), [&](const Vec3d& n) { return dot(n, normal) < 0; });
+    count += turns ? 1 : 0;
+  }
+  return count;
 }
 
 // The largest bound of the fits of a weighting, in degrees; 0 for areas.
@@ -118,7 +137,6 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   const Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 
-  const SequenceVertices vertices = sequence_vertices(motion.topology, groups.value());
   const std::vector<SequenceElement> elements = sequence_elements(normals);
   report_elements(elements, exact, report);
   report.largest_error = largest_bound(normals);
@@ -128,7 +146,7 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (const std::size_t bent = count_not_convex(motion.topology, motion.keyframes[0].positions); bent > 0)
     report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
 
-  SequenceFile file(motion, vertices, elements, exact, options);
+  SequenceFile file(motion, groups.value(), elements, exact, options);
   if (exact) {
     if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
   } else {
@@ -140,7 +158,7 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (!bytes) return bytes.error();
   glb = std::move(bytes).value();
   report.keyframes = normals.keys();
-  report.vertices = vertices.size();
+  report.vertices = file.vertex_count();
   report.targets = targets.of_keys();
   report.extra_targets = targets.bent_segments.size();
   report.bytes = glb.size();

@@ -1,13 +1,58 @@
 #include "workflow/bake/sequence_file.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "chronormal/core/views.h"
 #include "io/gltf/gltf_bake_mark.h"
 
 namespace chronormal {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+SequenceVertices make_vertices(const Topology& topology, const NormalGroups& groups) {
+  const std::span<const std::uint32_t> corners = topology.corners();
+  SequenceVertices result;
+  result.vertex.resize(topology.vertex_count());
+  for (std::size_t v = 0; v < result.vertex.size(); ++v) result.vertex[v] = static_cast<std::uint32_t>(v);
+  if (groups.outputs_are_vertices()) {
+    result.element.assign(groups.element_of_output().begin(), groups.element_of_output().end());
+    result.of_corner.assign(corners.begin(), corners.end());
+    return result;
+  }
+  result.element.assign(topology.vertex_count(), SequenceVertices::kNone);
+  std::vector<std::uint32_t> next_copy(topology.vertex_count(), SequenceVertices::kNone);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::uint32_t element = groups.element_of_corner()[c];
+    std::uint32_t at = corners[c];
+    if (result.element[at] == SequenceVertices::kNone) result.element[at] = element;
+    while (result.element[at] != element) {
+      if (next_copy[at] == SequenceVertices::kNone) {
+        next_copy[at] = static_cast<std::uint32_t>(result.vertex.size());
+        result.vertex.push_back(corners[c]);
+        result.element.push_back(element);
+        next_copy.push_back(SequenceVertices::kNone);
+      }
+      at = next_copy[at];
+    }
+    result.of_corner.push_back(at);
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
+  std::vector<std::uint32_t> triangles;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const std::size_t corners = topology.face(f).size();
+    for (std::size_t c = 2; c < corners; ++c)
+      triangles.insert(triangles.end(),
+                       {vertex_of_corner[first], vertex_of_corner[first + c - 1], vertex_of_corner[first + c]});
+    first += corners;
+  }
+  return triangles;
+}
 
 std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   std::vector<Vec3d> normals;
@@ -16,8 +61,8 @@ std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   return normals;
 }
 
-}  // namespace
-
+// What an animation gives the weights: hats over the keys, and t (1 - t) in bent segments. For each key the weights, or
+// of exact, which is a cubic spline, in-tangents, weights and out-tangents.
 std::vector<float> weight_track(const SequenceTargets& targets, std::span<const float> times) {
   const std::size_t keys = targets.keys, n = targets.count(), rows = targets.exact ? 3 : 1;
   std::vector<float> values(keys * rows * n, 0.0F);
@@ -54,16 +99,35 @@ GltfBakeMark mark_of(const SequenceTargets& targets) {
   return mark;
 }
 
-SequenceFile::SequenceFile(const Motion& motion, const SequenceVertices& vertices,
-                           std::span<const SequenceElement> elements, bool exact, const BakeOptions& options)
-    : vertices_(vertices), dense_zeros_(options.dense_zeros), builder_(options.most_bytes) {
-  triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices.of_corner), vertices.size());
+}  // namespace
+
+std::vector<float> SequenceVertices::positions(std::span<const float> of_motion) const {
+  std::vector<float> result(3 * size());
+  for (std::size_t i = 0; i < size(); ++i)
+    std::copy_n(of_motion.begin() + 3 * std::ptrdiff_t{vertex[i]}, 3,
+                result.begin() + 3 * static_cast<std::ptrdiff_t>(i));
+  return result;
+}
+
+std::vector<float> SequenceVertices::vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const {
+  std::vector<float> result(3 * size());
+  const auto view = VectorView<float>::packed(result.data(), size());
+  for (std::size_t i = 0; i < size(); ++i) view.set(i, to_float(element[i] == kNone ? none : of_elements[element[i]]));
+  return result;
+}
+
+SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
+                           bool exact, const BakeOptions& options)
+    : vertices_(make_vertices(motion.topology, groups)),
+      dense_zeros_(options.dense_zeros),
+      builder_(options.most_bytes) {
+  triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices_.of_corner), vertices_.size());
   base_ = {
-      {"POSITION", builder_.add_vectors(vertices.positions(motion.keyframes[0].positions), {true, true})},
-      {"NORMAL", builder_.add_vectors(vertices.vectors(normals_of(elements), kAnyNormal), {false, true})},
+      {"POSITION", builder_.add_vectors(vertices_.positions(motion.keyframes[0].positions), {true, true})},
+      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals_of(elements), kAnyNormal), {false, true})},
   };
   if (exact)
-    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices.size()), {true, options.dense_zeros});
+    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {true, options.dense_zeros});
 }
 
 void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals) {

@@ -3,17 +3,17 @@
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FILE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
 #include "io/gltf/glb_builder.h"
 #include "workflow/bake/sequence_deltas.h"
-#include "workflow/bake/sequence_vertices.h"
 
 namespace chronormal {
 
@@ -31,18 +31,30 @@ struct SequenceTargets {
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// What an animation gives the weights: hats over the keys, and t (1 - t) in bent segments. For each key the weights,
-/// or of exact, which is a cubic spline, in-tangents, weights and out-tangents.
-[[nodiscard]] std::vector<float> weight_track(const SequenceTargets& targets, std::span<const float> times);
+/// The vertices of a file. Those of the motion come first, and behind them their copies, one for each further normal.
+struct SequenceVertices {
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-[[nodiscard]] GltfBakeMark mark_of(const SequenceTargets& targets);
+  std::vector<std::uint32_t> vertex;     ///< of each: that of the motion
+  std::vector<std::uint32_t> element;    ///< of each: whose normal it shows; kNone where it has no face
+  std::vector<std::uint32_t> of_corner;  ///< of each corner of the motion
+
+  [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
+  /// Positions of the motion, (V, 3), for each vertex of the file.
+  [[nodiscard]] std::vector<float> positions(std::span<const float> of_motion) const;
+  /// Vectors of elements for each vertex of the file, and `none` for those without a face.
+  [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
+};
 
 /// The file while it grows, target by target.
 class SequenceFile {
  public:
-  /// Writes key 0 with the normals of the elements. vertices must outlive this.
-  SequenceFile(const Motion& motion, const SequenceVertices& vertices, std::span<const SequenceElement> elements,
-               bool exact, const BakeOptions& options);
+  /// Writes key 0 with the normals of the elements, and polygons as fans of triangles. (Their normals are those of the
+  /// polygons all the same.)
+  SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements, bool exact,
+               const BakeOptions& options);
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
   /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
   /// key 0 itself, which only exact has.
@@ -59,7 +71,7 @@ class SequenceFile {
  private:
   void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);
 
-  const SequenceVertices& vertices_;
+  SequenceVertices vertices_;
   bool dense_zeros_;
   GlbBuilder builder_;
   std::size_t triangles_ = 0;       // accessor

@@ -102,7 +102,8 @@ class TrackExtender {
   TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance)
       : track_(track), products_(products), tolerance_(tolerance), spline_(track.targets + products.size()) {}
 
-  ExtendedTrack run() {
+  // The track as a cubic spline.
+  ExtendedTrack spline() {
     ExtendedTrack result;
     result.interpolation = GltfInterpolation::kCubicSpline;
     add_first_key();
@@ -188,7 +189,7 @@ class TrackExtender {
 ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance) {
   const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1;
   const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !products_are_linear(track, products);
-  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance).run();
+  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance).spline();
   ExtendedTrack result;
   result.interpolation = track.interpolation;
   if (track.interpolation != GltfInterpolation::kCubicSpline) {

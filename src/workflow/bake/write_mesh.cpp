@@ -5,7 +5,7 @@
 
 #include "io/gltf/gltf_bake_mark.h"
 #include "io/json/json_writer.h"
-#include "workflow/bake/drivers.h"
+#include "workflow/bake/messages.h"
 
 namespace chronormal {
 namespace {

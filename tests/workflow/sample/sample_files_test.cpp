@@ -27,10 +27,10 @@ SampleOptions options_of(ElementKind kind, double crease_angle = 180) {
   return options;
 }
 
-// The normals that files must have.
-std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time) {
+// The normals that files must have, of as many times in one segment.
+std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time, double evaluations = 1) {
   NormalSampler sampler = NormalSampler::make(motion, options).value();
-  return sampler.normals_of_outputs(sampler.at_time(time).value());
+  return sampler.normals_of_outputs(sampler.at_time(time, evaluations).value());
 }
 
 SampleSummary write_good(const Motion& motion, const SampleOptions& options, const Moments& moments,
@@ -85,7 +85,7 @@ TEST(WriteSamples, npy_is_one_array_of_moments_and_outputs) {
     EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, outputs, 3}));
     std::vector<float> expected;
     for (const double time : {0.75, 0.0, 0.5}) {
-      const auto normals = normals_at(motion, options_of(kind), time);
+      const auto normals = normals_at(motion, options_of(kind), time, 3);
       expected.insert(expected.end(), normals.begin(), normals.end());
     }
     EXPECT_EQ(array.as<float>(), expected);
