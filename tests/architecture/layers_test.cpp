@@ -243,5 +243,17 @@ TEST(Layers, files_can_be_seen_at_a_glance) {
   }
 }
 
+// Several test files are compiled as one (CHRONORMAL_UNITY), so that their names must not meet.
+TEST(Layers, every_test_file_has_a_namespace_of_its_own) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
+    if (!entry.path().filename().string().ends_with("_test.cpp")) continue;
+    ++count;
+    const std::string own = "namespace chronormal::" + entry.path().stem().string() + " {\n";
+    EXPECT_NE(read(entry.path()).find(own), std::string::npos) << entry.path() << " lacks " << own;
+  }
+  EXPECT_GT(count, 90u);
+}
+
 }  // namespace
 }  // namespace chronormal::layers_test

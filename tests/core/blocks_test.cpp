@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::blocks_test {
 namespace {
 
 TEST(ParallelEach, calls_every_index_once) {
@@ -37,4 +37,4 @@ TEST(ParallelFold, merges_blocks_in_their_order_on_any_number_of_threads) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blocks_test

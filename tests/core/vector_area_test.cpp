@@ -6,7 +6,7 @@
 
 #include "core/rounding.h"
 
-namespace chronormal {
+namespace chronormal::vector_area_test {
 namespace {
 
 Vec3d normal_of(const std::vector<Vec3d>& polygon, std::size_t first = 0) {
@@ -68,4 +68,4 @@ TEST(Rounding, is_not_what_lies_above_the_error) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::vector_area_test

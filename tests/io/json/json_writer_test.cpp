@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace chronormal {
+namespace chronormal::json_writer_test {
 namespace {
 
 TEST(JsonNumber, has_the_fewest_digits_that_read_back) {
@@ -31,4 +31,4 @@ TEST(JsonObject, keeps_its_members_in_order_and_their_text_as_it_is) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::json_writer_test
