@@ -11,10 +11,10 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
-#include "workflow/shading/gltf_shading.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
 #include "core/vector_area.h"
+#include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
