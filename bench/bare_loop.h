@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/core/parallel.h"
+#include "chronormal/core/memory.h"
 
 namespace chronormal::bench {
 

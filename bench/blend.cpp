@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "chronormal/normals/blend_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
-#include "chronormal/normals/weld.h"
 #include "groups.h"
 
 namespace chronormal::bench {

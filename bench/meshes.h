@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/core/memory.h"
 
 namespace chronormal::bench {
 

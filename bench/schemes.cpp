@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/compare.h"
 #include "groups.h"
 

@@ -8,7 +8,6 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/validate.h"
 #include "io/cache/position_cache.h"
 #include "mesh_invariants.h"
 

@@ -14,7 +14,6 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_motion.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/validate.h"
 
 namespace chronormal::fuzz {
 

@@ -11,7 +11,6 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/validate.h"
 #include "io/mesh/mesh_frame.h"
 
 namespace chronormal::fuzz {

@@ -11,30 +11,25 @@
 #include "chronormal/core/views.h"       // vectors in the caller's memory, as planes or packed
 
 #include "chronormal/motion/blend_set.h"  // a base and targets, with any weights at once
-#include "chronormal/motion/motion.h"     // keyframes, and the straight segments between them
+#include "chronormal/motion/motion.h"     // keyframes, the straight segments between them, and where a time lies
 #include "chronormal/motion/topology.h"   // which vertices make which face
-#include "chronormal/motion/validate.h"   // the check between data from outside and everything that computes
 
 #include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
 #include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
-#include "chronormal/normals/group_normals.h"    // normals of vertices and corners, as sums of those of faces
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
-#include "chronormal/normals/normal_groups.h"    // which corners share a normal: vertices, creases, split normals
+#include "chronormal/normals/normal_groups.h"    // which corners share a normal, and the sums of those that do
 #include "chronormal/normals/paths.h"            // vertices on curves: normals of degree 4 and 6
-#include "chronormal/normals/playback.h"         // the same, played at equal steps
+#include "chronormal/normals/playback.h"         // curves of normals, played at equal steps
 #include "chronormal/normals/recompute.h"        // the rival: the cross product anew at every t
-#include "chronormal/normals/segment_normals.h"  // the cheaper of the two, by a model of their costs
+#include "chronormal/normals/segment_normals.h"  // the cheaper of curves and recompute, by a model of their costs
 #include "chronormal/normals/transform.h"        // rigid and affine motion: normals of meshes that move as a whole
-#include "chronormal/normals/weighting.h"        // area, angle, uniform ...: the weightings that tools use
-#include "chronormal/normals/weighting_fit.h"    // quadratics for those that are none, with a bound for each
-#include "chronormal/normals/weld.h"             // which vertices are one point
+#include "chronormal/normals/weighting.h"        // area, angle, uniform ...: the weightings that tools use, and fits
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
-#include "chronormal/analysis/quality.h"            // angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/reference_normals.h"  // exact normals by the cross product, from positions alone
-#include "chronormal/analysis/surface.h"            // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
 #include "chronormal/io/file.h"            // whole files in, and out without ever half a one

@@ -1,4 +1,4 @@
-#include "chronormal/analysis/reference_normals.h"
+#include "chronormal/analysis/quality.h"
 
 #include <cassert>
 

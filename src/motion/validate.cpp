@@ -1,4 +1,4 @@
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 
 #include <cmath>
 #include <string>

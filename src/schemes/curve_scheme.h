@@ -26,8 +26,8 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/schemes/scheme.h"
+#include "chronormal/core/memory.h"
 #include "schemes/kernels/curve_kernels.h"
 
 namespace chronormal {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 

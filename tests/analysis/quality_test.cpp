@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/analysis/reference_normals.h"
-
 namespace chronormal {
 namespace {
 

@@ -1,12 +1,14 @@
-// topology, motion, validate.
+// Topologies, motions, the check of what comes from outside, and the place of a time.
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/topology.h"
-#include "chronormal/motion/validate.h"
 
 namespace chronormal {
 namespace {
@@ -99,6 +101,58 @@ TEST(Validate, refuses_segments_that_lead_nowhere) {
   expect_invalid(motion, "segment 0", "time");
   motion.segments.clear();
   expect_invalid(motion, "", "two keyframes");
+}
+
+// From 2 s over 3 s to 5 s.
+Motion three_keyframes() {
+  Motion motion = two_frames();
+  motion.keyframes.push_back(motion.keyframes.back());
+  for (std::size_t k = 0; k < 3; ++k) motion.keyframes[k].time = std::array{2, 3, 5}[k];
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(FindInstant, keyframe_belongs_to_the_segment_that_begins_there) {
+  const Motion motion = three_keyframes();
+  const auto at = [&motion](double time) {
+    const Instant instant = find_instant(motion, time).value();
+    return std::pair{instant.segment, instant.t};
+  };
+  EXPECT_EQ(at(2), (std::pair<std::size_t, double>{0, 0}));
+  EXPECT_EQ(at(2.25), (std::pair<std::size_t, double>{0, 0.25}));
+  EXPECT_EQ(at(3), (std::pair<std::size_t, double>{1, 0}));
+  EXPECT_EQ(at(4), (std::pair<std::size_t, double>{1, 0.5}));
+  EXPECT_EQ(at(5), (std::pair<std::size_t, double>{1, 1}));
+}
+
+TEST(FindInstant, time_without_motion_is_a_usage_error_with_the_range) {
+  const Motion motion = three_keyframes();
+  for (const double time : {1.999, 5.001, -3.0, std::nan("")}) {
+    const auto instant = find_instant(motion, time);
+    ASSERT_FALSE(instant.ok()) << time;
+    EXPECT_EQ(instant.error().code, ErrorCode::kUsage);
+    EXPECT_NE(instant.error().message.find("from 2 to 5"), std::string::npos) << instant.error().message;
+  }
+  Motion gap = motion;
+  gap.keyframes.push_back(gap.keyframes.back());
+  gap.keyframes[2].time = 4;
+  gap.keyframes.push_back(gap.keyframes.back());
+  gap.keyframes[4].time = 7;
+  gap.segments = {{0, 1}, {3, 4}};
+  EXPECT_TRUE(find_instant(gap, 6).ok());
+  EXPECT_FALSE(find_instant(gap, 3.5).ok());
+}
+
+TEST(FindInstant, blend_shapes_and_still_meshes_have_no_times) {
+  Motion star = three_keyframes();
+  star.segments = {{0, 1}, {0, 2}};
+  EXPECT_EQ(find_instant(star, 2.5).error().code, ErrorCode::kUsage);
+  Motion still = three_keyframes();
+  still.segments.clear();
+  EXPECT_EQ(find_instant(still, 2).error().code, ErrorCode::kUsage);
+  EXPECT_TRUE(is_blend_shapes(star));
+  EXPECT_FALSE(is_blend_shapes(three_keyframes()));
+  EXPECT_FALSE(is_blend_shapes(still));
 }
 
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/schemes/scheme.h"
+#include "chronormal/core/memory.h"
 #include "core/trigonometry.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"

@@ -37,7 +37,7 @@ struct Morph {
 /// Angle between unit vectors, in degrees.
 [[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);
 
-/// Exact unit normals of all (segment, face) pairs at N equidistant t, from positions (analysis/reference_normals.h),
+/// Exact unit normals of all (segment, face) pairs at N equidistant t, from positions (analysis/quality.h),
 /// and any scheme held against them, pair by pair. A sample without a direction counts as no error.
 class PairErrors {
  public:

@@ -1,7 +1,7 @@
 /// What a mesh is made of, apart from how it moves: doubled vertices, edges, pieces, faces that lie on each other.
 ///
 /// Files double vertices, for texture seams or hard edges, and a surface that is whole then looks torn. So everything
-/// here counts points (normals/weld.h) and not vertices. An edge has two of them, and is
+/// here counts points (normals/normal_groups.h) and not vertices. An edge has two of them, and is
 ///
 ///     open           if one face has it, once or twice: the border of the surface
 ///     non-manifold   if more than two faces have it
@@ -20,7 +20,7 @@
 #include <cstddef>
 
 #include "chronormal/motion/topology.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
 

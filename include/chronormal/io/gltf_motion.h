@@ -54,7 +54,7 @@ struct GltfMotion {
 [[nodiscard]] bool has_moving_targets(const GltfDocument& document) noexcept;
 
 /// Reads the motion that the options name. Only parts that can move take part: primitives with faces and targets, and
-/// for an animation those that it drives. The result is valid (motion/validate.h).
+/// for an animation those that it drives. The result is valid (validate() in motion/motion.h).
 ///
 /// Errors: of GltfDocument; kInvalidInput where nothing can move, or the keyframes would take more than most_bytes;
 /// kUsage for an animation that is not there.

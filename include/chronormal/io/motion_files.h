@@ -27,7 +27,7 @@ struct MotionOptions {
   bool world = false;            ///< vertices of a glTF file are where its nodes put them
 };
 
-/// Reads the motion that the inputs stand for. The result is valid (motion/validate.h).
+/// Reads the motion that the inputs stand for. The result is valid (validate() in motion/motion.h).
 ///
 /// One file of a whole motion, which "-" may be too; or two inputs of which one is a cache by its extension, in either
 /// order, and the other a mesh; anything else is read_sequence(). The frame rate of the options is that of formats that

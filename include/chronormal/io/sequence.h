@@ -32,7 +32,7 @@ struct SequenceOptions {
 [[nodiscard]] Result<std::vector<std::string>> find_frames(std::span<const std::string> inputs);
 
 /// Reads the files that the inputs stand for as keyframes; each takes the name of its file. The result is valid
-/// (motion/validate.h).
+/// (validate() in motion/motion.h).
 ///
 /// progress(done, total), if given, is called after each file. Only one file is open at a time, and one topology is
 /// kept.

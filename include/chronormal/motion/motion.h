@@ -4,6 +4,8 @@
 /// sequence of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have
 /// 0 -> 1 and 0 -> 2. Both are a Motion, and nothing after this file asks which it was.
 ///
+/// find_instant() says which segment, and which t in it, belong to a time.
+///
 /// Shapes     V = vertices; a keyframe has V positions, packed as (V, 3) float32.
 /// Units      positions: any length; times: seconds, double.
 #ifndef CHRONORMAL_MOTION_MOTION_H_
@@ -49,12 +51,35 @@ struct Motion {
   /// are. Empty: all are one.
   std::vector<std::uint32_t> body_of_vertex = {};
 
-  /// View of one segment. Precondition: the motion is valid (motion/validate.h) and i < segments.size().
+  /// Returns a view of one segment. Precondition: the motion is valid (validate()) and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;
 
   /// Makes one segment between every two neighbouring keyframes.
   void connect_as_sequence();
 };
+
+/// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
+/// granted: at least one face and one segment, every keyframe with 3 x vertex_count finite coordinates, a body for each
+/// vertex or none, segments between keyframes that exist, and finite times that ascend along every segment. (A Topology
+/// checks its own indices when it is built.)
+/// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
+[[nodiscard]] Status validate(const Motion& motion);
+
+/// Tells from its segments whether a motion is blend shapes: they lead from keyframe 0 to every other. A motion of two
+/// keyframes is both blend shapes and a sequence.
+[[nodiscard]] bool is_blend_shapes(const Motion& motion) noexcept;
+
+/// Where a time lies in a motion.
+struct Instant {
+  std::size_t segment = 0;
+  double t = 0;  ///< in [0, 1]
+};
+
+/// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the later
+/// one, and the end of the motion is the end of the last one. The motion must be valid, or stand still. O(segments).
+/// Errors: kUsage for a time at which there is no motion, with the range; for blend shapes of two targets or more, and
+/// for a mesh that stands still.
+[[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 
 }  // namespace chronormal
 

@@ -9,11 +9,10 @@
 ///     const BlendEvaluation done = normals.unit_normals(weights, VectorView<float>::packed(xyz, normals.size()));
 ///     // done.path says how, done.touched_elements how much of the mesh it took
 ///
-/// Paths      Where many targets overlap, making normals anew from blended positions is cheaper: of the touched part,
-/// or
-///            of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure function of
-///            the set, the weights and the options. Its constants were measured on one core of the machine of
-///            docs/benchmarks.md.
+/// Paths      Where many targets overlap, making normals anew from blended positions is cheaper: those of the touched
+///            part, or of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure
+///            function of the set, the weights and the options. Its constants were measured on one core of the machine
+///            of docs/benchmarks.md.
 /// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
 ///            fit are not kept, the largest first, and their elements are made from blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path. Terms are
@@ -118,12 +117,10 @@ class BlendNormals {
   /// Appends a target; makes its terms and those of pairs with it, as far as max_bytes goes, and none anew. Errors:
   /// those of validate(), with nothing changed.
   Status add_target(BlendTarget target);
-  /// Removes target k; those behind it move up. Terms that had not fitted are not made up for. k must exist
-  void remove_target(std::size_t k);
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] const BlendSet& set() const noexcept;
-  /// Of all targets that there are now.
+  /// The cost of all targets, added ones included.
   [[nodiscard]] const BlendCost& cost() const noexcept;
   /// Memory that is kept, in bytes: at most cost().bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;

@@ -34,13 +34,13 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/encodings.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/core/memory.h"
 
 namespace chronormal {
 

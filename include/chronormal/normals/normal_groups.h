@@ -1,6 +1,6 @@
-/// Which corners of faces share one normal.
+/// Which corners of faces share one normal, and the control normals of those that do.
 ///
-/// The normal of a vertex is a sum over the faces around it, and the normal of a corner a sum over some of them: those
+/// The normal of a vertex is a sum over the faces around it, and the normal of a corner is a sum over some of them: those
 /// across edges that are smooth. Both are a partition of the corners into *elements*; each element has one normal. Two
 /// triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
@@ -10,13 +10,28 @@
 ///     corners:  elements {0} {1} {2} {3} {4} {5}      with a smooth edge {0} {1 4} {2 3} {5}
 ///
 /// An *output* is what a file or a renderer wants a normal for: a vertex, or a corner. Several outputs may show the
-/// same element: copies of a vertex that are one point (weld.h), corners across a smooth edge. Their normals are then
-/// the same to the last bit.
+/// same element: copies of a vertex that are one point of the surface, corners across a smooth edge. Their normals are
+/// then the same to the last bit.
 ///
+/// Files cut a surface at seams of texture and at hard edges: there, two or more vertices lie at one *point*. Where they
+/// lie at one point in every keyframe, they are one point of the surface that deforms, and a seam must not show:
+///
+///     vertex            0  1  2  3  4        1 and 3 coincide in all keyframes, 2 and 4 in the first one only
+///     point_of_vertex   0  1  2  1  3
+///
+/// Sums       The length of a face normal is twice the area of the face, so the area-weighted normal of an element is
+///            the plain sum of the n(t) of its faces: a sum of quadratics, hence a quadratic, exact at every t. The
+///            control normals are added once; after that vertices and corners are elements like any other, for
+///            NormalCurves and for every scheme that takes control normals, and nobody looks at the connectivity again.
+///            No other weighting has this property (normals/weighting.h).
 /// Order      The corners of an element are listed in an order that follows from the vertices of their faces and not
 ///            from the order of the faces in the mesh. Sums in this order have the same bits however the faces are
-///            shuffled. (The order of the corners within a face does matter, in the last bits.)
+///            shuffled, and on any number of threads. (The order of the corners within a face does matter, in the last
+///            bits.)
 /// Polygons   A face that has two corners at one point counts with both.
+/// Degenerate An element without corners, or whose faces all have no area, has zero control normals; its unit normal is
+///            (0, 0, 0), which NormalCurves counts. A face without area adds nothing; a duplicate face adds its normal
+///            twice, and two faces of opposite orientation cancel.
 /// Threads    const functions may run at the same time.
 #ifndef CHRONORMAL_NORMALS_NORMAL_GROUPS_H_
 #define CHRONORMAL_NORMALS_NORMAL_GROUPS_H_
@@ -31,9 +46,24 @@
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/topology.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/control_normals.h"
 
 namespace chronormal {
+
+/// Which vertices are one point of the surface. Points are numbered in the order of their first vertices.
+struct Points {
+  std::vector<std::uint32_t> point_of_vertex;
+  std::size_t count = 0;
+};
+
+/// Makes every vertex a point of its own.
+[[nodiscard]] Points separate_points(std::size_t vertex_count);
+
+/// Makes one point of the vertices of one body (motion/motion.h) whose coordinates are equal in all keyframes. Equal
+/// means equal float32, to the last bit, but -0 equals 0: there is no tolerance, since vertices that are merely close
+/// may belong to two sides of a slit. Faces are not looked at. O(V log V), and the number of keyframes times as much
+/// where vertices coincide. The motion must be valid.
+[[nodiscard]] Points weld_coincident(const Motion& motion);
 
 /// Stored normals closer than this are one normal that was rounded twice.
 inline constexpr double kSplitNormalTolerance = 0.1;  // degrees
@@ -119,6 +149,16 @@ class NormalGroups {
   std::vector<std::uint32_t> element_of_vertex_;  // where outputs are vertices
   bool outputs_are_vertices_ = false;
 };
+
+/// Writes the control normals of a range of elements: nine additions per corner. A component of a sum that is smaller
+/// than the rounding error of its own terms is written as exactly zero. Pure: no allocation, no throw.
+/// of_faces must have the control normals of all faces, result as many elements as the range
+void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
+                           std::span<ControlNormals> result) noexcept;
+
+/// Returns the control normals of all faces of a segment, or of all elements. On all cores.
+[[nodiscard]] std::vector<ControlNormals> all_face_control_normals(const Segment& segment);
+[[nodiscard]] std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups);
 
 }  // namespace chronormal
 

@@ -22,9 +22,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/core/views.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/core/memory.h"
 
 namespace chronormal {
 

@@ -22,11 +22,11 @@
 
 #include <cstddef>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/core/memory.h"
 
 namespace chronormal {
 

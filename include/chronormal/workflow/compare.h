@@ -67,7 +67,7 @@ struct Comparison {
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
-/// Precondition: the motion is valid (motion/validate.h)
+/// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
 
 }  // namespace chronormal

@@ -77,7 +77,7 @@ struct Inspection {
 /// Threads    uses all (core/parallel.h); the result is the same on any number of them.
 /// Memory     about 120 bytes a face for each thread; nothing grows with faces x segments.
 /// Cost       control normals and NormalCurves of every segment, once; the rest is near linear.
-/// Precondition: the motion is valid (motion/validate.h), but that it may have no segment
+/// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 

@@ -43,21 +43,6 @@ struct SampleOptions {
   NormalLength length = NormalLength::kUnit;  ///< kArea for the weighting kArea only
 };
 
-/// Whether a motion is blend shapes by its segments: they lead from keyframe 0 to every other. A motion of two
-/// keyframes is both blend shapes and a sequence.
-[[nodiscard]] bool is_blend_shapes(const Motion& motion) noexcept;
-
-/// Where a time lies in a motion.
-struct Instant {
-  std::size_t segment = 0;
-  double t = 0;  ///< in [0, 1]
-};
-
-/// Finds a time. At a keyframe between two segments that is the begin of the later one, at the end of the motion the
-/// end of the last. Errors: kUsage for a time at which there is no motion, with the range; for blend shapes of two
-/// targets or more, and for a mesh that stands still.
-[[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
-
 /// Whether a pose can have these weights. Errors: kUsage for a motion that is not blend shapes; where there is not one
 /// weight for each target, or one that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 

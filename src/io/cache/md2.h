@@ -24,7 +24,7 @@
 namespace chronormal {
 
 /// Reads a motion, of which name is the name for messages; keyframe k is at k / frames_per_second and has the name of
-/// the frame ("stand01"). The result is valid (motion/validate.h).
+/// the frame ("stand01"). The result is valid (validate() in motion/motion.h).
 ///
 /// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame where they are known: another
 /// first word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all

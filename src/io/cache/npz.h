@@ -27,7 +27,7 @@
 
 namespace chronormal {
 
-/// Reads a motion, of which name is the name for messages; the result is valid (motion/validate.h).
+/// Reads a motion, of which name is the name for messages; the result is valid (validate() in motion/motion.h).
 ///
 /// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types

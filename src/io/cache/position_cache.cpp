@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/bytes/scan.h"
 
 namespace chronormal {

@@ -42,7 +42,7 @@ struct CacheOptions {
 };
 
 /// Gives the samples of a cache the faces of a mesh, as a sequence; every keyframe takes the name of the cache. The
-/// result is valid (motion/validate.h).
+/// result is valid (validate() in motion/motion.h).
 ///
 /// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
 /// fewer than two samples, times that do not ascend (the place has the sample).

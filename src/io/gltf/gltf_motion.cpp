@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/gltf_model.h"
 #include "io/gltf/gltf_weights.h"

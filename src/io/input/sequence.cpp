@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "chronormal/io/file.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/input/input_files.h"
 #include "io/mesh/mesh_readers.h"
 #include "io/mesh/obj.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/io/file.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/bytes/extension.h"
 #include "io/input/input_files.h"
 #include "io/mesh/make_human_target.h"

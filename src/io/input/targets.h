@@ -23,7 +23,7 @@
 namespace chronormal {
 
 /// Reads a base and its targets. A keyframe takes the name of its file without the extensions ("blink"). The result is
-/// valid (motion/validate.h).
+/// valid (validate() in motion/motion.h).
 ///
 /// progress(done, total), if given, is called after each file. Only one file is open at a time; memory is 12 bytes per
 /// vertex for each target, however few vertices it moves.

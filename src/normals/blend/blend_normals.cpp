@@ -110,13 +110,6 @@ Status BlendNormals::add_target(BlendTarget target) {
   return Success{};
 }
 
-void BlendNormals::remove_target(std::size_t k) {
-  assert(k < set().targets.size());
-  parts_->set.targets.erase(parts_->set.targets.begin() + static_cast<std::ptrdiff_t>(k));
-  parts_->storage.target_removed(k);
-  parts_->scratch.is_active.resize(set().targets.size());
-}
-
 std::size_t BlendNormals::size() const noexcept { return parts_->storage.terms().size(); }
 const BlendSet& BlendNormals::set() const noexcept { return parts_->set; }
 const BlendCost& BlendNormals::cost() const noexcept { return parts_->storage.cost(); }

@@ -180,16 +180,6 @@ void BlendStorage::target_added() {
   }
 }
 
-void BlendStorage::target_removed(std::size_t k) {
-  terms_.target_removed(k);
-  targets_.erase(targets_.begin() + static_cast<std::ptrdiff_t>(k));
-  for (StoredTarget& target : targets_) {
-    std::erase_if(target.pairs, [k](const StoredPair& pair) { return pair.other == k; });
-    for (StoredPair& pair : target.pairs) pair.other -= pair.other > k ? 1 : 0;
-  }
-  update_cost();
-}
-
 std::size_t BlendStorage::list_bytes() const noexcept {
   std::size_t bytes = terms_.bytes() + targets_.capacity() * sizeof(StoredTarget);
   for (const StoredTarget& target : targets_) bytes += bytes_of_lists(target);

@@ -52,8 +52,6 @@ class BlendStorage {
   void fill();
   /// Takes notice of a target that was appended to the set, and makes its terms.
   void target_added();
-  /// Takes notice of a target that was erased from the set.
-  void target_removed(std::size_t k);
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }

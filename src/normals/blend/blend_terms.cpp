@@ -145,11 +145,6 @@ void BlendTerms::target_added() {
   assert(faces_of_target_.size() == set_.targets.size());
 }
 
-void BlendTerms::target_removed(std::size_t i) {
-  faces_of_target_.erase(faces_of_target_.begin() + static_cast<std::ptrdiff_t>(i));
-  assert(faces_of_target_.size() == set_.targets.size());
-}
-
 std::size_t BlendTerms::size() const noexcept { return groups_ ? groups_->size() : set_.topology.face_count(); }
 
 template <class Body>

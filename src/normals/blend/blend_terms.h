@@ -81,8 +81,6 @@ class BlendTerms {
 
   /// Takes notice of a target that was appended to the set: O(corners).
   void target_added();
-  /// Takes notice of a target that was erased from the set.
-  void target_removed(std::size_t i);
 
   /// Memory that is kept, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;

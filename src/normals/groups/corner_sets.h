@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chronormal/motion/topology.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
 

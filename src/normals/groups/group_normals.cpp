@@ -1,4 +1,4 @@
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <cassert>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <algorithm>
 #include <bit>

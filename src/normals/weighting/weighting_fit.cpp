@@ -1,4 +1,4 @@
-#include "chronormal/normals/weighting_fit.h"
+#include "chronormal/normals/weighting.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
 #include "normals/weighting/corner_terms.h"
 #include "normals/weighting/taylor.h"

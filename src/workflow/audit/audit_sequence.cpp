@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/normals/weld.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
 #include "workflow/audit/audit_judge.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analysis/end_delta.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
 #include "core/blocks.h"
 #include "io/gltf/glb_builder.h"

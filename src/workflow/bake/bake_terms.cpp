@@ -6,7 +6,7 @@
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/normals/weighting_fit.h"
+#include "chronormal/normals/weighting.h"
 
 namespace chronormal {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "chronormal/normals/weighting_fit.h"
+#include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
 #include "core/noise.h"
 

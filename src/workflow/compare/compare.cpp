@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "chronormal/analysis/reference_normals.h"
+#include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
 namespace {

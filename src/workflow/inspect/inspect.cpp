@@ -11,7 +11,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
 namespace {

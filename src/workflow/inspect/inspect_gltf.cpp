@@ -10,7 +10,6 @@
 #include "chronormal/core/polynomial.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/weld.h"
 
 namespace chronormal {
 namespace {

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
 
 namespace chronormal {
@@ -19,12 +18,6 @@ constexpr std::size_t kBlock = 4096;
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
-
-// The fewest digits that read back as the same number, so that it can be pasted.
-std::string text_of(double number) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
-}
 
 std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -71,33 +64,6 @@ std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
 }
 
 }  // namespace
-
-bool is_blend_shapes(const Motion& motion) noexcept {
-  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    if (motion.segments[s].from != 0 || motion.segments[s].to != s + 1) return false;
-  }
-  return !motion.segments.empty() && motion.keyframes.size() == motion.segments.size() + 1;
-}
-
-Result<Instant> find_instant(const Motion& motion, double time) {
-  if (motion.segments.empty()) return misuse("the mesh stands still: it has no times");
-  if (motion.segments.size() > 1 && is_blend_shapes(motion))
-    return misuse("blend shapes have no times, but a weight for each target");
-  const auto start_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].from].time; };
-  const auto end_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].to].time; };
-  double first = std::numeric_limits<double>::infinity(), last = -first;
-  std::optional<std::size_t> found;
-  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    first = std::min(first, start_of(s));
-    last = std::max(last, end_of(s));
-    if (start_of(s) <= time && time <= end_of(s)) found = s;
-  }
-  if (!found)
-    return misuse("there is no motion at time " + text_of(time) + ": it goes from " + text_of(first) + " to " +
-                  text_of(last));
-  const double t = (time - start_of(*found)) / (end_of(*found) - start_of(*found));
-  return Instant{*found, std::clamp(t, 0.0, 1.0)};
-}
 
 Status check_weights(const Motion& motion, std::span<const double> weights) {
   if (!is_blend_shapes(motion)) return misuse("only blend shapes have weights; give times, where there is motion");

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/normals/weld.h"
 #include "core/blocks.h"
 
 namespace chronormal {

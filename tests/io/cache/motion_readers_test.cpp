@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/cache/maya_cache.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/places.h"

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 
 namespace chronormal {

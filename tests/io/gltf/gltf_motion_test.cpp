@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chronormal/io/gltf_motion.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 

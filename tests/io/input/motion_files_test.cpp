@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_mesh.h"
 #include "tests/support/temporary_folder.h"

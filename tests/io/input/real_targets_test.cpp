@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/input/targets.h"
 
 namespace chronormal {

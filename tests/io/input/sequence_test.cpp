@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chronormal/io/file.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "io/mesh/ply.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/temporary_folder.h"

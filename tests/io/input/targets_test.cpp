@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 

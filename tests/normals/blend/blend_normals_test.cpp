@@ -19,7 +19,7 @@
 
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_motion.h"
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "io/input/targets.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/blend_oracle.h"
@@ -346,35 +346,37 @@ TEST(BlendNormals, evaluating_on_one_thread_allocates_nothing) {
   }
 }
 
-TEST(BlendNormals, targets_that_come_and_go_leave_what_a_new_object_has_and_only_make_their_own_terms) {
+TEST(BlendNormals, an_added_target_leaves_what_a_new_object_has_and_a_bad_one_changes_nothing) {
   const BlendSet all = test::random_blend_set(9, {.cells = 30, .targets = 12, .reach = 0.6});
   const NormalGroups groups = test::vertices_of(all);
   const BlendNormalsOptions options{kUnlimited, BlendPath::kTerms};
-  BlendNormals normals = BlendNormals::of_groups(all, groups, options);
-  const BlendTarget moved = all.targets[3];
-  normals.remove_target(3);
-  EXPECT_EQ(normals.set().targets.size(), 11U);
-  BlendTarget bad = moved;
+  BlendSet set = all;
+  set.targets.pop_back();
+  BlendNormals normals = BlendNormals::of_groups(set, groups, options);
+  BlendTarget bad = all.targets.back();
   bad.vertices.front() = 1000000;
   EXPECT_FALSE(normals.add_target(bad).ok());
   EXPECT_EQ(normals.set().targets.size(), 11U);
-  ASSERT_TRUE(normals.add_target(moved).ok());
+  ASSERT_TRUE(normals.add_target(all.targets.back()).ok());
 
-  BlendSet set = all;
-  set.targets.erase(set.targets.begin() + 3);
-  set.targets.push_back(moved);
-  BlendNormals fresh = BlendNormals::of_groups(set, groups, options);
+  BlendNormals fresh = BlendNormals::of_groups(all, groups, options);
   EXPECT_EQ(normals.cost().stored_pairs, fresh.cost().stored_pairs);
   EXPECT_EQ(normals.cost().pair_elements, fresh.cost().pair_elements);
   for (const std::size_t active : {1U, 4U, 12U}) {
     const std::vector<double> weights = test::random_weights(active, 12, active);
     EXPECT_EQ(evaluate(normals, weights).xyz, evaluate(fresh, weights).xyz);
   }
-  // Down to nothing, and up again.
-  for (std::size_t k = 12; k > 0; --k) normals.remove_target(k / 2);
+}
+
+TEST(BlendNormals, targets_can_be_added_to_a_set_that_has_none) {
+  BlendSet set = test::random_blend_set(9, {.cells = 30, .targets = 1, .reach = 0.6});
+  const BlendTarget target = std::move(set.targets.back());
+  set.targets.clear();
+  const NormalGroups groups = test::vertices_of(set);
+  BlendNormals normals = BlendNormals::of_groups(set, groups, {kUnlimited, BlendPath::kTerms});
   EXPECT_EQ(normals.cost().pair_elements, 0U);
   EXPECT_EQ(evaluate(normals, {}).evaluation.touched_elements, 0U);
-  ASSERT_TRUE(normals.add_target(moved).ok());
+  ASSERT_TRUE(normals.add_target(target).ok());
   const std::vector<double> weights = {1.5};
   expect_exact(evaluate(normals, weights), test::real_normals(normals.set(), &groups, weights), "one");
 }

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "chronormal/io/file.h"
-#include "chronormal/normals/group_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "io/mesh/obj.h"

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/normals/group_normals.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "simd/targets.h"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/normals/group_normals.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "motion/coherence.h"
 #include "normals/curves/kernels/evaluate.h"
 #include "simd/targets.h"

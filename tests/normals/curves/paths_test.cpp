@@ -12,8 +12,8 @@
 #include <initializer_list>
 #include <vector>
 
-#include "chronormal/motion/validate.h"
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"

@@ -1,6 +1,6 @@
 // Theorems about the normals of vertices and corners, and what degenerate ones are.
 
-#include "chronormal/normals/group_normals.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

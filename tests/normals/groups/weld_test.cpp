@@ -1,6 +1,6 @@
 // Which vertices are one point.
 
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

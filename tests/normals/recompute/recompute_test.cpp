@@ -15,11 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/weld.h"
 #include "chronormal/schemes/scheme.h"
+#include "chronormal/core/memory.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"

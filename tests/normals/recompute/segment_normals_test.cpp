@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/normals/weld.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"

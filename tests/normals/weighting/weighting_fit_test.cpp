@@ -1,6 +1,6 @@
 // The quadratics that stand for weighted normals: their bounds are never below the error, and not far above it.
 
-#include "chronormal/normals/weighting_fit.h"
+#include "chronormal/normals/weighting.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/normals/group_normals.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"

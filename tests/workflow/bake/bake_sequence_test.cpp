@@ -17,7 +17,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_motion.h"
 #include "chronormal/io/motion_files.h"
-#include "chronormal/motion/validate.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/workflow/bake.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"

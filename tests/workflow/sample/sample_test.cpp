@@ -290,50 +290,12 @@ Motion three_keyframes() {
   return motion;
 }
 
-TEST(FindInstant, keyframe_belongs_to_the_segment_that_begins_there) {
+TEST(NormalSampler, at_a_keyframe_has_the_limits_of_the_segment_that_begins_there) {
   const Motion motion = three_keyframes();
-  const auto at = [&motion](double time) {
-    const Instant instant = find_instant(motion, time).value();
-    return std::pair{instant.segment, instant.t};
-  };
-  EXPECT_EQ(at(2), (std::pair<std::size_t, double>{0, 0}));
-  EXPECT_EQ(at(2.25), (std::pair<std::size_t, double>{0, 0.25}));
-  EXPECT_EQ(at(3), (std::pair<std::size_t, double>{1, 0}));
-  EXPECT_EQ(at(4), (std::pair<std::size_t, double>{1, 0.5}));
-  EXPECT_EQ(at(5), (std::pair<std::size_t, double>{1, 1}));
-
   NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kFaces));
   EXPECT_EQ(good(sampler.at_time(3)).normals, (std::vector<float>{0, -1, 0})) << "the limit from after";
   EXPECT_EQ(good(sampler.at_time(2.5)).normals, (std::vector<float>{0, 0, 1})) << "curves of the right segment";
   EXPECT_EQ(good(sampler.at_time(4)).normals, (std::vector<float>{0, -1, 0}));
-}
-
-TEST(FindInstant, time_without_motion_is_a_usage_error_with_the_range) {
-  const Motion motion = three_keyframes();
-  for (const double time : {1.999, 5.001, -3.0, std::nan("")}) {
-    const auto instant = find_instant(motion, time);
-    ASSERT_FALSE(instant.ok()) << time;
-    EXPECT_EQ(instant.error().code, ErrorCode::kUsage);
-    EXPECT_NE(instant.error().message.find("from 2 to 5"), std::string::npos) << instant.error().message;
-  }
-  Motion gap = motion;
-  gap.keyframes.push_back(gap.keyframes.back());
-  gap.keyframes[2].time = 4;
-  gap.keyframes.push_back(gap.keyframes.back());
-  gap.keyframes[4].time = 7;
-  gap.segments = {{0, 1}, {3, 4}};
-  EXPECT_TRUE(find_instant(gap, 6).ok());
-  EXPECT_FALSE(find_instant(gap, 3.5).ok());
-}
-
-TEST(FindInstant, blend_shapes_and_still_meshes_have_no_times) {
-  EXPECT_EQ(find_instant(star(0), 0.5).error().code, ErrorCode::kUsage);
-  Motion still = three_keyframes();
-  still.segments.clear();
-  EXPECT_EQ(find_instant(still, 2).error().code, ErrorCode::kUsage);
-  EXPECT_TRUE(is_blend_shapes(star(0)));
-  EXPECT_FALSE(is_blend_shapes(three_keyframes()));
-  EXPECT_FALSE(is_blend_shapes(still));
 }
 
 TEST(CheckWeights, asks_for_one_finite_weight_for_each_target) {

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <span>
 
-#include "chronormal/core/memory.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/core/memory.h"
 #include "normals/control/kernels/control_tile.h"
 
 namespace chronormal {
