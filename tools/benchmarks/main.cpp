@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "benchmarks/sections.h"
-#include "chronormal/io/file.h"
+#include "chronormal/io/output.h"
 
 namespace chronormal::benchmarks {
 namespace {

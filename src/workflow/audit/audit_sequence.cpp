@@ -67,7 +67,7 @@ class SequenceSource {
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
     const Segment s = motion_.segment(segments_[segment]);
     const double time = t == 0 ? s.start_time : t == 1 ? s.end_time : (1 - t) * s.start_time + t * s.end_time;
-    return {std::nullopt, std::nullopt, output.vertex, segment, time};
+    return {std::nullopt, std::nullopt, output.vertex, segment, motion_.kind == MotionKind::kTargets ? t : time};
   }
 
  private:
@@ -175,7 +175,7 @@ void find_faults(const AuditSubject& subject, Audit& result) {
 
 }  // namespace
 
-Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets, const AuditOptions& options) {
+Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting;
@@ -206,6 +206,7 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_
   }
 
   // A sequence is one subject; each target is one.
+  const bool is_targets = motion.kind == MotionKind::kTargets;
   std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
   for (std::size_t s = 0; s < motion.segments.size(); ++s) subjects[is_targets ? s : 0].push_back(s);
   std::size_t done = 0;
