@@ -14,7 +14,7 @@
 #include <map>
 #include <vector>
 
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "timing.h"
 
 namespace chronormal::bench {

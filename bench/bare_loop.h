@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 
 namespace chronormal::bench {
 

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 
 namespace chronormal::bench {
 

@@ -80,7 +80,7 @@ Expectation expectation(const std::string& scheme, double t) {
 
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
-  std::unique_ptr<Playback> playback;
+  std::unique_ptr<SchemePlayback> playback;
   std::size_t step = kSteps;
 };
 

@@ -94,19 +94,17 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   return how;
 }
 
-int run(const Options& options) {
-  const auto fail = [](const Error& error) { return report("audit", error); };
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
-  if (!how) return fail(how.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return fail(output.error());
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Result<Audited> audited = audit_input(options, how.value(), progress);
   progress.clear();
-  if (!audited) return fail(audited.error());
+  if (!audited) return audited.error();
   const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return fail(written.error());
+    return written.error();
   if (audited.value().passed()) return kExitDone;
   fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
              audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));

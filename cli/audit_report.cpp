@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -97,14 +96,8 @@ std::string headline(const Audited& input) {
 
 std::string subject_table(const Audited& input) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
-  std::vector<std::size_t> order(subjects.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (order.size() > kMostRows) {
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return subjects[a].error.worst > subjects[b].error.worst; });
-    order.resize(kMostRows);
-    std::sort(order.begin(), order.end());
-  }
+  std::vector<double> errors;
+  for (const AuditSubject& subject : subjects) errors.push_back(subject.error.worst);
   Table table;
   table.add_column("motion", "", Align::kLeft);
   table.add_column("worst", "degrees", Align::kRight);
@@ -115,7 +108,7 @@ std::string subject_table(const Audited& input) {
   table.add_column("", "", Align::kLeft);
   table.add_column("vertices", "that move", Align::kRight);
   table.add_column("samples", "", Align::kRight);
-  for (const std::size_t s : order) {
+  for (const std::size_t s : indices_of_largest(errors, kMostRows)) {
     const AuditSubject& subject = subjects[s];
     const bool some = subject.error.worst > 0;
     table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),

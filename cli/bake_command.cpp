@@ -95,21 +95,20 @@ std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& 
 }
 
 int run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
-  const auto fail = [](const Error& error) { return report("bake", error); };
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
   if (!options.input.animation.empty())
-    return fail(misuse("--animation", "all animations of a glTF file are baked: leave it out"));
-  if (options.input.world) return fail(misuse("--world", "meshes are baked where they are: leave it out"));
+    return misuse("--animation", "all animations of a glTF file are baked: leave it out");
+  if (options.input.world) return misuse("--world", "meshes are baked where they are: leave it out");
   if (options.input.frames_per_second != 1)
-    return fail(misuse("--fps", "the animations of a glTF file have times of their own"));
+    return misuse("--fps", "the animations of a glTF file have times of their own");
   if (options.crease_angle != 180 && !options.smooth)
-    return fail(misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth"));
+    return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
   how.progress = progress.callback("baking");
   GltfEdit edit(document);
   const Result<GltfBake> baked = bake(document, how, edit);
   progress.clear();
-  if (!baked) return fail(baked.error());
+  if (!baked) return baked.error();
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
@@ -117,16 +116,16 @@ int run_gltf(const Options& options, BakeOptions how, const Input& input, Progre
   const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
   if (has_drivers) {
     told.drivers_file = drivers_path(output);
-    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return fail(free.error());
+    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return free.error();
   }
   std::vector<std::string> warnings = baked.value().warnings;
   if (!baked.value().drivers.empty() && !has_drivers)
     warnings.emplace_back("what drives the extra targets is written beside a file only: give -o a name");
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  if (const Status written = edit.write(output, options.common.force); !written) return fail(written.error());
+  if (const Status written = edit.write(output, options.common.force); !written) return written.error();
   if (has_drivers) {
     if (const Status written = write_output(*told.drivers_file, baked.value().drivers, options.common.force); !written)
-      return fail(written.error());
+      return written.error();
   }
   warn(warnings);
   if (baked.value().changed && input.file_size() <= kMostAudited) {
@@ -137,19 +136,17 @@ int run_gltf(const Options& options, BakeOptions how, const Input& input, Progre
 }
 
 int run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
-  const auto fail = [](const Error& error) { return report("bake", error); };
   const std::string& output = options.common.output;
-  if (options.smooth) return fail(misuse("--smooth", "it is for primitives of glTF files that have no normals"));
-  if (options.recompute_base) return fail(misuse("--recompute-base", "it is for glTF files that have normals"));
+  if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
+  if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
-    return fail(misuse(output, "a sequence is written as .glb"));
+    return misuse(output, "a sequence is written as .glb");
   const Motion& motion = *input.motion().value();
   if (motion.kind == MotionKind::kTargets)
-    return fail(
-        invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that"));
+    return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
   if (motion.segments.size() + 1 != motion.keyframes.size())
-    return fail(invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other"));
+    return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
   // Hard edges are those that the file shows, where nothing else is asked for.
   const StoredNormals& stored = *input.normals().value();
   if (!stored.of_keyframes.empty()) {
@@ -160,8 +157,8 @@ int run_sequence(const Options& options, BakeOptions how, Input& input, Progress
   std::string glb;
   const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
   progress.clear();
-  if (!baked) return fail(baked.error());
-  if (const Status written = write_output(output, glb, options.common.force); !written) return fail(written.error());
+  if (!baked) return baked.error();
+  if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
   warn(baked.value().warnings);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
@@ -176,19 +173,17 @@ int run_sequence(const Options& options, BakeOptions how, Input& input, Progress
   return kExitDone;
 }
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
-  if (!how) return report("bake", how.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("bake", output.error());
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   InputOptions wanted = options.input;
   if (!wanted.base.empty())
-    return report("bake",
-                  misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file"));
+    return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
   if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
   Result<Input> input = open_input(std::move(wanted), progress);
-  if (!input) return report("bake", input.error());
+  if (!input) return input.error();
   return input.value().document() != nullptr ? run_gltf(options, how.value(), input.value(), progress)
                                              : run_sequence(options, how.value(), input.value(), progress);
 }

@@ -20,11 +20,6 @@ constexpr std::size_t kShownTargets = 3, kShownName = 24;
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
 
-std::string one_output(ElementKind kind) {
-  if (kind == ElementKind::kVertices) return "vertex";
-  return kind == ElementKind::kCorners ? "corner" : "face";
-}
-
 bool is_several_primitives(const BlendSubject& subject) {
   for (const BlendErrors& errors : subject.errors)
     for (const BlendError& error : errors.deltas)
@@ -82,7 +77,7 @@ std::string table_of(const BlendSubject& subject) {
   for (const char* const title : {"mean", "rms", "max"}) table.add_column(title, "degrees", Align::kRight);
   const bool several = is_several_primitives(subject);
   if (several) table.add_column("worst at", "primitive", Align::kRight);
-  table.add_column(several ? "" : "worst at", one_output(subject.kind), Align::kRight);
+  table.add_column(several ? "" : "worst at", one_element(subject.kind), Align::kRight);
   table.add_column("", "targets", Align::kLeft);
   for (const BlendErrors& errors : subject.errors) {
     for (const BlendError& error : errors.deltas) {
@@ -133,7 +128,7 @@ Json error_json(const BlendSubject& subject, const BlendError& error) {
     weights.push_back({{"target", w.target}, {"name", subject.targets[w.target]}, {"weight", w.weight}});
   Json at = {{"row", q.max_at.segment}};
   if (error.worst_primitive) at["primitive"] = *error.worst_primitive;
-  at[one_output(subject.kind)] = error.worst_output;
+  at[one_element(subject.kind)] = error.worst_output;
   at["weights"] = std::move(weights);
   return {{"deltas", name_of(error.deltas)},
           {"mean_degrees", degrees(q.mean())},

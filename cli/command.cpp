@@ -2,10 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cstdio>
-
 #include "chronormal/io/builtin_morphs.h"
-#include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -87,12 +84,6 @@ Result<Input> open_input(InputOptions options, Progress& progress) {
 
 Error misuse(std::string place, std::string message) {
   return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
-}
-
-int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
-  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
-  return static_cast<int>(error.code);
 }
 
 }  // namespace chronormal::cli

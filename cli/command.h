@@ -53,9 +53,6 @@ struct ElementArguments {
 /// An error of kUsage.
 [[nodiscard]] Error misuse(std::string place, std::string message);
 
-/// Prints an error to stderr, as "chronormal COMMAND: place: message", and returns its exit code.
-int report(const std::string& command, const Error& error);
-
 // The commands.
 [[nodiscard]] Command audit_command();
 [[nodiscard]] Command bake_command();

@@ -125,38 +125,35 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   return comparisons;
 }
 
-int run_blend(const Options& options) {
+Result<int> run_blend(const Options& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
-    return report("compare", misuse(option, "it is about schemes, and does not go with --blend"));
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("compare", output.error());
+    return misuse(option, "it is about schemes, and does not go with --blend");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto comparison = compare_blend_input(options.input, options.elements, options.blend, progress);
-  if (!comparison) return report("compare", comparison.error());
+  if (!comparison) return comparison.error();
   const std::string text = options.json  ? blend_json(comparison.value())
                            : options.csv ? blend_csv(comparison.value())
                                          : blend_table(comparison.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("compare", written.error());
+    return written.error();
   return kExitDone;
 }
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
-  if (options.sample_count() < 2 || options.sample_count() > kMostSamples)
-    return report("compare", misuse("--samples", kSampleRange));
+  if (options.sample_count() < 2 || options.sample_count() > kMostSamples) return misuse("--samples", kSampleRange);
   for (const std::string& name : scheme_names(options)) {
-    if (name.empty()) return report("compare", misuse("--schemes", "there is an empty name in the list"));
-    if (const auto scheme = make_scheme(name); !scheme) return report("compare", scheme.error());
+    if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
+    if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
-  if (const auto elements = options.elements.options(); !elements) return report("compare", elements.error());
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("compare", output.error());
+  if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   Progress progress(options.common.quiet);
   const auto comparisons = compare_inputs(options, progress);
-  if (!comparisons) return report("compare", comparisons.error());
+  if (!comparisons) return comparisons.error();
 
   const bool with_times = !options.no_times;
   std::string text;
@@ -169,7 +166,7 @@ int run(const Options& options) {
   else
     text = compare_table(comparisons.value().front(), with_times);
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("compare", written.error());
+    return written.error();
   return kExitDone;
 }
 

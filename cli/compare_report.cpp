@@ -71,11 +71,6 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   return schemes;
 }
 
-std::string one_element(ElementKind kind) {
-  if (kind == ElementKind::kVertices) return "vertex";
-  return kind == ElementKind::kCorners ? "corner" : "face";
-}
-
 std::string sample_pairs(std::size_t count, const std::string& word) {
   return fmt::format("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
 }
@@ -113,6 +108,11 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
+
+std::string one_element(ElementKind kind) {
+  if (kind == ElementKind::kVertices) return "vertex";
+  return kind == ElementKind::kCorners ? "corner" : "face";
+}
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;

@@ -26,6 +26,9 @@ struct NamedComparison {
 /// A header line, and a line per input and scheme. Names with commas, quotes or line ends are quoted (RFC 4180).
 [[nodiscard]] std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times);
 
+/// "vertex", "corner" or "face".
+[[nodiscard]] std::string one_element(ElementKind kind);
+
 /// A field of a CSV line, in quotes where it has to be.
 [[nodiscard]] std::string csv_field(const std::string& text);
 

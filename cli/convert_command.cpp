@@ -12,16 +12,16 @@ struct Options {
   CommonOptions common;
 };
 
-int run(const Options& options) {
+Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   Result<Input> input = open_input(std::move(wanted), progress);
-  if (!input) return report("convert", input.error());
+  if (!input) return input.error();
   const Result<const Motion*> motion = input.value().motion();
-  if (!motion) return report("convert", motion.error());
+  if (!motion) return motion.error();
   if (const Status written = write_motion(*motion.value(), options.common.output, options.common.force); !written)
-    return report("convert", written.error());
+    return written.error();
   return kExitDone;
 }
 

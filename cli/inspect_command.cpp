@@ -63,15 +63,14 @@ Result<Inspected> inspect_input(const InputOptions& options, Progress& progress)
   return result;
 }
 
-int run(const Options& options) {
-  if (const Status output = check_output(options.common.output, options.common.force); !output)
-    return report("inspect", output.error());
+Result<int> run(const Options& options) {
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto inspected = inspect_input(options.input, progress);
-  if (!inspected) return report("inspect", inspected.error());
+  if (!inspected) return inspected.error();
   const std::string text = options.json ? inspect_json(inspected.value()) : inspect_text(inspected.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
-    return report("inspect", written.error());
+    return written.error();
   return kExitDone;
 }
 

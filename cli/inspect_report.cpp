@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -99,19 +98,6 @@ std::string facts_of(const Inspected& input) {
   return text;
 }
 
-// The segments to show: all, or those with the faces that turn the most; in the order of the file.
-std::vector<std::size_t> most_turning(const Inspection& found) {
-  std::vector<std::size_t> order(found.segments.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (order.size() <= kMostRows) return order;
-  std::stable_sort(order.begin(), order.end(), [&found](std::size_t a, std::size_t b) {
-    return found.segments[a].turn.value > found.segments[b].turn.value;
-  });
-  order.resize(kMostRows);
-  std::sort(order.begin(), order.end());
-  return order;
-}
-
 std::string target_table(const Inspected& input) {
   const Inspection& found = *input.inspection;
   Table table;
@@ -122,7 +108,9 @@ std::string target_table(const Inspected& input) {
   table.add_column("turning", "degrees", Align::kRight);
   table.add_column("beyond 90", "faces", Align::kRight);
   table.add_column("collapsing", "faces", Align::kRight);
-  for (const std::size_t s : most_turning(found)) {
+  std::vector<double> turns;
+  for (const SegmentInspection& segment : found.segments) turns.push_back(segment.turn.value);
+  for (const std::size_t s : indices_of_largest(turns, kMostRows)) {
     const SegmentInspection& segment = found.segments[s];
     table.add_row({fmt::format("{}", s), printable(input.keyframe_names[input.segments[s].to], kLongestCell),
                    grouped(segment.moved_vertices), percent(segment.motion.value, found.diagonal),

@@ -5,10 +5,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 #include <utility>
 
+#include "cli/text.h"
 #include "cli/version.h"
 
 namespace chronormal::cli {
@@ -60,6 +62,13 @@ void add_command(const Command& command, CLI::App& program) {
     for (const Option& option : table) add_option(option, *added);
 }
 
+// Prints the error, and returns its exit code.
+int report(const std::string& command, const Error& error) {
+  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
+  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
+  return static_cast<int>(error.code);
+}
+
 // A word that is no command deserves a better answer than the parser's.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
@@ -107,9 +116,10 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
     fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", name, message, name);
     return kExitUsage;
   }
-  for (const Command& command : commands)
-    if (program.got_subcommand(command.name)) return command.run();
-  return kExitUsage;
+  const auto chosen = std::find_if(commands.begin(), commands.end(),
+                                   [&](const Command& command) { return program.got_subcommand(command.name); });
+  const Result<int> result = chosen->run();
+  return result ? result.value() : report(chosen->name, result.error());
 }
 
 }  // namespace chronormal::cli

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "chronormal/core/result.h"
+
 namespace chronormal::cli {
 
 /// From the value of an option, as it was written, to what is wrong with it; an empty text where nothing is.
@@ -40,7 +42,7 @@ struct Command {
   std::string name, summary;
   std::vector<std::vector<Option>> tables;
   std::string footer;
-  std::function<int()> run;  ///< returns the exit code; the targets of the options have their values by then
+  std::function<Result<int>()> run;  ///< returns the exit code; the targets of the options have their values by then
 };
 
 /// Checks that the value is a number, 0 or more.
@@ -49,7 +51,8 @@ struct Command {
 /// A check that there is a value, with the message otherwise.
 [[nodiscard]] Check check_given(std::string message);
 
-/// Reads the command line and runs the command that it names, or prints the help or the version. Returns the exit code.
+/// Reads the command line and runs the command that it names, or prints the help or the version. An error goes to stderr
+/// as "chronormal COMMAND: place: message". Returns the exit code.
 [[nodiscard]] int run_program(const std::vector<Command>& commands, int argument_count, char** arguments);
 
 }  // namespace chronormal::cli

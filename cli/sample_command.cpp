@@ -239,29 +239,28 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
-int run(const Options& options) {
-  const auto fail = [](const Error& error) { return report("sample", error); };
+Result<int> run(const Options& options) {
   Result<Request> understood = understand(options);
-  if (!understood) return fail(understood.error());
+  if (!understood) return understood.error();
   Request& request = understood.value();
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input(std::move(wanted), progress);
-  if (!input) return fail(input.error());
+  if (!input) return input.error();
   const Result<const Motion*> read = input.value().motion();
-  if (!read) return fail(read.error());
+  if (!read) return read.error();
   const Motion& motion = *read.value();
-  if (const Status status = fit_moments(motion, request.moments); !status) return fail(status.error());
+  if (const Status status = fit_moments(motion, request.moments); !status) return status.error();
   if (!options.hard_edges.empty()) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
-    if (!status) return fail(status.error());
+    if (!status) return status.error();
   }
   const auto written =
       write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
   progress.clear();
-  if (!written) return fail(written.error());
+  if (!written) return written.error();
   if (written.value().zeros > 0)
     fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
                written.value().zeros, written.value().normals, options.elements.kind());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "cli/text.h"
@@ -60,6 +61,16 @@ std::string grouped(std::size_t value) {
 
 std::string counted(std::size_t count, const char* singular, const char* plural) {
   return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
+}
+
+std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() <= most) return order;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  order.resize(most);
+  std::sort(order.begin(), order.end());
+  return order;
 }
 
 std::string four_decimals(double value) {

@@ -36,6 +36,9 @@ class Table {
 /// "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
+/// The indices of so many of the largest values, ascending; of equal ones the first count. All where there are no more.
+[[nodiscard]] std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most);
+
 /// An angle or a ratio with four decimals, in exponent form where those would say nothing: 12.3457, 2.1e-06, 0.
 [[nodiscard]] std::string four_decimals(double value);
 

@@ -98,6 +98,6 @@ int main() {
     }
     if (largest_difference(set, groups, w, exact) > 1e-5) return 1;
     std::printf("%5.1f %5.1f %5.1f   %s  %7zu  %.1f degrees\n", w[0], w[1], w[2], name_of(done.path).data(),
-                done.touched_elements, worst * 57.29577951);
+                done.touched_elements, worst * kDegreesPerRadian);
   }
 }

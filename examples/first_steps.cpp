@@ -25,4 +25,8 @@ int main() {
     curves.unit_normals(t, VectorView<float>::packed(normals.data(), curves.size()));
     std::printf("t = %.1f   normal = (%.3f, %.3f, %.3f)\n", t, normals[0], normals[1], normals[2]);
   }
+
+  // The easy way, for a time or two in seconds: one call, which finds the segment and keeps nothing.
+  const std::vector<float> halfway = unit_normals_at(motion, 0.5).value();
+  std::printf("0.5 s     normal = (%.3f, %.3f, %.3f)\n", halfway[0], halfway[1], halfway[2]);
 }

@@ -3,7 +3,6 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
-#include "chronormal/core/memory.h"      // arrays that are streamed: aligned, in huge pages
 #include "chronormal/core/parallel.h"    // one loop over all cores
 #include "chronormal/core/polynomial.h"  // small polynomials: Bernstein and power form, roots, restriction
 #include "chronormal/core/result.h"      // errors as values: code, place, message
@@ -40,8 +39,7 @@
 #include "chronormal/workflow/audit.h"    // what a host shows against what it should
 #include "chronormal/workflow/bake.h"     // right normals written into glTF files
 #include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion; deltas of targets against the truth
-#include "chronormal/workflow/gltf_shading.h"  // the vertices of a glTF mesh: what they show and should
-#include "chronormal/workflow/inspect.h"       // what a motion or a glTF file holds, and what is trouble for normals
-#include "chronormal/workflow/sample.h"        // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
+#include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
@@ -28,6 +29,27 @@ void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
   if (count == 0) return;
   if (count <= block) return body(std::size_t{0}, std::size_t{0}, count);
   parallel_for(block_count(count, block), [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
+}
+
+/// Calls body(i) for every i in [0, count), blocks of them on all cores.
+template <class Body>
+void parallel_each(std::size_t count, std::size_t block, const Body& body) {
+  numbered_blocks(count, block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+  });
+}
+
+/// Calls body(i, result) for every i in [0, count), blocks of them on all cores, with a result of its own for each
+/// block; then merge(all, result) in the order of the blocks. Returns all.
+template <class T, class Body, class Merge>
+[[nodiscard]] T parallel_fold(std::size_t count, std::size_t block, const Body& body, const Merge& merge) {
+  std::vector<T> of_blocks(block_count(count, block));
+  numbered_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i, of_blocks[b]);
+  });
+  T all{};
+  for (const T& of_block : of_blocks) merge(all, of_block);
+  return all;
 }
 
 /// parallel_blocks() on all cores, or body of the whole range on this one.

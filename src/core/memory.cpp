@@ -1,4 +1,4 @@
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 
 #include <cassert>
 #include <cstdlib>

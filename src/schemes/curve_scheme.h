@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "schemes/kernels/curve_kernels.h"
 
 namespace chronormal {
@@ -106,7 +106,7 @@ class BlockedValues {
 
   [[nodiscard]] ElementCoefficients of(std::size_t i) const noexcept { return {values_.data() + offset(i)}; }
 
-  [[nodiscard]] CurveBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
+  [[nodiscard]] CoefficientBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
   [[nodiscard]] float* data() noexcept { return values_.data(); }
   /// Without what fills up the last block.
   [[nodiscard]] std::size_t bytes() const noexcept { return element_count_ * plane_count_ * sizeof(float); }
@@ -131,7 +131,7 @@ concept Playable = requires(const Policy& policy) {
 
 /// Plays the coefficients of a CurveScheme.
 template <Playable Policy>
-class CurvePlayback final : public Playback {
+class CurvePlayback final : public SchemePlayback {
  public:
   CurvePlayback(const Policy& policy, const BlockedValues& values, std::size_t count, std::size_t without_direction,
                 double start, double step, std::size_t anchor_interval)
@@ -211,7 +211,8 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return fallbacks_; }
   [[nodiscard]] std::size_t bytes() const noexcept override { return values_.bytes(); }
 
-  [[nodiscard]] std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const override {
+  [[nodiscard]] std::unique_ptr<SchemePlayback> play(double start, double step,
+                                                     std::size_t anchor_interval) const override {
     if constexpr (Playable<Policy>) {
       if (policy_.state_planes() > 0) {
         return std::make_unique<CurvePlayback<Policy>>(policy_, values_, count_, without_direction_, start, step,

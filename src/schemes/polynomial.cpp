@@ -9,7 +9,7 @@
 namespace chronormal {
 namespace {
 
-class PolynomialPlayback final : public Playback {
+class PolynomialPlayback final : public SchemePlayback {
  public:
   PolynomialPlayback(const NormalCurves& curves, double start, double step, std::size_t anchor_interval)
       : playback_(curves, start, step, anchor_interval) {}
@@ -32,7 +32,8 @@ class Polynomial final : public Scheme {
   [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
   [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }
 
-  [[nodiscard]] std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const override {
+  [[nodiscard]] std::unique_ptr<SchemePlayback> play(double start, double step,
+                                                     std::size_t anchor_interval) const override {
     return std::make_unique<PolynomialPlayback>(curves_, start, step, anchor_interval);
   }
 

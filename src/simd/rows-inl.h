@@ -26,20 +26,42 @@ using Doubles = hn::Vec<DoubleTag>;
 
 inline constexpr DoubleTag kDoubles;
 
-struct Doubles3 {
-  Doubles x, y, z;
-};
+using Doubles3 = LanesOf3<Doubles>;
 
-HWY_INLINE Doubles3 operator+(const Doubles3& a, const Doubles3& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+// The lower (0) or upper (1) half of the lanes.
+template <int kHalf>
+HWY_INLINE Doubles ToDouble(Floats v) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::PromoteTo(kDoubles, v);
+#else
+  if constexpr (kHalf == 0) return hn::PromoteTo(kDoubles, hn::LowerHalf(v));
+  if constexpr (kHalf == 1) return hn::PromoteTo(kDoubles, hn::UpperHalf(HalfFloatTag(), v));
+#endif
 }
-HWY_INLINE Doubles3 operator-(const Doubles3& a, const Doubles3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+template <int kHalf>
+HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
+  return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
 }
-HWY_INLINE Doubles3 Scale(Doubles s, const Doubles3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE Doubles3 Cross(const Doubles3& a, const Doubles3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+// Plain C++ in Highway rounds what is beyond the range of float to the largest float, where all others and
+// static_cast give infinity.
+#undef CHRONORMAL_DEMOTE_CLAMPS
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+#define CHRONORMAL_DEMOTE_CLAMPS 1
+#else
+#define CHRONORMAL_DEMOTE_CLAMPS 0
+#endif
+
+// kLanes doubles in memory.
+HWY_INLINE Floats ToFloat(const double* from) {
+#if CHRONORMAL_DEMOTE_CLAMPS
+  float rounded[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) rounded[i] = static_cast<float>(from[i]);
+  return hn::LoadU(kFloats, rounded);
+#else
+  const HalfFloatTag half;
+  return hn::Combine(kFloats, hn::DemoteTo(half, hn::Load(kDoubles, from + kDoubleLanes)),
+                     hn::DemoteTo(half, hn::Load(kDoubles, from)));
+#endif
 }
 
 struct Lanes4 {
@@ -101,6 +123,22 @@ HWY_INLINE Lanes4 Columns(const RowOf& row) {
 }
 
 #endif
+
+// Four doubles, rounded.
+HWY_INLINE Row RoundedRow(const double* from) {
+#if CHRONORMAL_DEMOTE_CLAMPS
+  float rounded[4];
+  for (std::size_t c = 0; c < 4; ++c) rounded[c] = static_cast<float>(from[c]);
+  return LoadRow(rounded);
+#elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  return hn::DemoteTo(hn::FixedTag<float, 4>(), hn::LoadU(hn::FixedTag<double, 4>(), from));
+#else
+  const hn::FixedTag<double, 2> pair;
+  const hn::FixedTag<float, 2> two;
+  return hn::Combine(hn::FixedTag<float, 4>(), hn::DemoteTo(two, hn::LoadU(pair, from + 2)),
+                     hn::DemoteTo(two, hn::LoadU(pair, from)));
+#endif
+}
 
 }  // namespace chronormal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -10,7 +10,7 @@
 
 #include "tests/support/blend_oracle.h"
 
-namespace chronormal {
+namespace chronormal::blend_quality_test {
 namespace {
 
 BlendNormals normals_of(const BlendSet& set) { return BlendNormals::of_groups(set, test::vertices_of(set)); }
@@ -149,4 +149,4 @@ TEST(BlendQuality, sets_without_targets_have_nothing_to_measure) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_quality_test

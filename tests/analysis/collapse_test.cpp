@@ -7,7 +7,7 @@
 
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::collapse_test {
 namespace {
 
 std::vector<ControlNormals> normals_of(const Motion& motion) {
@@ -173,4 +173,4 @@ TEST(Collapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::collapse_test

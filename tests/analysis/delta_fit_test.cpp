@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::delta_fit_test {
 namespace {
 
 // Three elements; target 0 moves all of them, target 1 the last two, target 2 the last.
@@ -83,4 +83,4 @@ TEST(DeltaFit, leaves_the_smallest_sum_of_squares) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::delta_fit_test

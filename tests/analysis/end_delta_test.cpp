@@ -16,7 +16,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 
-namespace chronormal {
+namespace chronormal::end_delta_test {
 namespace {
 
 using fixtures::Random;
@@ -238,4 +238,4 @@ TEST(EndDelta, it_helps_where_areas_change) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::end_delta_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::quality_test {
 namespace {
 
 TEST(Quality, sums_angles_and_remembers_the_worst_place) {
@@ -117,4 +117,4 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::quality_test

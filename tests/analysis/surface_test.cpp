@@ -12,7 +12,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/random_mesh.h"
 
-namespace chronormal {
+namespace chronormal::surface_test {
 namespace {
 
 using Corners = std::vector<std::uint32_t>;
@@ -228,4 +228,4 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::surface_test

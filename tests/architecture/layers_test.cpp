@@ -14,6 +14,7 @@
 
 #include "tests/support/places.h"
 
+namespace chronormal::layers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -138,6 +139,20 @@ std::vector<fs::path> product_files() {
   return files;
 }
 
+// The lines of a file that use an instruction set by itself and not through Highway.
+std::vector<std::string> raw_intrinsics(const std::string& path, const std::string& text) {
+  std::vector<std::string> found;
+  for (const std::string& line : lines_of(text)) {
+    for (const char* mark : {"_mm_", "_mm256_", "_mm512_", "__m128", "__m256", "__m512", "__mmask", "intrin.h",
+                             "arm_neon.h", "wasm_simd128.h"}) {
+      if (line.find(mark) == std::string::npos) continue;
+      found.push_back(path + ": " + line);
+      break;
+    }
+  }
+  return found;
+}
+
 TEST(Layers, a_planted_violation_is_found) {
   EXPECT_EQ(violations("src/normals/x.cpp", "#include \"chronormal/schemes/scheme.h\"\n").size(), 1u);
   EXPECT_EQ(violations("include/chronormal/core/x.h", "  #include \"chronormal/motion/motion.h\"\n").size(), 1u);
@@ -162,6 +177,16 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
   for (const fs::path& file : files) {
     if (file == "include/chronormal/chronormal.h") continue;
     for (const std::string& violation : violations(file.string(), read(kRoot / file))) ADD_FAILURE() << violation;
+  }
+}
+
+TEST(Layers, public_headers_include_only_public_headers) {
+  for (const fs::path& file : product_files()) {
+    if (!file.string().starts_with("include/")) continue;
+    for (const std::string& line : lines_of(read(kRoot / file))) {
+      const std::string included = included_by(line);
+      EXPECT_TRUE(included.empty() || included.starts_with("chronormal/")) << file << " includes " << included;
+    }
   }
 }
 
@@ -199,6 +224,18 @@ TEST(Layers, the_umbrella_header_lists_every_public_header_in_the_order_of_the_l
   EXPECT_EQ(listed, there);
 }
 
+TEST(Layers, raw_intrinsics_stand_in_one_file) {
+  const std::string planted = "  __m512 v = _mm512_loadu_ps(p);\n#include <immintrin.h>\n#include <arm_neon.h>\n";
+  EXPECT_EQ(raw_intrinsics("src/normals/x.cpp", planted).size(), 3u);
+
+  const fs::path home = "src/simd/intrinsics-inl.h";
+  EXPECT_FALSE(raw_intrinsics(home.string(), read(kRoot / home)).empty());
+  for (const fs::path& file : product_files()) {
+    if (file == home) continue;
+    for (const std::string& line : raw_intrinsics(file.string(), read(kRoot / file))) ADD_FAILURE() << line;
+  }
+}
+
 TEST(Layers, files_can_be_seen_at_a_glance) {
   for (const fs::path& file : product_files()) {
     const std::size_t limit = file.string().starts_with("include/") ? 250 : 500;
@@ -207,3 +244,4 @@ TEST(Layers, files_can_be_seen_at_a_glance) {
 }
 
 }  // namespace
+}  // namespace chronormal::layers_test

@@ -14,7 +14,7 @@
 #include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::audit_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -188,4 +188,4 @@ TEST_F(AuditCli, errors_say_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::audit_cli_test

@@ -12,7 +12,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::bake_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -208,4 +208,4 @@ TEST_F(BakeCli, file_in_which_nothing_moves_is_copied) {
 TEST_F(BakeCli, a_full_device_is_an_error) { EXPECT_EQ(run("moving.glb -o /dev/full").exit_code, 1); }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_cli_test

@@ -11,7 +11,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::bake_interrupted_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST_F(InterruptedBake, killed_at_any_moment_leaves_the_old_file_or_the_new_one)
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_interrupted_test

@@ -15,7 +15,7 @@
 #include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::blend_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -194,4 +194,4 @@ TEST_F(BlendCli, wrong_input_is_exit_3) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_cli_test

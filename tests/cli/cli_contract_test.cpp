@@ -14,7 +14,7 @@
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 
-namespace chronormal {
+namespace chronormal::cli_contract_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -353,4 +353,4 @@ TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::cli_contract_test

@@ -13,7 +13,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::inspect_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -221,4 +221,4 @@ TEST_F(InspectCli, every_builtin_morph_is_inspected) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::inspect_cli_test

@@ -22,7 +22,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::sample_cli_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -379,4 +379,4 @@ TEST_F(SampleCliGolden, trimesh_weighs_vertices_by_area) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::sample_cli_test

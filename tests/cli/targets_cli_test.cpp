@@ -11,7 +11,7 @@
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::targets_cli_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -141,4 +141,4 @@ TEST_F(TargetsCli, targets_have_weights_and_sequences_have_times) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::targets_cli_test

@@ -14,7 +14,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
 
-namespace chronormal {
+namespace chronormal::core_test {
 namespace {
 
 TEST(Result, carries_a_value_or_an_error) {
@@ -99,4 +99,4 @@ TEST(Parallel, an_exception_comes_out) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::core_test

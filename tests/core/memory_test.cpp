@@ -1,4 +1,4 @@
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 
 #include <gtest/gtest.h>
 
@@ -10,18 +10,13 @@
 #include <utility>
 
 #include "chronormal/core/vec3.h"
+#include "tests/support/child_process.h"
 
-namespace chronormal {
+namespace chronormal::memory_test {
 namespace {
 
 constexpr std::size_t kLargest = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kAddressSanitizer = true;  // which ends the program where too much is asked for
-#else
-constexpr bool kAddressSanitizer = false;
-#endif
 
 std::uintptr_t address(const void* p) { return reinterpret_cast<std::uintptr_t>(p); }
 
@@ -75,7 +70,7 @@ TEST(AlignedBytes, moved_from_are_none) {
 }
 
 TEST(AlignedBytes, more_than_there_can_be_throws) {
-  if (kAddressSanitizer) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
+  if (test::is_sanitized()) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
   for (const std::size_t size : {kLargest, kLargest - 1, kLargest - 62, kLargest - 63, kLargest - 64,
                                  kLargest - 2 * kMebibyte, kLargest / 2, kLargest / 2 + 1})
     EXPECT_THROW(AlignedBytes{size}, std::bad_alloc) << size;
@@ -92,11 +87,11 @@ TEST(AlignedArray, holds_count_values) {
 }
 
 TEST(AlignedArray, more_than_there_can_be_throws) {
-  if (kAddressSanitizer) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
+  if (test::is_sanitized()) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
   // 2^61 doubles are 2^64 bytes, which is 0; one more is 8.
   for (const std::size_t count : {std::size_t{1} << 61, (std::size_t{1} << 61) + 1, kLargest, kLargest / 8})
     EXPECT_THROW(AlignedArray<double>{count}, std::bad_alloc) << count;
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::memory_test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::parallel_test {
 namespace {
 
 // Whether this build has threads at all.
@@ -110,4 +110,4 @@ TEST(ThreadLimit, belongs_to_the_thread_that_made_it) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::parallel_test

@@ -8,7 +8,7 @@
 
 #include "chronormal/core/vec3.h"
 
-namespace chronormal {
+namespace chronormal::polynomial_test {
 namespace {
 
 // The definition of the Bernstein form, term by term.
@@ -119,4 +119,4 @@ TEST(Polynomial, no_sign_change_means_no_root) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::polynomial_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace chronormal {
+namespace chronormal::trigonometry_test {
 namespace {
 
 TEST(Trigonometry, sine_and_cosine_are_within_the_stated_error) {
@@ -41,4 +41,4 @@ TEST(Trigonometry, small_angles_keep_their_relative_precision) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::trigonometry_test

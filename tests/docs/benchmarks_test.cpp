@@ -8,17 +8,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/support/places.h"
+#include "tests/support/generated_page.h"
 #include "tests/support/process.h"
-#include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::benchmarks_test {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-const fs::path kDocs = fs::path(kSourceFolder) / "docs";
 const fs::path kResults = fs::path(kSourceFolder) / "bench" / "results";
 
 ProcessResult generate(const std::string& results, const std::string& folder) {
@@ -56,18 +54,9 @@ TEST(Benchmarks, page_and_pictures_are_what_the_generator_makes_of_the_results) 
   const test::TemporaryFolder folder;
   const ProcessResult result = generate(kResults.string(), folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const std::string committed = test::read_whole((kDocs / "benchmarks.md").string());
-  EXPECT_TRUE(committed == test::read_whole(folder / "benchmarks.md")) << "tools/make_benchmarks writes it anew";
-  std::size_t pictures = 0;
-  for (const auto& entry : fs::directory_iterator(folder.path() + "/pictures")) {
-    const std::string name = entry.path().filename().string();
-    ASSERT_TRUE(fs::exists(kDocs / "pictures" / name)) << name;
-    EXPECT_TRUE(test::read_whole((kDocs / "pictures" / name).string()) == test::read_whole(entry.path().string()))
-        << name;
-    EXPECT_NE(committed.find("(pictures/" + name + ")"), std::string::npos) << name;
-    ++pictures;
-  }
-  EXPECT_GE(pictures, 2u);
+  const std::string committed = test::read_whole((test::kDocs / "benchmarks.md").string());
+  test::expect_same_text(committed, test::read_whole(folder / "benchmarks.md"), "docs/benchmarks.md");
+  EXPECT_GE(test::expect_same_pictures(folder, committed), 2u);
 }
 
 TEST(Benchmarks, results_without_a_rival_make_no_page) {
@@ -168,4 +157,4 @@ TEST(Benchmarks, results_that_were_wrong_or_cannot_be_read_make_no_page) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::benchmarks_test

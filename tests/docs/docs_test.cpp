@@ -19,8 +19,9 @@
 
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::docs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,28 +142,41 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-TEST(Documents, every_command_runs_and_prints_what_is_shown) {
-  int blocks = 0;
+// A test for each document, by its path in the repository, so that they run side by side.
+class Commands : public testing::TestWithParam<std::string> {};
+
+std::vector<std::string> documents_with_commands() {
+  std::vector<std::string> names;
   for (const fs::path& path : documents()) {
-    char name[] = "/tmp/chronormal_docs_XXXXXX";
-    const fs::path folder = mkdtemp(name);
-    const Lines lines = lines_of(read(path));
-    Lines renewed;
-    for (std::size_t i = 0; i < lines.size();) {
-      renewed.push_back(lines[i]);
-      if (lines[i++] != "```console") continue;
-      ++blocks;
-      const std::string where = fs::relative(path, kRoot).string() + ":" + std::to_string(i);
-      Lines block;
-      while (i < lines.size() && lines[i] != "```") block.push_back(lines[i++]);
-      const Lines checked = check_console(block, folder, where);
-      renewed.insert(renewed.end(), checked.begin(), checked.end());
-    }
-    fs::remove_all(folder);
-    if (updating() && renewed != lines) std::ofstream(path, std::ios::binary) << joined(renewed);
+    if (read(path).find("```console\n") != std::string::npos) names.push_back(fs::relative(path, kRoot).string());
   }
-  EXPECT_GT(blocks, 5);
+  return names;
 }
+
+TEST_P(Commands, run_and_print_what_is_shown) {
+  const fs::path path = kRoot / GetParam();
+  const test::TemporaryFolder folder;
+  const Lines lines = lines_of(read(path));
+  Lines renewed;
+  for (std::size_t i = 0; i < lines.size();) {
+    renewed.push_back(lines[i]);
+    if (lines[i++] != "```console") continue;
+    const std::string where = GetParam() + ":" + std::to_string(i);
+    Lines block;
+    while (i < lines.size() && lines[i] != "```") block.push_back(lines[i++]);
+    const Lines checked = check_console(block, folder.path(), where);
+    renewed.insert(renewed.end(), checked.begin(), checked.end());
+  }
+  if (updating() && renewed != lines) std::ofstream(path, std::ios::binary) << joined(renewed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_commands()), [](const auto& tested) {
+  std::string name = fs::path(tested.param).replace_extension().string();
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+});
+
+TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
   int quotes = 0;
@@ -202,4 +216,4 @@ TEST(Documents, the_changelog_knows_the_version) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::docs_test

@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,49 +12,11 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "tests/support/child_process.h"
-#include "tests/support/places.h"
+#include "tests/support/generated_page.h"
 #include "tests/support/process.h"
-#include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::weightings_test {
 namespace {
-
-namespace fs = std::filesystem;
-
-const fs::path kDocs = fs::path(kSourceFolder) / "docs";
-
-std::string begin_of(const std::string& block) { return "<!-- " + block + " -->\n"; }
-std::string end_of(const std::string& block) { return "<!-- end of " + block + " -->\n"; }
-
-// What stands in a block, "" where it is not there.
-std::string inside(const std::string& page, const std::string& block) {
-  const std::size_t begin = page.find(begin_of(block)), end = page.find(end_of(block));
-  if (begin == std::string::npos || end == std::string::npos) return "";
-  const std::size_t first = begin + begin_of(block).size();
-  return first <= end ? page.substr(first, end - first) : "";
-}
-
-// The page without what stands in any block of this name, and how many of them there are.
-std::string without(std::string page, const std::string& block, std::size_t& count) {
-  count = 0;
-  for (std::size_t at = 0; (at = page.find(begin_of(block), at)) != std::string::npos; ++count) {
-    at += begin_of(block).size();
-    const std::size_t end = page.find(end_of(block), at);
-    if (end == std::string::npos) return "";
-    page.erase(at, end - at);
-  }
-  return page;
-}
-
-// Where two texts part, with the line as the one has it and as the other does.
-std::string first_difference(const std::string& a, const std::string& b) {
-  const auto parted = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
-  const auto at = static_cast<std::size_t>(parted - a.begin());
-  const std::size_t start = at == 0 ? 0 : a.rfind('\n', at - 1) + 1;
-  return "committed: " + a.substr(start, a.find('\n', at) - start) +
-         "\ngenerated: " + b.substr(start, b.find('\n', std::min(at, b.size())) - start) +
-         "\n(tools/make_weightings writes it anew)";
-}
 
 TEST(Weightings, page_and_picture_are_what_the_generator_writes) {
   if (test::is_sanitized()) GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
@@ -64,35 +24,25 @@ TEST(Weightings, page_and_picture_are_what_the_generator_writes) {
   const ProcessResult result =
       run_shell(std::string(kBuildFolder) + "/tools/weightings/chronormal_weightings --partial .", folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const std::string page = test::read_whole((kDocs / "weightings.md").string());
-  std::string committed = page, generated = test::read_whole(folder / "weightings.md");
+  std::string committed = test::read_whole((test::kDocs / "weightings.md").string());
+  std::string generated = test::read_whole(folder / "weightings.md");
   for (const std::string block : {"times", "peers", "golden"}) {
+    const auto ours = test::without_blocks(committed, block), anew = test::without_blocks(generated, block);
+    EXPECT_EQ(ours.count, anew.count) << block;
+    EXPECT_GE(ours.count, 1u) << block;
     // Other libraries and files are compared where they are.
-    if (block != "times" && !inside(generated, block).empty()) continue;
+    if (block != "times" && !anew.inside.empty()) continue;
     if (block != "times") std::printf("not measured here, so not compared: %s\n", block.c_str());
-    std::size_t in_committed = 0, in_generated = 0;
-    committed = without(committed, block, in_committed);
-    generated = without(generated, block, in_generated);
-    EXPECT_EQ(in_committed, in_generated) << block;
-    EXPECT_GE(in_committed, 1u) << block;
+    committed = ours.page, generated = anew.page;
   }
-  EXPECT_TRUE(committed == generated) << first_difference(committed, generated);
-
-  std::size_t pictures = 0;
-  for (const auto& entry : fs::directory_iterator(folder.path() + "/pictures")) {
-    const std::string name = entry.path().filename().string();
-    ASSERT_TRUE(fs::exists(kDocs / "pictures" / name)) << name;
-    EXPECT_TRUE(test::read_whole((kDocs / "pictures" / name).string()) == test::read_whole(entry.path().string()))
-        << name;
-    EXPECT_NE(page.find("(pictures/" + name + ")"), std::string::npos) << name;
-    ++pictures;
-  }
-  EXPECT_EQ(pictures, 1u);
+  test::expect_same_text(committed, generated, "docs/weightings.md");
+  EXPECT_EQ(test::expect_same_pictures(folder, committed), 1u);
 }
 
 TEST(Weightings, page_has_a_row_for_every_library_and_file_that_it_was_measured_with) {
-  const std::string page = test::read_whole((kDocs / "weightings.md").string());
-  const std::string peers = inside(page, "peers"), golden = inside(page, "golden");
+  const std::string page = test::read_whole((test::kDocs / "weightings.md").string());
+  const std::string peers = test::without_blocks(page, "peers").inside,
+                    golden = test::without_blocks(page, "golden").inside;
   for (const std::string row : {"OpenMesh 9.0 `calc_vertex_normal_fast`", "OpenMesh 9.0 `calc_vertex_normal_correct`",
                                 "OpenMesh 9.0 `calc_vertex_normal_loop`", "VTK 9.1 `vtkPolyDataNormals`",
                                 "VTK 9.1 `vtkTriangleMeshPointNormals`", "CGAL 5.5 `compute_vertex_normals`"}) {
@@ -129,4 +79,4 @@ TEST(Weightings, are_along_what_the_theory_says_of_two_triangles) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weightings_test

@@ -11,7 +11,7 @@ function(run)
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/install -B ${folder}/build -DCMAKE_PREFIX_PATH=${folder}/prefix
-    -DEXAMPLE=${SOURCE}/examples/first_steps.cpp -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS})
+    -DEXAMPLE=${SOURCE}/examples/first_steps.cpp -DCMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${folder}/build)
 run(${folder}/build/consumer)
 run(${folder}/prefix/bin/chronormal --version)

@@ -11,7 +11,7 @@
 #include "tests/support/blend_oracle.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::blend_set_test {
 namespace {
 
 // A triangle, and a vertex beside it.
@@ -110,4 +110,4 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_set_test

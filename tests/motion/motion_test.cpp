@@ -10,7 +10,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/topology.h"
 
-namespace chronormal {
+namespace chronormal::motion_test {
 namespace {
 
 TEST(Topology, mixes_triangles_and_polygons) {
@@ -188,4 +188,4 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_test

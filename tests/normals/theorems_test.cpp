@@ -20,7 +20,7 @@
 #include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::theorems_test {
 namespace {
 
 using fixtures::Point;
@@ -430,4 +430,4 @@ RC_GTEST_PROP(Theorems, general_face_has_degree_2_where_its_edges_do_not_change_
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::theorems_test

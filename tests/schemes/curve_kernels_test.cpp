@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "core/trigonometry.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::curve_kernels_test {
 namespace {
 
 // All formulas, and each that is played.
@@ -225,7 +225,7 @@ struct Blocks {
   }
 
   AlignedArray<float> values;
-  CurveBlocks curves;
+  CoefficientBlocks curves;
 };
 
 struct Kernel {
@@ -357,4 +357,4 @@ TEST(CurveFormulas, take_no_elements_at_all) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::curve_kernels_test

@@ -22,7 +22,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 
-namespace chronormal {
+namespace chronormal::oracle_test {
 namespace {
 
 using fixtures::Shape;
@@ -447,4 +447,4 @@ TEST(PolynomialScheme, has_an_error_above_zero_and_below_a_ten_thousandth_of_a_d
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::oracle_test

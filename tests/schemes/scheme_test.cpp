@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::scheme_test {
 namespace {
 
 // Every scheme once, parameters filled in.
@@ -317,4 +317,4 @@ TEST(Schemes, operations_of_a_step_are_those_of_differences_and_rotations) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::scheme_test

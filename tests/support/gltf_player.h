@@ -15,21 +15,9 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/long_vectors.h"
+
 namespace chronormal::test {
-
-using Long = long double;
-using LongVector = std::array<Long, 3>;
-
-[[nodiscard]] inline LongVector cross_of(const LongVector& a, const LongVector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-[[nodiscard]] inline Long dot_of(const LongVector& a, const LongVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-[[nodiscard]] inline Long length_of(const LongVector& a) { return std::sqrt(dot_of(a, a)); }
-[[nodiscard]] inline double degrees_between(const LongVector& a, const LongVector& b) {
-  return static_cast<double>(std::atan2(length_of(cross_of(a, b)), dot_of(a, b)) * 180 / std::acos(Long{-1}));
-}
 
 class GltfPlayer {
  public:
@@ -108,7 +96,7 @@ class GltfPlayer {
   }
 
   /// The stored normal of a vertex with its deltas, added up in float32.
-  [[nodiscard]] LongVector shown(const Json& primitive, std::size_t vertex, const std::vector<float>& weights) const {
+  [[nodiscard]] Vector shown(const Json& primitive, std::size_t vertex, const std::vector<float>& weights) const {
     const std::vector<float>& normals = cached(primitive.at("attributes").at("NORMAL"));
     std::array<float, 3> sum = {normals[3 * vertex], normals[3 * vertex + 1], normals[3 * vertex + 2]};
     const Json& targets = primitive.at("targets");
@@ -117,7 +105,7 @@ class GltfPlayer {
       const std::vector<float>& deltas = cached(targets[k]["NORMAL"]);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += weights[k] * deltas[3 * vertex + c];
     }
-    return {static_cast<Long>(sum[0]), static_cast<Long>(sum[1]), static_cast<Long>(sum[2])};
+    return {static_cast<Real>(sum[0]), static_cast<Real>(sum[1]), static_cast<Real>(sum[2])};
   }
 
   [[nodiscard]] const std::vector<float>& cached(std::size_t index) const {

@@ -45,8 +45,8 @@ class GltfTruth {
     }
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       std::vector<float> key;
-      for (const LongVector& x : positions_[v]) {
-        for (const Long c : x) key.push_back(static_cast<float>(c) + 0.0F);
+      for (const Vector& x : positions_[v]) {
+        for (const Real c : x) key.push_back(static_cast<float>(c) + 0.0F);
       }
       at_place[key].push_back(v);
     }
@@ -56,30 +56,30 @@ class GltfTruth {
 
   struct Vertex {
     std::size_t primitive = 0, index = 0;
-    LongVector stored;
+    Vector stored;
   };
   std::vector<Vertex> vertices;
   bool uniform = false;  ///< all faces count alike, instead of by their area
 
   /// n(w) of each vertex. Weights beyond those of the file are not looked at.
-  [[nodiscard]] std::vector<LongVector> normals_at(const std::vector<double>& weights) const {
-    std::vector<LongVector> at(vertices.size());
+  [[nodiscard]] std::vector<Vector> normals_at(const std::vector<double>& weights) const {
+    std::vector<Vector> at(vertices.size());
     for (std::size_t v = 0; v < at.size(); ++v) {
       at[v] = positions_[v][0];
       for (std::size_t k = 1; k < positions_[v].size(); ++k) {
-        for (std::size_t c = 0; c < 3; ++c) at[v][c] += static_cast<Long>(weights.at(k - 1)) * positions_[v][k][c];
+        for (std::size_t c = 0; c < 3; ++c) at[v][c] += static_cast<Real>(weights.at(k - 1)) * positions_[v][k][c];
       }
     }
-    std::vector<LongVector> sums(vertices.size(), LongVector{});
+    std::vector<Vector> sums(vertices.size(), Vector{});
     for (const auto& face : faces_) {
-      LongVector e{}, f{};
+      Vector e{}, f{};
       for (std::size_t c = 0; c < 3; ++c) {
         e[c] = at[face[1]][c] - at[face[0]][c];
         f[c] = at[face[2]][c] - at[face[0]][c];
       }
-      LongVector n = cross_of(e, f);
-      const Long size = uniform ? length_of(n) : 1;
-      for (Long& c : n) c /= size;
+      Vector n = crossed(e, f);
+      const Real size = uniform ? length_of(n) : 1;
+      for (Real& c : n) c /= size;
       for (const std::size_t v : face) {
         for (std::size_t c = 0; c < 3; ++c) sums[group_[v]][c] += n[c];
       }
@@ -89,23 +89,23 @@ class GltfTruth {
   }
 
   /// n turned by the smallest rotation from `from` to `to`, of any length.
-  [[nodiscard]] static LongVector turn(const LongVector& from, const LongVector& to, const LongVector& n) {
-    const Long scale = length_of(from) * length_of(to);
+  [[nodiscard]] static Vector turn(const Vector& from, const Vector& to, const Vector& n) {
+    const Real scale = length_of(from) * length_of(to);
     if (scale == 0) return n;
-    const LongVector axis = cross_of(from, to);
-    const Long s = length_of(axis) / scale, c = dot_of(from, to) / scale, norm = length_of(axis);
+    const Vector axis = crossed(from, to);
+    const Real s = length_of(axis) / scale, c = dotted(from, to) / scale, norm = length_of(axis);
     if (norm == 0) return n;  // the tests have no opposite normals
-    const LongVector k = {axis[0] / norm, axis[1] / norm, axis[2] / norm};
-    const LongVector across = cross_of(k, n);
-    const Long along = dot_of(k, n) * (1 - c);
+    const Vector k = {axis[0] / norm, axis[1] / norm, axis[2] / norm};
+    const Vector across = crossed(k, n);
+    const Real along = dotted(k, n) * (1 - c);
     return {n[0] * c + across[0] * s + k[0] * along, n[1] * c + across[1] * s + k[1] * along,
             n[2] * c + across[2] * s + k[2] * along};
   }
 
  private:
-  [[nodiscard]] static LongVector vector(const std::vector<float>& values, std::size_t v) {
-    return {static_cast<Long>(values.at(3 * v)), static_cast<Long>(values.at(3 * v + 1)),
-            static_cast<Long>(values.at(3 * v + 2))};
+  [[nodiscard]] static Vector vector(const std::vector<float>& values, std::size_t v) {
+    return {static_cast<Real>(values.at(3 * v)), static_cast<Real>(values.at(3 * v + 1)),
+            static_cast<Real>(values.at(3 * v + 2))};
   }
 
   void add_faces(const std::vector<std::size_t>& i, int mode, std::size_t first) {
@@ -124,7 +124,7 @@ class GltfTruth {
     for (std::size_t a = 0; a < here.size(); ++a) root[a] = a;
     for (std::size_t a = 0; a < here.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        const LongVector &m = vertices[here[a]].stored, &n = vertices[here[b]].stored;
+        const Vector &m = vertices[here[a]].stored, &n = vertices[here[b]].stored;
         if (degrees_between(m, n) > 0.1) continue;
         const std::size_t from = std::max(root[a], root[b]), to = std::min(root[a], root[b]);
         std::replace(root.begin(), root.end(), from, to);
@@ -133,7 +133,7 @@ class GltfTruth {
     for (std::size_t a = 0; a < here.size(); ++a) group_[here[a]] = here[root[a]];
   }
 
-  std::vector<std::vector<LongVector>> positions_;  // of each vertex: the base, and the delta of each target
+  std::vector<std::vector<Vector>> positions_;  // of each vertex: the base, and the delta of each target
   std::vector<std::array<std::size_t, 3>> faces_;
   std::vector<std::size_t> group_;
 };
@@ -163,9 +163,9 @@ struct Pose {
                                             const std::vector<Pose>& poses) {
   ShownError error;
   if (poses.empty()) return error;
-  const std::vector<LongVector> base = truth.normals_at(std::vector<double>(poses[0].before.size(), 0.0));
-  std::vector<std::vector<LongVector>> exact;
-  std::vector<Long> largest(base.size(), 0);
+  const std::vector<Vector> base = truth.normals_at(std::vector<double>(poses[0].before.size(), 0.0));
+  std::vector<std::vector<Vector>> exact;
+  std::vector<Real> largest(base.size(), 0);
   for (const Pose& pose : poses) {
     exact.push_back(truth.normals_at(pose.before));
     for (std::size_t v = 0; v < base.size(); ++v)
@@ -179,7 +179,7 @@ struct Pose {
         ++error.left_out;
         continue;
       }
-      const LongVector shown = after.shown(primitives[vertex.primitive], vertex.index, poses[n].after);
+      const Vector shown = after.shown(primitives[vertex.primitive], vertex.index, poses[n].after);
       error.add(degrees_between(shown, GltfTruth::turn(base[v], vertex.stored, exact[n][v])));
     }
   }

@@ -14,26 +14,16 @@
 
 #include "tests/support/fixtures.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/long_vectors.h"
 
 namespace chronormal::test {
-
-using Real = long double;
-using Vector = std::array<Real, 3>;
 
 inline Vector plus(const Vector& a, const Vector& b, Real s = 1) {
   return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
 }
-inline Vector crossed(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline Real dotted(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Real length_of(const Vector& a) { return std::sqrt(dotted(a, a)); }
 inline Vector unit_of(const Vector& a) {
   const Real l = length_of(a);
   return {a[0] / l, a[1] / l, a[2] / l};
-}
-inline Real degrees_between(const Vector& a, const Vector& b) {
-  return std::atan2(length_of(crossed(a, b)), dotted(a, b)) * 180 / std::numbers::pi_v<Real>;
 }
 inline Vector vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};

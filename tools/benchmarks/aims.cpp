@@ -109,35 +109,28 @@ std::string sentence(const Aim& aim) {
 
 }  // namespace
 
-void write_aims(Page& page, const Results& results) {
-  page.subheading("Aims");
-  page.text(
-      "Ratios within this run, beside what was aimed at before there was a line of code: measured / aim, in bold where "
-      "it is reached.");
-  std::vector<std::string> header = {"what"};
+void add_aims(Page& page, const Results& results) {
+  Cells header = {"what"};
   for (const Column& column : columns()) header.push_back(column.title);
-  std::vector<std::vector<std::string>> rows;
-  std::size_t reached = 0, all = 0;
+  std::vector<Cells> rows;
+  std::size_t reached = 0, aimed = 0;
   for (const Aim& aim : aims()) {
-    std::vector<std::string> cells = {sentence(aim)};
+    Cells cells = {sentence(aim)};
     for (std::size_t c = 0; c < columns().size(); ++c) {
       const std::optional<double> value = measured(results, aim, columns()[c]);
-      if (!value) {
-        cells.push_back("");
-      } else if (aim.at[c] == 0) {
-        cells.push_back(number(aim, *value));
-      } else {
+      std::string text = value ? number(aim, *value) : "";
+      if (value && aim.at[c] != 0) {
         const bool good = aim.kind == Kind::kTimesRecompute ? *value <= aim.at[c] : *value >= aim.at[c];
-        const char* const bold = good ? "**" : "";
-        cells.push_back(fmt::format("{}{} / {}{}", bold, number(aim, *value), number(aim, aim.at[c]), bold));
+        text = emphasised(fmt::format("{} / {}", text, number(aim, aim.at[c])), good);
         reached += good ? 1 : 0;
-        ++all;
+        ++aimed;
       }
+      cells.push_back(std::move(text));
     }
     rows.push_back(std::move(cells));
   }
-  page.table(header, rows);
-  page.text(fmt::format("{} of {} are reached.", reached, all));
+  page.table("aims", header, rows);
+  page.set({{"reached", fmt::format("{}", reached)}, {"aimed", fmt::format("{}", aimed)}});
 }
 
 }  // namespace chronormal::benchmarks

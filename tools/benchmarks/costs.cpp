@@ -9,45 +9,26 @@
 namespace chronormal::benchmarks {
 namespace {
 
-std::string cell(const Row* row) {
-  return row == nullptr ? "-" : fmt::format("{} ±{:.0f}", nanoseconds(row->ns), 100 * row->spread);
-}
-
-std::vector<std::string> header(const std::string& first) {
-  std::vector<std::string> titles = {first};
-  for (const Column& column : columns()) titles.push_back(column.title);
-  return titles;
-}
-
-std::vector<std::string> table_row(const Results& results, const std::string& group, const std::string& name,
-                                   bool many_threads) {
-  std::vector<std::string> cells = {name};
-  std::string note;
-  for (const Column& column : columns()) {
-    const Row* const row = results.find(group, column.size, column.order, name, many_threads);
-    if (row != nullptr) cells[0] = row->name;
-    cells.push_back(cell(row));
+void add_group(Page& page, const Results& results, const std::string& group) {
+  Cells header = {fmt::format("ns per {}", group == "faces" ? "face" : "vertex")};
+  for (const Column& column : columns()) header.push_back(column.title);
+  std::vector<Cells> rows;
+  const auto add_row = [&](const std::string& name, bool many_threads) {
+    Cells cells = {name};
+    for (const Column& column : columns()) {
+      const Row* const row = results.find(group, column.size, column.order, name, many_threads);
+      if (row != nullptr) cells[0] = row->name;
+      cells.push_back(cell(row));
+    }
+    rows.push_back(std::move(cells));
+  };
+  for (const std::string& name : rivals_of(group)) add_row(name, false);
+  add_row("interpolate positions", false);
+  for (const std::string& name : ours()) add_row(name, false);
+  if (std::any_of(results.rows.begin(), results.rows.end(), [](const Row& row) { return row.threads > 1; })) {
+    for (const std::string& name : threaded()) add_row(name, true);
   }
-  return cells;
-}
-
-void write_group(Page& page, const Results& results, const std::string& group) {
-  page.subheading(group == "faces" ? "Faces" : "Vertices");
-  std::vector<std::vector<std::string>> rows;
-  for (const std::string& name : rivals_of(group)) rows.push_back(table_row(results, group, name, false));
-  rows.push_back(table_row(results, group, "interpolate positions", false));
-  for (const std::string& name : ours()) rows.push_back(table_row(results, group, name, false));
-  for (const std::string& name : threaded()) {
-    if (std::any_of(results.rows.begin(), results.rows.end(), [](const Row& row) { return row.threads > 1; }))
-      rows.push_back(table_row(results, group, name, true));
-  }
-  page.table(header(fmt::format("ns per {}", group == "faces" ? "face" : "vertex")), rows);
-  if (group == "vertices") {
-    page.text(
-        "CGAL's is another normal than a sum ([weightings](weightings.md#1-rules)), OpenMesh's `update_normals` and "
-        "`vtkPolyDataNormals` give every face the same weight, and all others weigh by area. OpenMesh's "
-        "`update_vertex_normals` is given the unit normals of faces. CGAL is left out where it takes minutes.");
-  }
+  page.table(group, header, rows);
 }
 
 struct Curve {
@@ -106,35 +87,31 @@ std::string nanoseconds(double ns) {
   return ns < 1 ? fmt::format("{:.3f}", ns) : ns < 10 ? fmt::format("{:.2f}", ns) : fmt::format("{:.0f}", ns);
 }
 
-void write_costs(Page& page, const Results& results) {
-  for (const char* group : {"faces", "vertices"}) write_group(page, results, group);
-  Figure figure{fmt::format("benchmarks_{}_size", results.name), 1000, 480, 2, {}};
-  figure.panels = {size_panel(results, "faces", 0), size_panel(results, "vertices", 1)};
-  page.picture(figure,
-               "Nanoseconds per element against the number of elements, on logarithmic axes, for faces and for "
-               "vertices; dashed to the shuffled mesh");
-  std::vector<double> spreads;
-  for (const Row& row : results.rows) spreads.push_back(row.spread);
-  page.text(fmt::format(
-      "Dashed lines lead to the shuffled mesh of the same size. The distance between the quartiles is {} of the "
-      "median for half of all rows, and at most {} for nine of ten.",
-      percent(quantile(spreads, 0.5), 1), percent(quantile(spreads, 0.9), 1)));
+std::string cell(const Row* row) {
+  return row == nullptr ? "-" : fmt::format("{} ±{:.0f}", nanoseconds(row->ns), 100 * row->spread);
 }
 
-void write_memory(Page& page, const Results& results) {
-  page.subheading("Memory");
-  page.text(
-      "Bandwidth of one thread at the working sets of the rows above, the best of several ways: reading (with and "
-      "without prefetch), and streaming (copy and triad, with ordinary stores, with those past the caches, and with "
-      "prefetch; all bytes count).");
-  std::vector<std::vector<std::string>> rows;
+std::string emphasised(const std::string& text, bool good) { return good ? "**" + text + "**" : text; }
+
+void add_costs(Page& page, const Results& results) {
+  for (const char* group : {"faces", "vertices"}) add_group(page, results, group);
+  Figure figure{fmt::format("benchmarks_{}_size", results.name), 1000, 480, 2, {}};
+  figure.panels = {size_panel(results, "faces", 0), size_panel(results, "vertices", 1)};
+  page.picture("sizes", figure);
+  std::vector<double> spreads;
+  for (const Row& row : results.rows) spreads.push_back(row.spread);
+  page.set({{"spread_median", percent(quantile(spreads, 0.5), 1)}, {"spread_90", percent(quantile(spreads, 0.9), 1)}});
+}
+
+void add_memory(Page& page, const Results& results) {
+  std::vector<Cells> rows;
   for (const Bandwidth& one : results.bandwidths) {
     const double kib = one.bytes / 1024;
     rows.push_back({kib < 10240 ? fmt::format("{} KiB", grouped(kib)) : fmt::format("{} MiB", grouped(kib / 1024)),
                     fmt::format("{:.1f}", one.read), fmt::format("{:.1f}", one.stream),
                     fmt::format("{:.1f}", one.copy)});
   }
-  page.table({"working set", "read, GB/s", "stream, GB/s", "of that copy"}, rows);
+  page.table("bandwidths", {"working set", "read, GB/s", "stream, GB/s", "of that copy"}, rows);
 }
 
 }  // namespace chronormal::benchmarks

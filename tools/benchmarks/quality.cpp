@@ -68,59 +68,42 @@ Panel quality_panel(const Results& results, const std::string& size, const std::
 
 }  // namespace
 
-void write_schemes(Page& page, const Results& results) {
-  page.subheading("Schemes");
-  page.text(
-      "All ways to interpolate normals (`./run compare`) on the faces of the grid, with the mean of their errors on "
-      "the "
-      "built-in morph twist. Beside the cost the aim, in bold where it is reached. *Played*: from step to step, each "
-      "made from the one before.");
-  std::vector<std::vector<std::string>> rows;
+void add_schemes(Page& page, const Results& results) {
+  std::vector<Cells> rows;
   for (const std::string& scheme : schemes()) {
-    const SchemeQuality& quality = quality_of(results, scheme);
-    std::vector<std::string> cells = {fmt::format("`{}`", scheme)};
+    Cells cells = {fmt::format("`{}`", scheme)};
     for (const bool large : {false, true}) {
       const char* const size = large ? "1M" : "15k";
       const Row& row = *results.find("schemes", size, kGrid, scheme);
+      const Row* const played = results.find("schemes", size, kGrid, fmt::format("{}, played", scheme));
       const auto aim = scheme_aims().find(scheme);
       std::string text = nanoseconds(row.ns);
       if (aim != scheme_aims().end()) {
         const double wanted = large ? aim->second.large : aim->second.small;
-        const char* const bold = row.ns <= wanted ? "**" : "";
-        text = fmt::format("{}{} / {:g}{}", bold, text, wanted, bold);
+        text = emphasised(fmt::format("{} / {:g}", text, wanted), row.ns <= wanted);
       }
-      const Row* const played = results.find("schemes", size, kGrid, fmt::format("{}, played", scheme));
       cells.push_back(std::move(text));
       cells.push_back(played == nullptr ? "-" : nanoseconds(played->ns));
     }
-    cells.push_back(fmt::format("{:.0f}", quality.bytes));
-    cells.push_back(ratio(quality.mean_degrees));
-    cells.push_back(ratio(quality.max_degrees));
+    const SchemeQuality& quality = quality_of(results, scheme);
+    cells.insert(cells.end(),
+                 {fmt::format("{:.0f}", quality.bytes), ratio(quality.mean_degrees), ratio(quality.max_degrees)});
     rows.push_back(std::move(cells));
   }
-  page.table({"scheme", "ns, 15 k", "played", "ns, 1 M", "played", "bytes", "mean, degrees", "max"}, rows);
+  page.table("schemes", {"scheme", "ns, 15 k", "played", "ns, 1 M", "played", "bytes", "mean, degrees", "max"}, rows);
   Figure figure{fmt::format("benchmarks_{}_quality", results.name), 1000, 620, 2, {}};
   figure.panels = {quality_panel(results, "15k", "15 k faces, in the caches of a core"),
                    quality_panel(results, "1M", "1 M faces")};
-  page.picture(figure,
-               "The mean error of every scheme on the morph twist against its nanoseconds per face, on logarithmic "
-               "axes: the exact curve lies at the lower left");
+  page.picture("quality", figure);
 }
 
-void write_accuracy(Page& page, const Results& results) {
-  page.subheading("Accuracy");
-  page.text(
-      "How far every path is off, against normals in double, over all elements and 21 times: in radians, mean / 99.99 "
-      "% "
-      "/ largest. *Far away* is the grid moved by a thousand times its radius, in float32 positions. An element that "
-      "collapses has no direction to compare at that time, and is left out. The run ends where a path breaks its "
-      "promise.");
+void add_accuracy(Page& page, const Results& results) {
   for (const std::string of : {"faces", "vertices"}) {
-    std::vector<std::string> header = {of, "promised"};
+    Cells header = {of, "promised"};
     for (const std::string& mesh : accuracy_meshes()) header.push_back(mesh);
-    std::vector<std::vector<std::string>> rows;
+    std::vector<Cells> rows;
     for (const std::string& path : accuracy_paths()) {
-      std::vector<std::string> cells = {path, ""};
+      Cells cells = {path, ""};
       for (const std::string& mesh : accuracy_meshes()) {
         const auto one = std::find_if(results.accuracies.begin(), results.accuracies.end(), [&](const Accuracy& entry) {
           return entry.of == of && entry.mesh == mesh && entry.path == path;
@@ -131,7 +114,7 @@ void write_accuracy(Page& page, const Results& results) {
       }
       rows.push_back(std::move(cells));
     }
-    page.table(header, rows);
+    page.table("accuracy_" + of, header, rows);
   }
 }
 

@@ -1,3 +1,4 @@
+// The JSON of a run, read and checked, and the lists of what every run has to have measured.
 #include "benchmarks/results.h"
 
 #include <fmt/core.h>

@@ -1,23 +1,28 @@
-/// The sections of docs/benchmarks.md, for the results of one machine.
+/// The sections of docs/benchmarks.md for the results of one machine. Each sets what machine.md.in has places for.
 #ifndef BENCHMARKS_SECTIONS_H_
 #define BENCHMARKS_SECTIONS_H_
 
 #include "benchmarks/results.h"
+#include "support/numbers.h"
 #include "support/page.h"
-#include "support/statistics.h"
 
 namespace chronormal::benchmarks {
 
 using namespace pages;
 
-void write_costs(Page& page, const Results& results);     ///< nanoseconds of everybody, cost against size
-void write_aims(Page& page, const Results& results);      ///< ratios within the run beside what was aimed at
-void write_memory(Page& page, const Results& results);    ///< bandwidths
-void write_schemes(Page& page, const Results& results);   ///< quality against cost
-void write_blend(Page& page, const Results& results);     ///< of blend shapes; nothing where no run measured them
-void write_accuracy(Page& page, const Results& results);  ///< every path against double
+void add_costs(Page& page, const Results& results);     ///< nanoseconds of everybody, cost against size
+void add_aims(Page& page, const Results& results);      ///< ratios within the run beside what was aimed at
+void add_memory(Page& page, const Results& results);    ///< bandwidths
+void add_schemes(Page& page, const Results& results);   ///< quality against cost
+void add_accuracy(Page& page, const Results& results);  ///< every path against double
+/// The part on blend shapes; empty where no run measured them.
+[[nodiscard]] std::string blend_part(const Results& results, const std::string& folder);
 
 [[nodiscard]] std::string nanoseconds(double ns);
+/// The median, and the distance between the quartiles in percent of it; "-" where there is no row.
+[[nodiscard]] std::string cell(const Row* row);
+/// In bold where it is good.
+[[nodiscard]] std::string emphasised(const std::string& text, bool good);
 
 }  // namespace chronormal::benchmarks
 

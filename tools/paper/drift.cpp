@@ -146,7 +146,7 @@ double worst_angle(const std::array<Drift, kSteps.size()>& drifts) {
 
 }  // namespace
 
-void write_drift(Page& page) {
+void measure_drift(Page& page) {
   std::vector<MorphDrift> drifts;
   for (const Morph& m : morphs()) drifts.push_back(measure(m.motion));
   const MorphDrift &twist = drifts[2], &eversion = drifts[3];
@@ -155,97 +155,66 @@ void write_drift(Page& page) {
   };
   const std::size_t last = at(10000);
 
-  page.heading("3 Sequential access");
-  page.text(
-      "The paper: polynomials and slerp can be played step by step, each normal from the one before, a degree two "
-      "polynomial by \"only two additions\". That is so: two per component, and three for a cubic. Arcs take one "
-      "rotation of (cos, sin) in the plane per step, and no trigonometry. What the paper does not say is what it "
-      "costs in accuracy: every step rounds, and the state never forgets.");
-  page.text(fmt::format(
-      "Measured on {} faces of twist: a segment is played in so many steps, and held against the same scheme at "
-      "random access. The figures are the largest angles over faces and steps, in radians. `Scheme::play` makes "
-      "its state anew every {} steps unless told otherwise.",
-      kFaces, kDefaultAnchorInterval));
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Cells> rows;
   for (std::size_t s = 0; s < kSchemes.size(); ++s) {
-    std::vector<std::string> row = {fmt::format("`{}`", kSchemes[s].scheme), kSchemes[s].how};
+    Cells row = {fmt::format("`{}`", kSchemes[s].scheme), kSchemes[s].how};
     for (const Drifts* d : {&twist.free, &twist.anchored}) {
       for (const std::size_t steps : {100u, 1000u, 10000u}) row.push_back(scientific((*d)[s][at(steps)].angle, 1));
     }
     rows.push_back(std::move(row));
   }
-  page.table({"drift, radians", "by", "100 steps", "1,000", "10,000", "anew, 100", "anew, 1,000", "anew, 10,000"},
+  page.table("drifts",
+             {"drift, radians", "by", "100 steps", "1,000", "10,000", "anew, 100", "anew, 1,000", "anew, 10,000"},
              rows);
-
   Figure figure{"drift", 900, 400, 2, {}};
   figure.panels.push_back(drift_panel("never made anew", twist.free, ""));
   figure.panels.push_back(drift_panel(fmt::format("made anew every {} steps", kDefaultAnchorInterval), twist.anchored,
                                       "at graph 0.03,0.99 left top Left reverse"));
-  page.picture(figure,
-               "Largest drift against the number of steps, on logarithmic axes: without anchors it grows, with "
-               "them it stays level");
+  page.picture("drift", figure);
 
-  double free_worst = 0, free_least = 1, anchored_worst = 0, arc_length = 0, arc_length_anchored = 0;
+  double free_worst = 0, free_least = 1, arc_length = 0, arc_length_anchored = 0;
   for (std::size_t s = 0; s < kSchemes.size(); ++s) {
     free_worst = std::max(free_worst, twist.free[s][last].angle);
     free_least = std::min(free_least, twist.free[s][last].angle);
-    for (const MorphDrift& d : drifts) anchored_worst = std::max(anchored_worst, worst_angle(d.anchored[s]));
     if (std::string_view(kSchemes[s].how) != "rotation") continue;
     arc_length = std::max(arc_length, twist.free[s][last].length);
     arc_length_anchored = std::max(arc_length_anchored, twist.anchored[s][last].length);
   }
-  page.bullet(fmt::format(
-      "Left alone, the drift grows about as the number of steps, since a difference that is added again and again "
-      "is rounded the same way each time. After 10,000 steps it is {} to {} rad; the latter is {} degrees.",
-      scientific(free_least), scientific(free_worst), ratio(kDegreesPerRadian * free_worst)));
-  require(anchored_worst < 5e-6, "anchored drift stays below 5e-6 rad, as normals/playback.h says");
+  std::vector<double> anchored;  // a morph each
   std::vector<std::string> everywhere;
   for (std::size_t m = 0; m < morphs().size(); ++m) {
-    double worst = 0;
-    for (const auto& of_scheme : drifts[m].anchored) worst = std::max(worst, worst_angle(of_scheme));
-    everywhere.push_back(fmt::format("{} on {}", scientific(worst, 1), morphs()[m].name));
+    anchored.push_back(0);
+    for (const auto& of_scheme : drifts[m].anchored) anchored[m] = std::max(anchored[m], worst_angle(of_scheme));
+    everywhere.push_back(fmt::format("{} on {}", scientific(anchored[m], 1), morphs()[m].name));
   }
-  page.bullet(fmt::format(
-      "Made anew every {} steps, no scheme of the table drifts by more than {} (rad, over all numbers of steps "
-      "from 100 to 10,000). That is below 5e-6, and little beside the error of everything that interpolates. For "
-      "`polynomial` it is {} times its error at random access: who needs all digits, should not play.",
-      kDefaultAnchorInterval, listed(everywhere), grouped(worst_angle(twist.anchored[0]) / polynomial_error())));
+  require(largest(anchored) < 5e-6, "anchored drift stays below 5e-6 rad, as normals/playback.h says");
   const Drift &slerp_last = twist.free[4][last], &slerp_before = twist.free[4][at(5000)];
   require(slerp_last.length > slerp_before.length && slerp_last.angle < slerp_before.angle,
           "slerp trades angle for length");
-  page.bullet(
-      fmt::format("Arcs are not normalised, so their length drifts too: by up to {} after 10,000 steps, and by {} "
-                  "made anew. `slerp` drifts less in angle than the others because a wrong radius does not turn a "
-                  "great circle. (Its last point in the picture is no slip: at 10,000 steps the cosine of a step "
-                  "rounds to 1, so the angle hardly drifts, {}, and the length does, {}.)",
-                  scientific(arc_length), scientific(arc_length_anchored), scientific(slerp_last.angle),
-                  scientific(slerp_last.length)));
   require(eversion.free[3][last].angle > 2 * twist.free[3][last].angle,
           "close to zero, drift of a polynomial counts more");
   require(eversion.free[5][last].angle < twist.free[5][last].angle, "arcs never come close to zero");
-  page.bullet(fmt::format(
-      "On eversion, left alone, `cubic` drifts by {} against {} on twist: a polynomial that comes close to zero "
-      "turns a small error of its value into a large one of its direction. Arcs never come close to zero: {} "
-      "against {} for `quaternion:optimal`.",
-      scientific(eversion.free[3][last].angle), scientific(twist.free[3][last].angle),
-      scientific(eversion.free[5][last].angle), scientific(twist.free[5][last].angle)));
-  const Recurrences few = recurrences(100), some = recurrences(1000), many = recurrences(10000);
-  require(many.chebyshev > 10 * many.rotation, "Chebyshev loses more than the rotation");
-  page.bullet(
-      fmt::format("Incremental slerp is often written as the recurrence x'' = 2 cos(step) x' - x, which needs no "
-                  "sine. In float32 over 1.5 rad it is off by {}, {} and {} after 100, 1,000 and 10,000 steps; the "
-                  "rotation that we use, by {}, {} and {}. The cosine of a small step is so close to 1 that "
-                  "float32 has few digits left for the difference.",
-                  scientific(few.chebyshev), scientific(some.chebyshev), scientific(many.chebyshev),
-                  scientific(few.rotation), scientific(some.rotation), scientific(many.rotation)));
-  page.bullet(
-      "Not everything can be played: `decasteljau:4` is no arc, and `circle:timed` does not run at constant speed.");
-  page.line("");
-  page.statement(
-      "Polynomials and slerp can be evaluated incrementally, a quadratic by \"only two additions\"",
-      fmt::format("yes, per component; left alone they drift by up to {} rad in 10,000 steps, made anew every {} by {}",
-                  scientific(free_worst), kDefaultAnchorInterval, scientific(anchored_worst)),
-      "3");
+  page.set({{"drift_faces", grouped(kFaces)},
+            {"drift_least", scientific(free_least)},
+            {"drift_most", scientific(free_worst)},
+            {"drift_most_degrees", ratio(kDegreesPerRadian * free_worst)},
+            {"drift_anchored", listed(everywhere)},
+            {"drift_anchored_most", scientific(largest(anchored))},
+            {"drift_over_error", grouped(worst_angle(twist.anchored[0]) / polynomial_error())},
+            {"length_drift", scientific(arc_length)},
+            {"length_drift_anchored", scientific(arc_length_anchored)},
+            {"slerp_last_angle", scientific(slerp_last.angle)},
+            {"slerp_last_length", scientific(slerp_last.length)},
+            {"cubic_drift_eversion", scientific(eversion.free[3][last].angle)},
+            {"cubic_drift_twist", scientific(twist.free[3][last].angle)},
+            {"optimal_drift_eversion", scientific(eversion.free[5][last].angle)},
+            {"optimal_drift_twist", scientific(twist.free[5][last].angle)}});
+  for (const std::size_t steps : {100u, 1000u, 10000u}) {
+    const Recurrences worst = recurrences(steps);
+    require(steps < 10000 || worst.chebyshev > 10 * worst.rotation, "Chebyshev loses more than the rotation");
+    page.set(fmt::format("chebyshev_{}", steps), scientific(worst.chebyshev));
+    page.set(fmt::format("rotation_{}", steps), scientific(worst.rotation));
+  }
 }
 
 }  // namespace chronormal::paper

@@ -114,7 +114,7 @@ struct Method {
 constexpr std::array kMethods = {Method{1, "linear", Colour::kSky}, Method{2, "quadratic", Colour::kBlue},
                                  Method{3, "cubic", Colour::kPurple}, Method{8, "degree 8", Colour::kRed}};
 
-void write_lengths(Page& page) {
+void measure_lengths(Page& page) {
   // The face of twist that linear interpolation has most trouble with, and one that nearly collapses.
   const Comparison comparison = compare(morph("twist"), {{"linear"}, 21, Access::kRandom, {}}).value();
   const std::size_t face = comparison.schemes[0].quality.max_at.element;
@@ -141,20 +141,13 @@ void write_lengths(Page& page) {
     panels[0].series.push_back(lengths);
     panels[1].series.push_back(errors);
   }
-  page.subheading("Figure 2 (a, b): unit length is not preserved");
-  page.text(
-      fmt::format("Face {} of twist, the worst for linear interpolation. The chord between the ends is {} at its "
-                  "shortest; the parabola keeps between {} and {}, the cubic between {} and {}. Left, the lengths; "
-                  "right, the errors of the directions. A length is easily repaired; the direction is not, and it "
-                  "does not show in the length.",
-                  grouped(static_cast<double>(face)), ratio(shortest[0]), ratio(shortest[1]), ratio(longest[1]),
-                  ratio(shortest[2]), ratio(longest[2])));
-  page.picture({"figure2_length", 900, 360, 2, {panels[0], panels[1]}},
-               "Length of the interpolated vectors before normalisation, and the angle to the exact normal, over t");
-  page.statement("Lagrange interpolation does not keep unit length (Fig. 2a, b)",
-                 fmt::format("yes: on the worst face of twist down to {} (linear), {} (quadratic), {} (cubic)",
-                             ratio(shortest[0]), ratio(shortest[1]), ratio(shortest[2])),
-                 "4");
+  page.picture("figure2_length", {"figure2_length", 900, 360, 2, {panels[0], panels[1]}});
+  page.set({{"worst_face", grouped(static_cast<double>(face))},
+            {"linear_shortest", ratio(shortest[0])},
+            {"quadratic_shortest", ratio(shortest[1])},
+            {"quadratic_longest", ratio(longest[1])},
+            {"cubic_shortest", ratio(shortest[2])},
+            {"cubic_longest", ratio(longest[2])}});
 }
 
 // Errors of lagrange:K on some faces of a morph, for K = 1 to 16.
@@ -175,7 +168,7 @@ AgainstDegree against_degree(const std::string& name) {
   }
   double inside = 0;
   for (std::size_t s = 0; s < part.segments.size(); ++s) {
-    for (const ControlNormals& normals : control_normals_of(part.segment(s))) {
+    for (const ControlNormals& normals : all_face_control_normals(part.segment(s))) {
       if (nearest_singularity(normals).margin < 0) ++inside;
     }
   }
@@ -183,114 +176,74 @@ AgainstDegree against_degree(const std::string& name) {
   return result;
 }
 
-void write_oscillation(Page& page) {
-  const std::array<const char*, 5> names = {"cloth", "bend", "twist", "eversion", "soup"};
-  std::array<AgainstDegree, 5> results;
-  parallel_for(names.size(), [&](std::size_t i) { results[i] = against_degree(names[i]); });
+constexpr std::array kNames = {"cloth", "bend", "twist", "eversion", "soup"};
+using Results = std::array<AgainstDegree, kNames.size()>;
 
-  page.subheading("Figure 2 (c): oscillation");
-  page.text(
-      "Does a higher degree oscillate? On some faces it does, on others it converges, and one can say beforehand "
-      "which. Mean and largest error of `lagrange:K` on 2,000 faces of each morph and 98 samples, in degrees; "
-      "`soup` is 5,000 independent random triangles, of which these are a part:");
-  std::vector<std::string> header = {"K"};
-  for (const char* name : names) header.push_back(fmt::format("{}, mean", name));
-  for (const char* name : names) header.push_back(fmt::format("{}, max", name));
+Panel degree_panel(const Results& results) {
+  Panel panel;
+  panel.title = "all morphs: mean error";
+  panel.x = {"degree K",
+             1,
+             16,
+             false,
+             {{1, "1"}, {2, "2"}, {4, "4"}, {6, "6"}, {8, "8"}, {10, "10"}, {12, "12"}, {14, "14"}, {16, "16"}}};
+  panel.y = {"degrees", 1e-6, 300, true, {}};
+  panel.legend = "at graph 0.03,0.03 left bottom Left reverse";
+  constexpr std::array kColours = {Colour::kBlue, Colour::kGreen, Colour::kOrange, Colour::kRed, Colour::kPurple};
+  constexpr std::array kMarks = {Mark::kDisc, Mark::kSquare, Mark::kTriangle, Mark::kDiamond, Mark::kOpenSquare};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    Series series{kNames[i], {}, kColours[i], 1.6, false, kMarks[i], 0.6};
+    for (std::size_t degree = 1; degree <= 16; ++degree)
+      series.points.emplace_back(static_cast<double>(degree), results[i].mean[degree]);
+    panel.series.push_back(series);
+  }
+  return panel;
+}
+
+void add_degrees(Page& page, const Results& results) {
+  Cells header = {"K"};
+  for (const char* name : kNames) header.push_back(fmt::format("{}, mean", name));
+  for (const char* name : kNames) header.push_back(fmt::format("{}, max", name));
   const auto angle = [](double v) { return v < 0.01 ? scientific(v, 1) : fmt::format("{:.2f}", v); };
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Cells> rows;
   for (const std::size_t degree : {1u, 2u, 3u, 4u, 6u, 8u, 12u, 16u}) {
-    std::vector<std::string> row = {fmt::format("{}", degree)};
+    Cells row = {fmt::format("{}", degree)};
     for (const auto& r : results) row.push_back(angle(r.mean[degree]));
     for (const auto& r : results) row.push_back(angle(r.max[degree]));
     rows.push_back(std::move(row));
   }
-  page.table(header, rows);
+  page.table("by_degree", header, rows);
+  for (std::size_t i = 0; i < 3; ++i) require(results[i].inside == 0, "no zero inside on mild morphs");
+  const auto& [cloth, bend, twist, eversion, soup] = results;
+  const auto least = std::min_element(cloth.mean.begin() + 1, cloth.mean.end());
+  page.set({{"cloth_least", scientific(*least, 1)},
+            {"cloth_least_at", fmt::format("{}", least - cloth.mean.begin())},
+            {"soup_8", grouped(soup.mean[8], 1)},
+            {"soup_16", grouped(soup.mean[16], 1)},
+            {"soup_inside", percent(soup.inside)},
+            {"eversion_inside", percent(eversion.inside)}});
+}
 
-  // On soup, face by face, in double: does the error grow from one degree to twice that?
-  constexpr std::size_t kLow = 12, kHigh = 24;
-  const Motion soup = some_faces(morph("soup"), 2000);
-  const std::vector<ControlNormals> normals = control_normals_of(soup.segment(0));
-  struct Face {
-    Singularity singularity;
-    double at_low = 0, at_high = 0;
-  };
+// A face of soup: what its zeros predict, and whether its error grows from one degree to twice that.
+constexpr std::size_t kLow = 12, kHigh = 24;
+struct Face {
+  ControlNormals normals;
+  Singularity singularity;
+  bool grows = false;
+};
+
+std::vector<Face> faces_of_soup() {
+  const std::vector<ControlNormals> normals = all_face_control_normals(some_faces(morph("soup"), 2000).segment(0));
   std::vector<Face> faces(normals.size());
   parallel_for(faces.size(), [&](std::size_t f) {
-    faces[f] = {nearest_singularity(normals[f]), largest_distance(normals[f], kLow),
-                largest_distance(normals[f], kHigh)};
+    faces[f] = {normals[f], nearest_singularity(normals[f]),
+                largest_distance(normals[f], kHigh) > largest_distance(normals[f], kLow)};
   });
+  return faces;
+}
+
+void add_lens(Page& page, const std::vector<Face>& faces) {
   double right = 0, inside = 0, clear = 0, clear_right = 0;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const bool predicted = faces[f].singularity.margin<0, grows = faces[f].at_high> faces[f].at_low;
-    if (predicted) ++inside;
-    if (predicted == grows) ++right;
-    // Away from the boundary by a factor of 2 from one degree to the other.
-    if (std::fabs((kHigh - kLow) * faces[f].singularity.margin) > std::log(2.0)) {
-      ++clear;
-      if (predicted == grows) ++clear_right;
-    }
-  }
-  const double count = static_cast<double>(faces.size());
-
-  // The face shown: that with its zero nearest to a tenth above the middle.
-  const auto distance = [](const Face& face) {
-    const Complex z = face.singularity.at;
-    return std::abs(Complex(z.real(), std::fabs(z.imag())) - Complex(0.5, 0.1));
-  };
-  std::size_t shown = 0;
-  for (std::size_t f = 1; f < faces.size(); ++f) {
-    if (distance(faces[f]) < distance(faces[shown])) shown = f;
-  }
-  const ControlNormals& example = normals[shown];
-  const Complex zero = faces[shown].singularity.at;
-  std::array<double, 17> worst{}, worst_inside{};  // over t, and over t in [0.3, 0.7]
-  for (const std::size_t degree : {4u, 8u, 16u}) {
-    for (int i = 0; i <= 400; ++i) {
-      const double error = error_at(example, degree, i / 400.0);
-      worst[degree] = std::max(worst[degree], error);
-      if (120 <= i && i <= 280) worst_inside[degree] = std::max(worst_inside[degree], error);
-    }
-  }
-  std::array<Panel, 2> panels;
-  panels[0].title = "one face of soup: error over t";
-  panels[0].x = {"t", 0, 1, false, {}};
-  panels[0].y = {"degrees", 0, 100, false, {}};
-  panels[0].legend = "at graph 0.5,0.98 center top Left reverse";
-  for (const auto& [degree, colour] : {std::pair{4u, Colour::kBlue}, {8u, Colour::kGreen}, {16u, Colour::kRed}}) {
-    Series series{fmt::format("K = {}", degree), {}, colour, 1.8};
-    for (int i = 0; i <= 400; ++i) series.points.emplace_back(i / 400.0, error_at(example, degree, i / 400.0));
-    panels[0].series.push_back(series);
-  }
-  panels[1].title = "all morphs: mean error";
-  panels[1].x = {"degree K",
-                 1,
-                 16,
-                 false,
-                 {{1, "1"}, {2, "2"}, {4, "4"}, {6, "6"}, {8, "8"}, {10, "10"}, {12, "12"}, {14, "14"}, {16, "16"}}};
-  panels[1].y = {"degrees", 1e-6, 300, true, {}};
-  panels[1].legend = "at graph 0.03,0.03 left bottom Left reverse";
-  const std::array<Colour, 5> colours = {Colour::kBlue, Colour::kGreen, Colour::kOrange, Colour::kRed, Colour::kPurple};
-  const std::array<Mark, 5> marks = {Mark::kDisc, Mark::kSquare, Mark::kTriangle, Mark::kDiamond, Mark::kOpenSquare};
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    Series series{names[i], {}, colours[i], 1.6, false, marks[i], 0.6};
-    for (std::size_t degree = 1; degree <= 16; ++degree)
-      series.points.emplace_back(static_cast<double>(degree), results[i].mean[degree]);
-    panels[1].series.push_back(series);
-  }
-  page.picture({"figure2_oscillation", 900, 380, 2, {panels[0], panels[1]}},
-               "Left: the error of one face over t at degree 4, 8 and 16. Right: the mean error of five morphs "
-               "against the degree");
-  require(worst_inside[16] < worst_inside[8] && worst_inside[8] < worst_inside[4] && worst[16] > 2 * worst[8],
-          "the face shown gets better and then swings out");
-  page.text(fmt::format(
-      "Left, a face on which it looks as in the paper's Figure 2 (c): between t = 0.3 and 0.7 the error falls to "
-      "{} degrees at K = 16, and the ends swing out, from {} degrees at K = 8 to {} at K = 16. It is Runge's "
-      "phenomenon. The unit normal u = n/|n| is not a polynomial: it is singular at the complex t where n(t).n(t) "
-      "= 0, a quartic with four zeros, none of them real unless the face collapses. Interpolation at equidistant "
-      "nodes converges only if all of them lie outside a certain lens around [0, 1], and a face that passes "
-      "*close* to a collapse has one close to the real axis. The face on the left has it at {:.2f} + {:.2f} i.",
-      grouped(worst_inside[16], 1), grouped(worst[8], 1), grouped(worst[16], 1), zero.real(), std::fabs(zero.imag())));
-
   Panel lens;
   lens.x = {"real part of t", -0.15, 1.15, false, {}};
   lens.y = {"imaginary part of t", 0, 0.6, false, {}};
@@ -298,45 +251,75 @@ void write_oscillation(Page& page) {
   Series better{
       fmt::format("error shrinks from K = {} to {}", kLow, kHigh), {}, Colour::kBlue, 0, false, Mark::kDisc, 0.35};
   Series worse{"error grows", {}, Colour::kRed, 0, false, Mark::kTriangle, 0.45};
-  for (const Face& face : faces)
-    (face.at_high > face.at_low ? worse : better)
-        .points.emplace_back(face.singularity.at.real(), std::fabs(face.singularity.at.imag()));
+  for (const Face& face : faces) {
+    const auto& [at, margin] = face.singularity;
+    const bool predicted = margin < 0;
+    inside += predicted ? 1 : 0;
+    right += predicted == face.grows ? 1 : 0;
+    if (std::fabs((kHigh - kLow) * margin) > std::log(2.0)) {  // a factor of 2 from one degree to the other
+      clear += 1;
+      clear_right += predicted == face.grows ? 1 : 0;
+    }
+    (face.grows ? worse : better).points.emplace_back(at.real(), std::fabs(at.imag()));
+  }
   lens.series = {better, worse, {"Runge's lens", runge_boundary(), Colour::kBlack, 2}};
-  page.picture(
-      {"figure2_zeros", 860, 380, 1, {lens}},
-      "The complex zero of n.n that decides, for 2,000 faces of soup: inside the lens the error grows with the degree");
+  page.picture("figure2_zeros", {"figure2_zeros", 860, 380, 1, {lens}});
+  const double count = static_cast<double>(faces.size());
   require(right / count > 0.9, "the lens predicts the oscillation");
-  for (std::size_t i = 0; i < 3; ++i) require(results[i].inside == 0, "no zero inside on mild morphs");
-  page.text(
-      fmt::format("Of {} faces of soup, {} have a zero in the lens. Does the error (before the vector is "
-                  "normalised) grow from K = {} to K = {}? The lens alone tells it right for {} of the faces, and "
-                  "for {} of the {} that it puts clearly on one side (by theory a factor of 2 or more). On cloth, "
-                  "bend and twist no face that we looked at has a zero inside; on eversion {} have.",
-                  grouped(count), percent(inside / count), kLow, kHigh, percent(right / count, 1),
-                  percent(clear_right / clear, 1), grouped(clear), percent(results[3].inside)));
-  page.text(fmt::format(
-      "So on morphs that are not dramatic a higher degree is simply better, until float32 ends it: on cloth the "
-      "mean error falls to {} degrees at K = {} and is back at {} at K = 16, where weights of both signs and large "
-      "size cancel. On soup it is {} at K = 8 and {} at K = 16. The direction of the exact normal needs degree two "
-      "all along, before it is normalised.",
-      scientific(*std::min_element(results[0].mean.begin() + 1, results[0].mean.end()), 1),
-      std::min_element(results[0].mean.begin() + 1, results[0].mean.end()) - results[0].mean.begin(),
-      scientific(results[0].mean[16], 1), grouped(results[4].mean[8], 1), grouped(results[4].mean[16], 1)));
-  page.statement(
-      "A high degree makes the normal oscillate (Fig. 2c)",
-      fmt::format(
-          "only where n.n has a complex zero near the time interval: {} of the faces of soup, {} of eversion, none "
-          "of twist, bend and cloth",
-          percent(results[4].inside), percent(results[3].inside)),
-      "4");
+  page.set({{"lens_faces", grouped(count)},
+            {"lens_share", percent(inside / count)},
+            {"lens_low", grouped(kLow)},
+            {"lens_high", grouped(kHigh)},
+            {"lens_right", percent(right / count, 1)},
+            {"lens_clear", grouped(clear)},
+            {"lens_clear_right", percent(clear_right / clear, 1)}});
+}
+
+// The face shown is that with its zero nearest to a tenth above the middle.
+Panel shown_panel(Page& page, const std::vector<Face>& faces) {
+  const auto distance = [](const Face& face) {
+    const Complex z = face.singularity.at;
+    return std::abs(Complex(z.real(), std::fabs(z.imag())) - Complex(0.5, 0.1));
+  };
+  const Face& shown = *std::min_element(faces.begin(), faces.end(),
+                                        [&](const Face& a, const Face& b) { return distance(a) < distance(b); });
+  Panel panel;
+  panel.title = "one face of soup: error over t";
+  panel.x = {"t", 0, 1, false, {}};
+  panel.y = {"degrees", 0, 100, false, {}};
+  panel.legend = "at graph 0.5,0.98 center top Left reverse";
+  std::array<double, 17> worst{}, worst_inside{};  // over t, and over t in [0.3, 0.7]
+  for (const auto& [degree, colour] : {std::pair{4u, Colour::kBlue}, {8u, Colour::kGreen}, {16u, Colour::kRed}}) {
+    Series series{fmt::format("K = {}", degree), {}, colour, 1.8};
+    for (int i = 0; i <= 400; ++i) {
+      const double error = error_at(shown.normals, degree, i / 400.0);
+      series.points.emplace_back(i / 400.0, error);
+      worst[degree] = std::max(worst[degree], error);
+      if (120 <= i && i <= 280) worst_inside[degree] = std::max(worst_inside[degree], error);
+    }
+    panel.series.push_back(series);
+  }
+  require(worst_inside[16] < worst_inside[8] && worst_inside[8] < worst_inside[4] && worst[16] > 2 * worst[8],
+          "the face shown gets better and then swings out");
+  const Complex zero = shown.singularity.at;
+  page.set({{"shown_inside_16", grouped(worst_inside[16], 1)},
+            {"shown_worst_8", grouped(worst[8], 1)},
+            {"shown_worst_16", grouped(worst[16], 1)},
+            {"shown_zero", fmt::format("{:.2f} + {:.2f} i", zero.real(), std::fabs(zero.imag()))}});
+  return panel;
 }
 
 }  // namespace
 
-void write_figure2(Page& page) {
-  page.heading("4 Figure 2: between the nodes");
-  write_lengths(page);
-  write_oscillation(page);
+void measure_figure2(Page& page) {
+  measure_lengths(page);
+  Results results;
+  parallel_for(kNames.size(), [&](std::size_t i) { results[i] = against_degree(kNames[i]); });
+  add_degrees(page, results);
+  const std::vector<Face> faces = faces_of_soup();
+  page.picture("figure2_oscillation",
+               {"figure2_oscillation", 900, 380, 2, {shown_panel(page, faces), degree_panel(results)}});
+  add_lens(page, faces);
 }
 
 }  // namespace chronormal::paper

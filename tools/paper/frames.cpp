@@ -38,7 +38,12 @@ struct Spread {
   std::array<double, kChoices.size()> constructed{};
   double pairs_that_beat_matrix = 0;  // share of random pairs of frames
   double faces_that_can = 0;          // share of faces on which one of the seeds beats matrix
-  double quadratic = 0, cubic = 0;
+  double quadratic = 0;
+
+  // The sum of one choice over that of another.
+  [[nodiscard]] double over(std::size_t choice, std::size_t other) const {
+    return constructed[choice] / constructed[other];
+  }
 };
 
 Spread measure(const Morph& m) {
@@ -52,7 +57,6 @@ Spread measure(const Morph& m) {
   parallel_for(kChoices.size(), [&](std::size_t c) { constructed[c] = errors.sums(kChoices[c].scheme); });
   for (std::size_t c = 0; c < kChoices.size(); ++c) spread.constructed[c] = sum(constructed[c]) / linear;
   spread.quadratic = sum(errors.sums("quadratic")) / linear;
-  spread.cubic = sum(errors.sums("cubic")) / linear;
 
   std::vector<double> best = by_seed[0];
   std::vector<char> can(errors.pairs(), 0);
@@ -229,166 +233,66 @@ Figure angle_figure(double& disagreement) {
 
 }  // namespace
 
-void write_frames(Page& page) {
+void measure_frames(Page& page) {
   std::vector<Spread> spreads;
   for (const Morph& m : morphs()) spreads.push_back(measure(m));
-  const auto across = [&spreads](auto value) {
-    std::vector<std::string> cells;
-    for (const Spread& s : spreads) cells.push_back(value(s));
-    return cells;
-  };
-  const auto row = [](std::string name, std::vector<std::string> cells) {
-    cells.insert(cells.begin(), std::move(name));
-    return cells;
-  };
-
-  page.heading("5 Random frames, and the best ones");
-  page.text(
-      "The paper drew pairs of frames at random, saw that \"different configurations\" differ in quality, and "
-      "\"did not succeed\" in finding the best pair. It gives no figures. Here they are, and then the answer.");
-  page.subheading("The experiment");
-  page.text(
-      fmt::format("{} random pairs of frames for each of {} (face, segment) pairs of every morph (drawn from all, "
-                  "so that the page is made in seconds), {} samples. A seed gives one random pair to every face.",
-                  kSeeds, grouped(kPairs), kSamples));
-  std::vector<std::vector<std::string>> rows;
-  rows.push_back(
-      row("random, mean of the seeds", across([](const Spread& s) { return ratio(sum(s.random) / kSeeds); })));
-  rows.push_back(row("random, least and most", across([](const Spread& s) {
-                       return fmt::format("{} to {}", ratio(*std::min_element(s.random.begin(), s.random.end())),
-                                          ratio(largest(s.random)));
-                     })));
-  rows.push_back(row(fmt::format("random, best of {} on each face", kSeeds),
-                     across([](const Spread& s) { return ratio(s.best_of.back()); })));
-  for (std::size_t c = 0; c < kChoices.size(); ++c)
-    rows.push_back(
-        row(fmt::format("`{}`", kChoices[c].scheme), across([c](const Spread& s) { return ratio(s.constructed[c]); })));
-  rows.push_back(row("random pairs better than `matrix`",
-                     across([](const Spread& s) { return percent(s.pairs_that_beat_matrix, 1); })));
-  rows.push_back(row(fmt::format("faces where one of {} is", kSeeds),
-                     across([](const Spread& s) { return percent(s.faces_that_can, 1); })));
-  std::vector<std::string> header = {"sum relative to linear"};
+  std::vector<Cells> rows;
+  Cells header = {"sum relative to linear"};
   for (const Spread& s : spreads) header.push_back(s.name);
-  page.table(header, rows);
-  page.picture(random_figure(spreads),
-               "Sums relative to linear of 200 random seeds per morph, beside frames that are constructed, optimal "
-               "frames and circles");
+  const auto add_row = [&](std::string name, auto value) {
+    Cells cells = {std::move(name)};
+    for (const Spread& s : spreads) cells.push_back(value(s));
+    rows.push_back(std::move(cells));
+  };
+  add_row("random, mean of the seeds", [](const Spread& s) { return ratio(sum(s.random) / kSeeds); });
+  add_row("random, least and most",
+          [](const Spread& s) { return fmt::format("{} to {}", ratio(smallest(s.random)), ratio(largest(s.random))); });
+  add_row(fmt::format("random, best of {} on each face", kSeeds),
+          [](const Spread& s) { return ratio(s.best_of.back()); });
+  for (std::size_t c = 0; c < kChoices.size(); ++c)
+    add_row(fmt::format("`{}`", kChoices[c].scheme), [c](const Spread& s) { return ratio(s.constructed[c]); });
+  add_row("random pairs better than `matrix`", [](const Spread& s) { return percent(s.pairs_that_beat_matrix, 1); });
+  add_row(fmt::format("faces where one of {} is", kSeeds),
+          [](const Spread& s) { return percent(s.faces_that_can, 1); });
+  page.table("frames", header, rows);
+  page.picture("frames_random", random_figure(spreads));
+  page.picture("frames_best_of", best_of_figure(spreads));
+
   double widest = 0;
-  for (const Spread& s : spreads)
-    widest = std::max(widest, largest(s.random) / *std::min_element(s.random.begin(), s.random.end()) - 1);
   for (const Spread& s : spreads) {
-    require(*std::min_element(s.random.begin(), s.random.end()) > s.constructed[kMatrix],
-            "no seed beats matrix on a mesh");
+    widest = std::max(widest, largest(s.random) / smallest(s.random) - 1);
+    require(smallest(s.random) > s.constructed[kMatrix], "no seed beats matrix on a mesh");
     require(s.best_of.back() < s.constructed[kMatrix], "the best random pairs beat matrix");
     require(s.best_of.back() > s.constructed[kOptimal], "no random pairs beat the optimum");
+    page.set(fmt::format("random_wins_{}", s.name), percent(s.pairs_that_beat_matrix));
+    page.set(fmt::format("faces_won_{}", s.name), percent(s.faces_that_can));
+    page.set(fmt::format("optimal_saves_{}", s.name), percent(1 - s.over(kOptimal, kMatrix)));
   }
-  page.bullet(
-      fmt::format("For a whole mesh, chance evens out: the best and the worst of {} seeds differ by {} at most. "
-                  "And it is always bad: no seed is as good as `quaternion:matrix`, on any morph. The paper's "
-                  "frames \"yield good results\" indeed.",
-                  kSeeds, percent(widest)));
-  page.bullet(
-      fmt::format("Face by face it is another matter. A random pair beats `matrix` on its face in {}, {}, {} and "
-                  "{} of the draws, and on {}, {}, {} and {} of the faces at least one of {} does. That is the "
-                  "paper's \"some specific frame configurations led to a better interpolation\".",
-                  percent(spreads[0].pairs_that_beat_matrix), percent(spreads[1].pairs_that_beat_matrix),
-                  percent(spreads[2].pairs_that_beat_matrix), percent(spreads[3].pairs_that_beat_matrix),
-                  percent(spreads[0].faces_that_can), percent(spreads[1].faces_that_can),
-                  percent(spreads[2].faces_that_can), percent(spreads[3].faces_that_can), kSeeds));
-  page.bullet(
-      "So the way to use chance is to draw often and keep the best on each face. The grey curve below does that; "
-      "it falls towards the line of `quaternion:optimal` and does not pass below it.");
-  page.line("");
-  page.picture(best_of_figure(spreads),
-               "Sum relative to linear when the best of k random pairs is kept on each face, falling towards the "
-               "optimal frames");
-
   double disagreement = 0;
-  const Figure angles = angle_figure(disagreement);
-  page.subheading("All pairs of frames are one angle");
-  page.text(
-      "Slerp of two quaternions is one rotation R = F1 F0^T in instalments, about a fixed axis. So the normal runs "
-      "on a circle through u0 and u1, and what matters about the frames is the axis alone. An axis about which u0 "
-      "turns into u1 is equally far from both, so it lies on the great circle between their pole and their "
-      "bisector, and one angle phi says where (eq. 6 and 7 of "
-      "[theory.md](theory.md#46-the-papers-open-question-quaternionoptimal-new)):");
-  page.line("    axis(phi) = cos(phi) unit(u0 x u1) + sin(phi) unit(u0 + u1)\n");
-  page.text(
-      "phi = 0 is vector slerp. Up to 90 degrees either way the arc is the shorter one, which is all that "
-      "quaternion slerp takes; beyond (shaded) it is longer than half a turn. \"An infinite number of frames "
-      "configurations\" is a curve, and its lowest point can be looked up:");
-  page.picture(angles,
-               "Mean error of one face against the angle phi, for a face of cloth, of twist and of eversion, with "
-               "each choice of frames as a mark");
+  page.picture("frames_angle", angle_figure(disagreement));
   require(disagreement < 1e-3, "eq. 6 and 7 give what the schemes give");
-  page.text(
-      fmt::format("The faces are those of median linear error. Curves are eq. 6 and 7 in double; the marks are "
-                  "where the library's schemes lie, read off their normal at t = 1/2. The error of each scheme and "
-                  "that of its place on the curve agree to {} degrees.",
-                  scientific(disagreement)));
 
-  page.subheading("What the best choice is worth");
   rows.clear();
-  const auto times = [](double a, double b) { return fmt::format("{:.2f}", a / b); };
-  rows.push_back(
-      row("`optimal` against linear", across([](const Spread& s) { return ratio(s.constructed[kOptimal]); })));
-  rows.push_back(row("`optimal` against `matrix`",
-                     across([&](const Spread& s) { return times(s.constructed[kOptimal], s.constructed[kMatrix]); })));
-  rows.push_back(row("`circle` against `optimal`",
-                     across([&](const Spread& s) { return times(s.constructed[kCircle], s.constructed[kOptimal]); })));
-  rows.push_back(row("`circle:timed` against `optimal`",
-                     across([&](const Spread& s) { return times(s.constructed[kTimed], s.constructed[kOptimal]); })));
-  rows.push_back(row("`quadratic` against `optimal`",
-                     across([&](const Spread& s) { return times(s.quadratic, s.constructed[kOptimal]); })));
   header[0] = "ratio of sums";
-  page.table(header, rows);
-  require(spreads[1].constructed[kOptimal] / spreads[1].constructed[kMatrix] < 0.65, "optimal is worth it on bend");
-  page.bullet(
-      fmt::format("**What is answered.** The best pair of frames exists, is a minimum over one variable, and "
-                  "`quaternion:optimal` finds it. Against the paper's frames it takes {}, {}, {} and {} off the "
-                  "error.",
-                  percent(1 - spreads[0].constructed[kOptimal] / spreads[0].constructed[kMatrix]),
-                  percent(1 - spreads[1].constructed[kOptimal] / spreads[1].constructed[kMatrix]),
-                  percent(1 - spreads[2].constructed[kOptimal] / spreads[2].constructed[kMatrix]),
-                  percent(1 - spreads[3].constructed[kOptimal] / spreads[3].constructed[kMatrix])));
-  page.bullet(
-      fmt::format("**In closed form**, nearly: the circle through the exact normal at t = 1/2 (`circle`, eq. 8) is "
-                  "within {}, {} and {} of the optimum on cloth, bend and twist. On eversion, where a middle says "
-                  "little, it is {} worse.",
-                  percent(spreads[0].constructed[kCircle] / spreads[0].constructed[kOptimal] - 1, 2),
-                  percent(spreads[1].constructed[kCircle] / spreads[1].constructed[kOptimal] - 1, 1),
-                  percent(spreads[2].constructed[kCircle] / spreads[2].constructed[kOptimal] - 1, 1),
-                  percent(spreads[3].constructed[kCircle] / spreads[3].constructed[kOptimal] - 1)));
+  const auto times = [](double factor) { return fmt::format("{:.2f}", factor); };
+  add_row("`optimal` against linear", [](const Spread& s) { return ratio(s.constructed[kOptimal]); });
+  add_row("`optimal` against `matrix`", [&](const Spread& s) { return times(s.over(kOptimal, kMatrix)); });
+  add_row("`circle` against `optimal`", [&](const Spread& s) { return times(s.over(kCircle, kOptimal)); });
+  add_row("`circle:timed` against `optimal`", [&](const Spread& s) { return times(s.over(kTimed, kOptimal)); });
+  add_row("`quadratic` against `optimal`",
+          [&](const Spread& s) { return times(s.quadratic / s.constructed[kOptimal]); });
+  page.table("worth", header, rows);
+  require(spreads[1].over(kOptimal, kMatrix) < 0.65, "optimal is worth it on bend");
   require(spreads[0].quadratic < spreads[0].constructed[kOptimal], "quadratic beats optimal on cloth");
-  page.bullet(
-      fmt::format("**What is not answered.** The optimum has no closed form that we know; it is searched for, and "
-                  "that takes the exact normal at many t: the advantage that the paper claims for quaternions, "
-                  "that \"no intermediate normals\" are needed, is gone. With one intermediate normal `quadratic` "
-                  "is at {}, {}, {} of the optimum's error on the first three morphs, and `circle:timed`, which "
-                  "also gets the speed right, at {}, {}, {}.",
-                  times(spreads[0].quadratic, spreads[0].constructed[kOptimal]),
-                  times(spreads[1].quadratic, spreads[1].constructed[kOptimal]),
-                  times(spreads[2].quadratic, spreads[2].constructed[kOptimal]),
-                  times(spreads[0].constructed[kTimed], spreads[0].constructed[kOptimal]),
-                  times(spreads[1].constructed[kTimed], spreads[1].constructed[kOptimal]),
-                  times(spreads[2].constructed[kTimed], spreads[2].constructed[kOptimal])));
-  page.bullet(
-      "**And all of it is beaten** by the paper's own section 2.1. The exact polynomial takes a root and a "
-      "division where a circle takes a sine (section 2), and has no error to minimise. The question was worth "
-      "asking; the answer is to not interpolate.");
-  page.line("");
-
-  page.statement("Random frames differ in quality; some beat the matrix",
-                 fmt::format("yes, face by face ({} of the draws on twist); over a mesh not once in 200 seeds "
-                             "(`random` {}, `matrix` {} on twist)",
-                             percent(spreads[2].pairs_that_beat_matrix), ratio(sum(spreads[2].random) / kSeeds),
-                             ratio(spreads[2].constructed[kMatrix])),
-                 "5");
-  page.statement("The best pair of frames: open",
-                 fmt::format("answered: one angle per face; relative to linear {}, {}, {}, {}",
-                             ratio(spreads[0].constructed[kOptimal]), ratio(spreads[1].constructed[kOptimal]),
-                             ratio(spreads[2].constructed[kOptimal]), ratio(spreads[3].constructed[kOptimal])),
-                 "5");
+  page.set({{"seeds", grouped(kSeeds)},
+            {"frame_pairs", grouped(kPairs)},
+            {"frame_samples", grouped(kSamples)},
+            {"seeds_spread", percent(widest)},
+            {"angle_disagreement", scientific(disagreement)},
+            {"circle_excess_cloth", percent(spreads[0].over(kCircle, kOptimal) - 1, 2)},
+            {"circle_excess_bend", percent(spreads[1].over(kCircle, kOptimal) - 1, 1)},
+            {"circle_excess_twist", percent(spreads[2].over(kCircle, kOptimal) - 1, 1)},
+            {"circle_excess_eversion", percent(spreads[3].over(kCircle, kOptimal) - 1)}});
 }
 
 }  // namespace chronormal::paper

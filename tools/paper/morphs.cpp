@@ -1,3 +1,4 @@
+// Samples of faces are drawn with a generator of fixed seed, so that every run measures the same ones.
 #include "paper/morphs.h"
 
 #include <algorithm>
@@ -50,12 +51,7 @@ Motion some_pairs(const Motion& motion, std::size_t pairs) {
   return some_faces(motion, pairs / motion.segments.size());
 }
 
-std::vector<ControlNormals> control_normals_of(const Segment& segment) {
-  std::vector<ControlNormals> normals(segment.topology->face_count());
-  face_control_normals(segment, {0, normals.size()}, normals);
-  return normals;
-}
-
+// As angle_between(), without its care for lengths that overflow: this is asked for millions of pairs of unit vectors.
 double degrees_between(const Vec3d& a, const Vec3d& b) {
   const Vec3d c = cross(a, b);
   return kDegreesPerRadian * std::atan2(std::sqrt(dot(c, c)), dot(a, b));
@@ -68,7 +64,7 @@ PairErrors::PairErrors(const Motion& motion, std::size_t samples)
       pairs_(faces_ * motion.segments.size()) {
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const Segment segment = motion.segment(s);
-    control_normals_.push_back(control_normals_of(segment));
+    control_normals_.push_back(all_face_control_normals(segment));
     for (std::size_t i = 0; i < samples; ++i) {
       std::vector<Vec3d> exact(faces_);
       reference_normals(segment, {0, faces_}, static_cast<double>(i) / static_cast<double>(samples - 1), exact);

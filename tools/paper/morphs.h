@@ -1,4 +1,4 @@
-/// The meshes of the document, and what several sections measure on them.
+/// The meshes of docs/paper.md, and what several of its sections measure on them.
 #ifndef PAPER_MORPHS_H_
 #define PAPER_MORPHS_H_
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/chronormal.h"
-#include "support/statistics.h"
+#include "support/numbers.h"
 
 namespace chronormal::paper {
 
@@ -30,9 +30,6 @@ struct Morph {
 [[nodiscard]] Motion some_faces(const Motion& motion, std::size_t count);
 /// The faces of a motion so that (face, segment) pairs are about `pairs`.
 [[nodiscard]] Motion some_pairs(const Motion& motion, std::size_t pairs);
-
-/// Control normals of all faces of one segment.
-[[nodiscard]] std::vector<ControlNormals> control_normals_of(const Segment& segment);
 
 /// Angle between unit vectors, in degrees.
 [[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "paper/morphs.h"
 #include "paper/sections.h"
@@ -136,7 +136,7 @@ LiteralResult interpolate(const Motion& motion, Reading reading) {
   double ends = 0;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const Segment segment = motion.segment(s);
-    const std::vector<ControlNormals> normals = control_normals_of(segment);
+    const std::vector<ControlNormals> normals = all_face_control_normals(segment);
     const PreparedScheme library("quaternion:matrix", segment, {0, normals.size()});
     std::vector<std::vector<Vec3d>> library_normals;
     for (int i = 0; i <= 20; ++i) library_normals.push_back(library.at(i / 20.0));
@@ -160,7 +160,7 @@ LiteralResult interpolate(const Motion& motion, Reading reading) {
 // The share of faces whose plane is at distance 1 from the origin at t = 0, on the side of the normal.
 double share_at_distance_one(const Motion& motion) {
   const Segment segment = motion.segment(0);
-  const std::vector<ControlNormals> normals = control_normals_of(segment);
+  const std::vector<ControlNormals> normals = all_face_control_normals(segment);
   double count = 0;
   for (std::size_t f = 0; f < normals.size(); ++f) {
     const Vec3d corner = to_double(segment.from[segment.topology->face(f)[0]]);
@@ -169,94 +169,67 @@ double share_at_distance_one(const Motion& motion) {
   return count / static_cast<double>(normals.size());
 }
 
-void write_paper_slips(Page& page) {
-  const Motion twist = some_pairs(morph("twist"), 2000);
+// Section 2.5 in all its readings, on 2,000 faces.
+void check_frames(Page& page) {
+  const Motion twist = some_pairs(morph("twist"), 2000), bend = some_pairs(morph("bend"), 2000);
   const double linear = sum(PairErrors(twist, 21).sums("linear"));
-  std::array<LiteralResult, 3> results;
-  parallel_for(results.size(), [&](std::size_t i) { results[i] = interpolate(twist, static_cast<Reading>(i)); });
-  const auto& [correct, literal, other] = results;
+  std::array<LiteralResult, 4> results;
+  parallel_for(results.size(), [&](std::size_t i) {
+    const Reading reading = static_cast<Reading>(i);
+    results[i] = interpolate(reading == Reading::kNormalAsPoint ? bend : twist, reading);
+  });
+  const auto& [correct, literal, other, as_point] = results;
   const Segment segment = twist.segment(0);
-  std::vector<ControlNormals> normals = control_normals_of(segment);
-  const double printed = frames_of(segment, 0, normals[0], Reading::kLiteral).end.determinant();
-  const double repaired = frames_of(segment, 0, normals[0], Reading::kCorrect).end.determinant();
+  const ControlNormals normals = all_face_control_normals(segment)[0];
+  const double printed = frames_of(segment, 0, normals, Reading::kLiteral).end.determinant();
+  const double repaired = frames_of(segment, 0, normals, Reading::kCorrect).end.determinant();
+  const double singular = share_at_distance_one(morph("twist"));
   require(std::fabs(printed + 1) < 1e-12 && std::fabs(repaired - 1) < 1e-12, "the printed frame is left-handed");
   require(correct.from_library < 1e-3, "the second implementation agrees with the library");
   require(literal.sum > 2 * correct.sum && other.sum > 2 * correct.sum, "the printed tangent is far off");
-
-  page.subheading("The paper's");
-  page.text(
-      fmt::format("To check the first of these, section 2.5 is implemented a second time in the generator of this "
-                  "page, as printed: a 4 x 4 inverse, two quaternions, slerp, the last column. With the correction "
-                  "it agrees with `quaternion:matrix`, in which there is neither a matrix nor a quaternion, to {} "
-                  "degrees on 2,000 faces of twist.",
-                  scientific(correct.from_library)));
-  page.bullet(
-      fmt::format("**A tangent of the wrong sign.** Section 2.5 prints t1 = n1 x b1. With its own b = n x t that "
-                  "frame is left-handed: determinant {:.0f} on face 0. The tangent is b1 x n1, determinant {:.0f}. "
-                  "Taken literally, the matrix is no rotation and its quaternion is another's: the sum relative to "
-                  "linear is {} instead of {}, and at t = 1 the normal misses n1 by {} degrees on average. Turning "
-                  "b1 round instead makes a rotation, half a turn away from the right one: {}. The paper's figures "
-                  "are not of that kind, so its program will have had it right.",
-                  printed, repaired, ratio(literal.sum / linear), ratio(correct.sum / linear),
-                  grouped(literal.mean_at_end, 1), ratio(other.sum / linear)));
-  const Motion bend = some_pairs(morph("bend"), 2000);
-  const LiteralResult as_point = interpolate(bend, Reading::kNormalAsPoint);
   require(as_point.from_library < 1e-3, "the fourth component of the normal does not change the frames");
-  const double singular = share_at_distance_one(morph("twist"));
   require(singular == 1, "M is singular on all of twist");
-  page.bullet(fmt::format(
-      "**A fourth component.** Eq. 7 shows a0 with fourth component 1 and says \"etc.\" The normal is a direction "
-      "and takes 0. With 1 the frames come out the same ({} degrees apart at most on 2,000 faces of bend), since "
-      "b0 lies in the plane of the face and M b0 does not ask for the normal. But M is then singular where the "
-      "plane of the face is at distance 1 from the origin: on twist that is so for {} of the faces. And M b0 has "
-      "length 1 only by accident; it must be brought to it.",
-      scientific(as_point.from_library), percent(singular)));
+  const Vec3d half = normal_at(normals, 0.5);
+  page.set({{"correct_from_library", scientific(correct.from_library)},
+            {"printed_determinant", fmt::format("{:.0f}", printed)},
+            {"repaired_determinant", fmt::format("{:.0f}", repaired)},
+            {"literal_ratio", ratio(literal.sum / linear)},
+            {"correct_ratio", ratio(correct.sum / linear)},
+            {"other_ratio", ratio(other.sum / linear)},
+            {"literal_at_end", grouped(literal.mean_at_end, 1)},
+            {"as_point_from_library", scientific(as_point.from_library)},
+            {"singular_share", percent(singular)},
+            {"half_length", fmt::format("{:.4f}", length(half))},
+            {"half_unit_length", fmt::format("{:.0f}", length(unit(half)))}});
+}
 
-  // A shear of the plane x = 0.
+// The normal of the plane x = 0 under the shear (x + y, y, z).
+void check_shear(Page& page) {
   const auto shear = [](const Vec3d& v) { return Vec3d{v.x + v.y, v.y, v.z}; };
   const Vec3d along_y{0, 1, 0}, along_z{0, 0, 1}, normal = cross(along_y, along_z);
   const Vec3d right = unit(cross(shear(along_y), shear(along_z)));
   const Vec3d inverse_transpose = unit(Vec3d{normal.x, normal.y - normal.x, normal.z});
   require(degrees_between(right, inverse_transpose) < 1e-10, "the inverse transpose is right");
-  page.bullet(
-      fmt::format("**Normals under linear maps.** The introduction says that for a linear transformation the "
-                  "inverse transpose of J is J itself. That holds for rotations. Under the shear (x + y, y, z) the "
-                  "normal of the plane x = 0 comes out {:.0f} degrees wrong with J, and {:.0f} with the inverse "
-                  "transpose.",
-                  degrees_between(right, unit(shear(normal))), std::fabs(degrees_between(right, inverse_transpose))));
-  const Vec3d half = normal_at(normals[0], 0.5);
-  page.bullet(
-      fmt::format("**Equation numbers.** Table 2 says of the t-variant product that Eq. 1 needs normalisation and "
-                  "Eq. 2 does not. Each is one too low: on face 0 of that mesh Eq. 2 gives a vector of length "
-                  "{:.4f} at t = 1/2, and Eq. 3 one of length {:.0f}.",
-                  length(half), length(unit(half))));
+  page.set({{"shear_wrong", fmt::format("{:.0f}", degrees_between(right, unit(shear(normal))))},
+            {"shear_right", fmt::format("{:.0f}", std::fabs(degrees_between(right, inverse_transpose)))}});
+}
 
-  // A claim that holds.
-  double area_error = 0;
-  {
-    const Segment s = bend.segment(0);
-    std::vector<Vec3d> exact(bend.topology.face_count());
-    reference_normals(s, {0, exact.size()}, 0.3, exact);
-    for (std::size_t f = 0; f < exact.size(); ++f) {
-      const auto face = bend.topology.face(f);
-      const auto p = [&](std::size_t i) { return lerp(to_double(s.from[face[i]]), to_double(s.to[face[i]]), 0.3); };
-      // Heron's formula, which knows no normal.
-      const double a = length(p(1) - p(0)), b = length(p(2) - p(1)), c = length(p(0) - p(2)), h = (a + b + c) / 2;
-      const double area = std::sqrt(h * (h - a) * (h - b) * (h - c));
-      area_error = std::max(area_error, std::fabs(length(exact[f]) / (2 * area) - 1));
-    }
+// The largest relative difference between |n(t)| and twice the area by Heron's formula, which knows no normal.
+double error_of_areas(const Motion& motion, double t) {
+  const Segment segment = motion.segment(0);
+  std::vector<Vec3d> exact(motion.topology.face_count());
+  reference_normals(segment, {0, exact.size()}, t, exact);
+  double worst = 0;
+  for (std::size_t f = 0; f < exact.size(); ++f) {
+    const auto face = motion.topology.face(f);
+    const auto p = [&](std::size_t i) {
+      return lerp(to_double(segment.from[face[i]]), to_double(segment.to[face[i]]), t);
+    };
+    const double a = length(p(1) - p(0)), b = length(p(2) - p(1)), c = length(p(0) - p(2)), h = (a + b + c) / 2;
+    const double area = std::sqrt(h * (h - a) * (h - b) * (h - c));
+    worst = std::max(worst, std::fabs(length(exact[f]) / (2 * area) - 1));
   }
-  page.bullet(
-      fmt::format("**And one that is none**: \"the lengths of normals are proportional to the size of face\". "
-                  "|n(t)| is twice the area, by Heron's formula to {} of it on 2,000 faces of bend.",
-                  scientific(area_error)));
-  page.line("");
-  page.statement("t1 = n1 x b1 (section 2.5)",
-                 fmt::format("a slip: determinant {:.0f}; taken literally {} relative to linear instead of {}", printed,
-                             ratio(literal.sum / linear), ratio(correct.sum / linear)),
-                 "6");
-  page.statement("Lengths of exact normals are proportional to the size of the face",
-                 fmt::format("yes, to {}", scientific(area_error)), "6");
+  return worst;
 }
 
 // Degree of n(t) when so many vertices of a triangle move alike.
@@ -276,7 +249,7 @@ int degree_when(int alike) {
     }
   }
   motion.connect_as_sequence();
-  return degree(control_normals_of(motion.segment(0))[0]);
+  return degree(all_face_control_normals(motion.segment(0))[0]);
 }
 
 // Bytes per face of `polynomial` where no face is flagged.
@@ -284,84 +257,62 @@ double mild_bytes() {
   return compare(morph("bend"), {{"polynomial"}, 2, Access::kRandom, {}}).value().schemes[0].bytes;
 }
 
-void write_our_slips(Page& page) {
-  const std::array<const char*, 2> dramatic = {"eversion", "soup"};
-  CompareOptions options;
-  options.schemes = {"polynomial", "rational", "circle:timed", "quadratic", "quaternion:optimal", "linear"};
-  std::array<Comparison, 2> comparisons;
-  for (std::size_t i = 0; i < 2; ++i) comparisons[i] = compare(morph(dramatic[i]), options).value();
-  const auto mean = [&](std::size_t morph_index, std::size_t scheme) {
-    return kDegreesPerRadian * comparisons[morph_index].schemes[scheme].quality.mean();
-  };
-  const auto max = [&](std::size_t morph_index, std::size_t scheme) {
-    return kDegreesPerRadian * comparisons[morph_index].schemes[scheme].quality.max;
-  };
-  const auto flagged = [&](std::size_t morph_index) {
-    return static_cast<double>(comparisons[morph_index].schemes[0].flagged) /
-           static_cast<double>(comparisons[morph_index].faces);
-  };
-  const auto relative = [&](std::size_t morph_index, std::size_t scheme) {
-    return comparisons[morph_index].schemes[scheme].relative_to_linear.value();
-  };
+// The share of (face, segment) pairs on which one scheme has the larger sum of errors than another.
+double share_of_losses(const Motion& motion, std::string_view scheme, std::string_view other) {
+  const PairErrors errors(motion, 21);
+  const std::vector<double> its = errors.sums(scheme), others = errors.sums(other);
+  double losses = 0;
+  for (std::size_t i = 0; i < its.size(); ++i) losses += its[i] > others[i] ? 1 : 0;
+  return losses / static_cast<double>(its.size());
+}
 
-  page.subheading("Ours");
-  page.bullet(fmt::format(
-      "**`polynomial` is not exactly zero.** float32 leaves {} degrees on average and {} at worst on eversion. And "
-      "it is not float32 alone: faces that float32 could not carry are evaluated in double. On mild morphs there "
-      "are none, on eversion {} and on soup {} of the faces: {} and {} bytes a face on average in place of {}.",
-      scientific(mean(0, 0), 1), scientific(max(0, 0), 1), percent(flagged(0)), percent(flagged(1)),
-      grouped(comparisons[0].schemes[0].bytes), grouped(comparisons[1].schemes[0].bytes), grouped(mild_bytes())));
-  require(mean(0, 1) > 3 * mean(0, 0), "rational is less accurate on eversion");
-  page.bullet(
-      fmt::format("**`rational`**, the paper's Eq. 3, has no such care. Its quartic for the squared length cancels "
-                  "where the face nearly collapses: {} degrees on average on eversion, {} at worst.",
-                  scientific(mean(0, 1), 1), scientific(max(0, 1), 1)));
-  require(relative(0, 2) > relative(0, 4) && relative(1, 2) > relative(1, 3),
-          "circle:timed is not the best where faces collapse");
-  const Motion eversion = some_pairs(morph("eversion"), 2000);
-  const PairErrors errors(eversion, 21);
-  const std::vector<double> timed = errors.sums("circle:timed"), linear = errors.sums("linear");
-  double worse = 0;
-  for (std::size_t i = 0; i < timed.size(); ++i) worse += timed[i] > linear[i] ? 1 : 0;
-  page.bullet(
-      fmt::format("**`circle:timed`** is the best of ours on mild morphs (`cubic` is better still), and loses "
-                  "where faces collapse: on eversion it is at {} of linear behind `quaternion:optimal` at {}, and "
-                  "worse than linear on {} of the faces; on soup it is at {} behind `quadratic` at {}. It trusts a "
-                  "middle that is nothing like the rest of the way.",
-                  ratio(relative(0, 2)), ratio(relative(0, 4)), percent(worse / static_cast<double>(timed.size())),
-                  ratio(relative(1, 2)), ratio(relative(1, 3))));
-  page.bullet(
-      "**`quaternion:optimal`** is optimal among quaternion slerps on the shorter arc, for the mean error over t, "
-      "to the accuracy of a search. It is not optimal among circles: longer arcs are sometimes better, which is "
-      "why `circle` beats it on soup (" +
-      fmt::format("{} against {}).",
-                  ratio(compare(morph("soup"), {{"circle"}, 21, Access::kRandom, {}})
-                            .value()
-                            .schemes[0]
-                            .relative_to_linear.value()),
-                  ratio(relative(1, 4))));
-  page.bullet(
-      "**Our morphs** come from formulas. They are smooth, and all their faces move much alike; the paper's, from "
-      "one shape to another, did not. Where our ratios differ from theirs, this is the first thing to suspect "
-      "(section 1).");
-  page.bullet("**Sections 1 (in part), 3, 4 and 5** measure some of the faces, drawn at random, and say how many.");
-  page.bullet(
-      "**Times** are of a machine that was not idle. Operations and bytes are exact; of the times, believe the "
-      "ratios.");
-  page.line("");
+void measure_ours(Page& page) {
+  const auto compared = [](std::string_view name, std::vector<std::string> schemes) {
+    CompareOptions options;
+    options.schemes = std::move(schemes);
+    return compare(morph(name), options).value();
+  };
+  const Comparison eversion = compared("eversion", {"polynomial", "rational"});
+  const Comparison soup = compared("soup", {"polynomial", "circle:timed", "quadratic", "quaternion:optimal", "circle"});
+  const SchemeComparison &exact = eversion.schemes[0], &rational = eversion.schemes[1];
+  const auto on_soup = [&soup](std::size_t scheme) { return soup.schemes[scheme].relative_to_linear.value(); };
+  const double timed = on_soup(1), quadratic = on_soup(2), optimal = on_soup(3), circle = on_soup(4);
+  const auto flagged = [](const Comparison& comparison) {
+    return percent(static_cast<double>(comparison.schemes[0].flagged) / static_cast<double>(comparison.faces));
+  };
+  require(rational.quality.mean() > 3 * exact.quality.mean(), "rational is less accurate on eversion");
+  require(timed > quadratic, "circle:timed is not the best on soup");
+  require(circle < optimal, "circle beats quaternion:optimal on soup");
   require(degree_when(3) == 0 && degree_when(2) == 1 && degree_when(0) == 2, "degrees are as the paper says");
-  page.statement("The exact normal has degree two; one if two vertices move alike, none if three do",
-                 fmt::format("yes: {}, {}, {}; other motions lower the degree too (theory, section 2)", degree_when(0),
-                             degree_when(2), degree_when(3)),
-                 "6");
+  const auto degrees = [](double radians) { return scientific(kDegreesPerRadian * radians, 1); };
+  const double timed_loses = share_of_losses(some_pairs(morph("eversion"), 2000), "circle:timed", "linear");
+  page.set({{"exact_mean_eversion", degrees(exact.quality.mean())},
+            {"exact_max_eversion", degrees(exact.quality.max)},
+            {"flagged_eversion", flagged(eversion)},
+            {"flagged_soup", flagged(soup)},
+            {"bytes_eversion", grouped(exact.bytes)},
+            {"bytes_soup", grouped(soup.schemes[0].bytes)},
+            {"bytes_mild", grouped(mild_bytes())},
+            {"rational_mean_eversion", degrees(rational.quality.mean())},
+            {"rational_max_eversion", degrees(rational.quality.max)},
+            {"timed_loses", percent(timed_loses)},
+            {"soup_timed", ratio(timed)},
+            {"soup_quadratic", ratio(quadratic)},
+            {"soup_optimal", ratio(optimal)},
+            {"soup_circle", ratio(circle)},
+            {"degree_none_alike", fmt::format("{}", degree_when(0))},
+            {"degree_two_alike", fmt::format("{}", degree_when(2))},
+            {"degree_three_alike", fmt::format("{}", degree_when(3))}});
 }
 
 }  // namespace
 
-void write_slips(Page& page) {
-  page.heading("6 Slips, the paper's and ours");
-  write_paper_slips(page);
-  write_our_slips(page);
+void measure_slips(Page& page) {
+  check_frames(page);
+  check_shear(page);
+  const double area_error = error_of_areas(some_pairs(morph("bend"), 2000), 0.3);
+  page.set("area_error", scientific(area_error));
+  measure_ours(page);
 }
 
 }  // namespace chronormal::paper

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <initializer_list>
+#include <map>
 
 #include "paper/morphs.h"
 #include "paper/sections.h"
@@ -82,22 +84,35 @@ std::string spread(const std::vector<double>& values) {
                      text(quantile(values, 0.75)));
 }
 
+void add_times(Page& page, const Segment& segment) {
+  std::map<std::string_view, Times> times;
+  std::vector<Cells> rows;
+  // One after the other: a second thread would share the caches.
+  for (const Row& row : kRows) {
+    const Times& of_scheme = times[row.scheme] = time_scheme(row, segment);
+    rows.push_back({fmt::format("`{}`", row.scheme), spread(of_scheme.prepare), spread(of_scheme.random),
+                    spread(of_scheme.sequential)});
+  }
+  page.table("times", {"ns per face", "prepare", "random", "sequential"}, rows);
+  const auto random = [&](std::string_view scheme) { return quantile(times.at(scheme).random, 0.5); };
+  const auto played = [&](std::string_view scheme) { return quantile(times.at(scheme).sequential, 0.5); };
+  for (const char* scheme : {"slerp", "circle", "polynomial", "linear", "quadratic", "cubic"})
+    page.set(fmt::format("sequence_gain_{}", scheme), fmt::format("{:.1f}", random(scheme) / played(scheme)));
+  for (const char* scheme : {"polynomial", "slerp", "recompute"})
+    page.set(fmt::format("{}_time", scheme), fmt::format("{:.2f}", random(scheme) / random("linear")));
+  for (const char* scheme : {"polynomial", "slerp"})
+    page.set(fmt::format("{}_time_played", scheme), fmt::format("{:.2f}", played(scheme) / played("linear")));
+  page.set({{"blocks", grouped(kBlocks)},
+            {"block_faces", grouped(kBlock)},
+            {"access_steps", grouped(kSteps)},
+            {"anchor_interval", grouped(kDefaultAnchorInterval)}});
+}
+
 }  // namespace
 
-void write_table2(Page& page) {
-  const Motion& bend = morph("bend");
-  const Segment segment = bend.segment(0);
-
-  page.heading("2 Table 2: cost");
-  page.text(
-      "The paper counts in SLERPs and polynomial evaluations, and leaves it to the reader what those cost. Here is "
-      "what runs, counted on the code itself: additions / multiplications / divisions / square roots / "
-      "trigonometric functions per face and time, the normalisation included. A sine with its cosine counts as "
-      "one. What all faces share at one t (powers of t, weights) is computed once and not counted. Bytes are what "
-      "an evaluation reads per face.");
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::unique_ptr<PreparedScheme>> schemes;
-  const auto of = [](std::string_view name) { return make_scheme(name).value(); };
+void measure_table2(Page& page) {
+  const Segment segment = morph("bend").segment(0);
+  std::vector<Cells> rows;
   for (const Row& row : kRows) {
     const PreparedScheme scheme(row.scheme, segment, {0, kBlock});
     const auto sequential = scheme->sequential_operations();
@@ -105,110 +120,51 @@ void write_table2(Page& page) {
                     sequential ? counts(*sequential) : "none", fmt::format("{}", scheme->bytes() / kBlock),
                     row.normalised, row.paper});
   }
-  page.table({"scheme", "random access", "sequential access", "bytes", "normalise", "in the paper"}, rows, 4);
+  page.table("operations", {"scheme", "random access", "sequential access", "bytes", "normalise", "in the paper"}, rows,
+             4);
 
-  const OperationCounts linear = of("linear")->operations(), polynomial = of("polynomial")->operations();
-  const OperationCounts slerp = of("slerp")->operations(), casteljau = of("decasteljau:4")->operations();
-  const OperationCounts recompute = of("recompute")->operations(), circle = of("circle")->operations();
-  const OperationCounts played = of("polynomial")->sequential_operations().value();
-  const OperationCounts played_circle = of("circle")->sequential_operations().value();
-  const OperationCounts played_linear = of("linear")->sequential_operations().value();
-  const OperationCounts played_slerp = of("slerp")->sequential_operations().value();
+  const auto random = [](std::string_view name) { return make_scheme(name).value()->operations(); };
+  const auto played = [](std::string_view name) { return make_scheme(name).value()->sequential_operations().value(); };
+  const OperationCounts linear = random("linear"), polynomial = random("polynomial"), slerp = random("slerp"),
+                        casteljau = random("decasteljau:4"), recompute = random("recompute"), circle = random("circle"),
+                        played_linear = played("linear"), played_polynomial = played("polynomial"),
+                        played_slerp = played("slerp");
   // A normalisation: 2 additions, 6 multiplications, a division, a root.
-  constexpr int kNormaliseAdd = 2, kNormaliseMultiply = 6;
-  page.bullet(
-      fmt::format("**Exact is nearly as cheap as linear.** Before the normalisation, which both need, `polynomial` "
-                  "takes {} additions and {} multiplications; the paper says 6 and 6, by Horner. Ours is the "
-                  "Bernstein form, which meets both ends without rounding. `linear` takes {} and {}.",
-                  polynomial.add - kNormaliseAdd, polynomial.multiply - kNormaliseMultiply, linear.add - kNormaliseAdd,
-                  linear.multiply - kNormaliseMultiply));
-  require(played.add == 6 + kNormaliseAdd && played.multiply == kNormaliseMultiply, "two additions per component");
-  page.bullet(fmt::format(
-      "**Two additions.** Played, `polynomial` takes {} additions a component and no multiplication before the "
-      "normalisation: the paper's figure. The normalisation is then the larger part, {} of {} operations.",
-      (played.add - kNormaliseAdd) / 3, kNormaliseAdd + kNormaliseMultiply + 2, played.add + played.multiply + 2));
-  require(played_slerp.trigonometric == 0 && played_circle.trigonometric == 0, "no trigonometry in sequence");
-  page.bullet(
-      fmt::format("**Slerp** needs no normalisation, as the paper says, but a sine at random access. Written as "
-                  "cos(tT) u0 + sin(tT) q it is {} additions, {} multiplications and one sine with its cosine; the "
-                  "paper's Eq. 5 has two sines and a division by sin T. In sequence the sine goes away as well: {} "
-                  "and {}, with neither root nor division, which no polynomial does without. In quality it is the "
-                  "worst row of Table 1.",
-                  slerp.add, slerp.multiply, played_slerp.add, played_slerp.multiply));
-  page.bullet(
-      fmt::format("**Quaternions** cost no quaternion. The normal runs on a circle (section 5), so \"1 SLERP, "
-                  "quaternion to matrix conversion\" is {} additions, {} multiplications and one sine with its "
-                  "cosine: {} and {} more than vector slerp.",
-                  circle.add, circle.multiply, circle.add - slerp.add, circle.multiply - slerp.multiply));
-  page.bullet(
-      fmt::format("**De Casteljau** over n = 4 normals is n(n-1)/2 = {} slerps, as the paper says. Of its {} "
-                  "trigonometric functions, {} are the sines; the others are arc tangents, since the angles "
-                  "between the points of the inner levels are not known beforehand.",
-                  4 * 3 / 2, casteljau.trigonometric, 4 * 3 / 2));
-  require(casteljau.trigonometric > 6, "de Casteljau needs inner angles");
-  page.bullet(
-      fmt::format("**Recompute** is the paper's \"9 additions, 6 multiplications\" and then the vertices: moving "
-                  "three of them to t takes the rest of its {} additions and {} multiplications. (The paper takes "
-                  "them as moved.)",
-                  recompute.add, recompute.multiply));
-  page.line("");
-
-  std::vector<Times> times(kRows.size());
-  // One after the other: a second thread would share the caches.
-  for (std::size_t r = 0; r < kRows.size(); ++r) times[r] = time_scheme(kRows[r], segment);
-  page.line("<!-- times -->");
-  page.text(
-      fmt::format("Times, nanoseconds per face: median over {} blocks of {} faces of bend that stay in cache, one "
-                  "thread, and the middle half of the blocks. Preparation includes the control normals. Access is "
-                  "to {} times t; played ones are made anew every {} steps. They are of the machine that made this "
-                  "page, which had other work to do; only ratios within the table mean anything.",
-                  kBlocks, grouped(kBlock), kSteps, kDefaultAnchorInterval));
-  rows.clear();
-  for (std::size_t r = 0; r < kRows.size(); ++r)
-    rows.push_back({fmt::format("`{}`", kRows[r].scheme), spread(times[r].prepare), spread(times[r].random),
-                    spread(times[r].sequential)});
-  page.table({"ns per face", "prepare", "random", "sequential"}, rows);
-  const auto median = [&](std::string_view scheme, std::vector<double> Times::*what) {
-    for (std::size_t r = 0; r < kRows.size(); ++r) {
-      if (scheme == kRows[r].scheme) return quantile(times[r].*what, 0.5);
-    }
-    return 0.0;
-  };
-  const auto gain = [&median](std::string_view scheme) {
-    return median(scheme, &Times::random) / median(scheme, &Times::sequential);
-  };
-  page.text(
-      fmt::format("\"Linear interpolation always will be faster than any other\": `polynomial` took {:.2f} times "
-                  "as long as `linear` at random access and {:.2f} times in sequence; `slerp` {:.2f} and {:.2f}; "
-                  "`recompute` {:.2f} at random.",
-                  median("polynomial", &Times::random) / median("linear", &Times::random),
-                  median("polynomial", &Times::sequential) / median("linear", &Times::sequential),
-                  median("slerp", &Times::random) / median("linear", &Times::random),
-                  median("slerp", &Times::sequential) / median("linear", &Times::sequential),
-                  median("recompute", &Times::random) / median("linear", &Times::random)));
-  page.text(
-      fmt::format("What sequence gains (random over sequential): `slerp` {:.1f} times, `circle` {:.1f}, "
-                  "`polynomial` {:.1f}, `linear` {:.1f}, `quadratic` {:.1f}, `cubic` {:.1f}. Arcs save the sine, "
-                  "polynomials multiplications; all pay with a state that is read and written at every step, and made "
-                  "anew in double every 64. Where sixteen sines are computed at once, that costs more than it saves.",
-                  gain("slerp"), gain("circle"), gain("polynomial"), gain("linear"), gain("quadratic"), gain("cubic")));
-  page.line("<!-- end of times -->\n");
-
-  page.statement(
-      "Horner takes 6 additions and 6 multiplications for the exact quadratic",
-      fmt::format("Bernstein form: {} and {} at random, {} and 0 in sequence, then the normalisation",
-                  polynomial.add - kNormaliseAdd, polynomial.multiply - kNormaliseMultiply, played.add - kNormaliseAdd),
-      "2");
+  constexpr int kNormaliseAdd = 2, kNormaliseMultiply = 6, kNormalise = 10;
+  constexpr int kCasteljauSlerps = 4 * 3 / 2;
+  require(played_polynomial.add == 6 + kNormaliseAdd && played_polynomial.multiply == kNormaliseMultiply,
+          "two additions per component");
+  require(played_slerp.trigonometric == 0 && played("circle").trigonometric == 0, "no trigonometry in sequence");
+  require(casteljau.trigonometric > kCasteljauSlerps, "de Casteljau needs inner angles");
   require(polynomial.divide == linear.divide && polynomial.sqrt == linear.sqrt, "both normalise");
-  page.statement(
-      "Linear \"always will be faster than any other approach\"",
-      fmt::format("by {} additions and {} multiplications a face against the exact one, by {} and {} in sequence; "
-                  "in sequence arcs need neither root nor division (times: section 2)",
-                  polynomial.add - linear.add, polynomial.multiply - linear.multiply, played.add - played_linear.add,
-                  played.multiply - played_linear.multiply),
-      "2");
-  page.statement("De Casteljau takes n(n-1)/2 SLERPs",
-                 fmt::format("yes, and {} arc tangents for n = 4", casteljau.trigonometric - 6), "2");
+  for (const auto& [name, count] : std::initializer_list<std::pair<const char*, int>>{
+           {"polynomial_add", polynomial.add - kNormaliseAdd},
+           {"polynomial_multiply", polynomial.multiply - kNormaliseMultiply},
+           {"played_polynomial_add", played_polynomial.add - kNormaliseAdd},
+           {"played_polynomial_add_per_component", (played_polynomial.add - kNormaliseAdd) / 3},
+           {"played_polynomial_operations", played_polynomial.add + played_polynomial.multiply + 2},
+           {"normalisation", kNormalise},
+           {"linear_add", linear.add - kNormaliseAdd},
+           {"linear_multiply", linear.multiply - kNormaliseMultiply},
+           {"more_add", polynomial.add - linear.add},
+           {"more_multiply", polynomial.multiply - linear.multiply},
+           {"played_more_add", played_polynomial.add - played_linear.add},
+           {"played_more_multiply", played_polynomial.multiply - played_linear.multiply},
+           {"slerp_add", slerp.add},
+           {"slerp_multiply", slerp.multiply},
+           {"played_slerp_add", played_slerp.add},
+           {"played_slerp_multiply", played_slerp.multiply},
+           {"circle_add", circle.add},
+           {"circle_multiply", circle.multiply},
+           {"circle_more_add", circle.add - slerp.add},
+           {"circle_more_multiply", circle.multiply - slerp.multiply},
+           {"casteljau_slerps", kCasteljauSlerps},
+           {"casteljau_trigonometric", casteljau.trigonometric},
+           {"casteljau_arc_tangents", casteljau.trigonometric - kCasteljauSlerps},
+           {"recompute_add", recompute.add},
+           {"recompute_multiply", recompute.multiply}})
+    page.set(name, fmt::format("{}", count));
+  add_times(page, segment);
 }
 
 }  // namespace chronormal::paper

@@ -1,3 +1,4 @@
+// A figure becomes a script for gnuplot, and what gnuplot says of itself is taken out of the SVG that it writes.
 #include "support/plot.h"
 
 #include <fmt/core.h>
@@ -12,53 +13,13 @@
 namespace chronormal::pages {
 namespace {
 
-const char* hex(Colour colour) {
-  switch (colour) {
-    case Colour::kBlack:
-      return "#000000";
-    case Colour::kBlue:
-      return "#0072b2";
-    case Colour::kOrange:
-      return "#e69f00";
-    case Colour::kGreen:
-      return "#009e73";
-    case Colour::kPurple:
-      return "#cc79a7";
-    case Colour::kSky:
-      return "#56b4e9";
-    case Colour::kRed:
-      return "#d55e00";
-    case Colour::kGrey:
-      return "#8c8c8c";
-  }
-  return "#000000";
-}
+// In the order of Colour.
+constexpr const char* kHex[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c"};
+const char* hex(Colour colour) { return kHex[static_cast<std::size_t>(colour)]; }
 
-int point_type(Mark mark) {
-  switch (mark) {
-    case Mark::kNone:
-      return 0;
-    case Mark::kDisc:
-      return 7;
-    case Mark::kCircle:
-      return 6;
-    case Mark::kSquare:
-      return 5;
-    case Mark::kOpenSquare:
-      return 4;
-    case Mark::kTriangle:
-      return 9;
-    case Mark::kOpenTriangle:
-      return 8;
-    case Mark::kDiamond:
-      return 13;
-    case Mark::kOpenDiamond:
-      return 12;
-    case Mark::kCross:
-      return 2;
-  }
-  return 0;
-}
+// What gnuplot calls them, in the order of Mark.
+constexpr int kPointTypes[] = {0, 7, 6, 5, 4, 9, 8, 13, 12, 2};
+int point_type(Mark mark) { return kPointTypes[static_cast<std::size_t>(mark)]; }
 
 std::string axis(const char* name, const Axis& axis) {
   std::string script =

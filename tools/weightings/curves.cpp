@@ -227,10 +227,8 @@ Result in_pieces(const Curved<K>& curved, std::size_t pieces, const std::vector<
   return result;
 }
 
-std::string degrees(double value) { return value < 1e-9 ? "0" : value < 1e-3 ? scientific(value, 1) : ratio(value); }
-
 struct Tables {
-  std::vector<std::vector<std::string>> errors, times;
+  std::vector<Cells> errors, times;
   std::vector<Panel> panels;
   double exact_largest = 0;
   std::vector<double> gains;   // of twice as many pieces
@@ -245,8 +243,8 @@ void add_rows(Curved<K>& curved, Tables& tables) {
 
   const std::string motion = fmt::format("{}, {}", curved.name, K == 2 ? "accelerated" : "Hermite");
   const auto add = [&](const std::string& way, const Result& result) {
-    tables.errors.push_back(
-        {fmt::format("{}: {}", motion, way), degrees(result.mean), degrees(result.largest), grouped(result.bytes)});
+    tables.errors.push_back({fmt::format("{}: {}", motion, way), degrees(result.mean, 1), degrees(result.largest, 1),
+                             grouped(result.bytes)});
     tables.times.push_back({fmt::format("{}: {}", motion, way), grouped(result.prepare), grouped(result.evaluate)});
   };
   const Result curve = exact(curved, truth);
@@ -276,53 +274,20 @@ void add_rows(Curved<K>& curved, Tables& tables) {
 
 }  // namespace
 
-void write_curves(Page& page) {
-  page.heading("4 Curved motion");
-  page.text(
-      "Where vertices do not move on straight lines, the paper suggests to cut their paths into pieces that are. Where "
-      "the paths are polynomials that is not needed ([theory, section 11](theory.md#11-other-motions)). Here are both, "
-      "for "
-      "area-weighted vertex normals, against normals recomputed in double from the positions on the curve: "
-      "`accelerated` "
-      "has one position, velocity and acceleration for each vertex (cloth: those of keyframe 1 from its neighbours, "
-      "for a "
-      "whole segment; twist: those of a rotation, as each height of the column would turn, for its first half), "
-      "`Hermite` two "
-      "positions and velocities. Errors in degrees over 65 samples of t, bytes per vertex:");
+void measure_curves(Page& page) {
   Tables tables;
   auto quadratics = accelerated();
   auto cubics = hermite();
   for (auto& curved : quadratics) add_rows(curved, tables);
   for (auto& curved : cubics) add_rows(curved, tables);
-  page.table({"motion", "mean", "max", "bytes"}, tables.errors);
-  page.picture({"weightings_pieces", 900, 640, 2, tables.panels},
-               "The largest error over time for 2, 4, 8 and 16 straight pieces, on a logarithmic axis: arches between "
-               "the ends of the pieces, where it is zero");
-
   require(tables.exact_largest < 1e-9, "the exact curve is exact");
-  const auto [least, most] = std::minmax_element(tables.gains.begin(), tables.gains.end());
   require(tables.least_bytes > 1, "eight pieces take more memory than the exact curve");
-  page.bullet(
-      "The exact curve is that, to the rounding of double (0: below 1e-9 degrees), and has no pieces to choose.");
-  page.bullet(
-      fmt::format("Twice as many pieces divide the largest error by {:.1f} to {:.1f}: it falls with the square of "
-                  "their length where they are "
-                  "short enough, so that a thousandth of it takes 32 times as many.",
-                  *least, *most));
-  page.bullet(
-      "From eight pieces on straight ones take more memory than the exact curve, though theirs is float32 and the "
-      "exact "
-      "one "
-      "in double.");
-  page.line("");
-  begin_block(page, "times");
-  page.text(
-      "Nanoseconds per vertex, one thread, on the machine that made this page, which had other work to do. The exact "
-      "curves "
-      "are evaluated in double, a vertex at a time, by de Casteljau's algorithm; there is no float32 path for them as "
-      "NormalCurves is one for straight pieces. For many times t, that and not the degree is what they pay for:");
-  page.table({"motion", "prepare", "evaluate"}, tables.times);
-  end_block(page, "times");
+  page.table("pieces", {"motion", "mean", "max", "bytes"}, tables.errors);
+  page.table("piece_times", {"motion", "prepare", "evaluate"}, tables.times);
+  page.picture("pieces_picture", {"weightings_pieces", 900, 640, 2, tables.panels});
+  page.set({{"curve_samples", grouped(kSamples + 1)},
+            {"least_gain", fmt::format("{:.1f}", smallest(tables.gains))},
+            {"most_gain", fmt::format("{:.1f}", largest(tables.gains))}});
 }
 
 }  // namespace chronormal::weightings

@@ -19,8 +19,8 @@ namespace {
 enum class Hard { kSmoothingGroups, kSplitNormals };
 
 struct Golden {
-  std::vector<const char*> paths;  // in the folder of the data; measured together
-  const char* name;                // in the table
+  const char* path;  // in the folder of the data; the files of a folder are measured together
+  const char* name;  // in the table
   const char* tool;
   const char* origin;  // repository@commit: path, licence
   Weighting weighting;
@@ -30,48 +30,20 @@ struct Golden {
 const std::vector<Golden>& all_golden() {
   using enum Hard;
   static const std::vector<Golden> all = {
-      {{"golden/maya_blend_inbetween"},
-       "`maya_blend_inbetween_*.obj`",
-       "Maya",
-       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain",
-       Weighting::kAreaAngle,
-       kSmoothingGroups},
-      {{"golden/maya_cache_sine"},
-       "`maya_cache_sine_12.obj`",
-       "Maya",
-       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain",
-       Weighting::kAreaAngle,
-       kSmoothingGroups},
-      {{"caches/max_cache_box/max_cache_box_44.obj"},
-       "`max_cache_box_44.obj`",
-       "3ds Max",
-       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain",
-       Weighting::kAngle,
-       kSplitNormals},
-      {{"golden/static/textured_tetrahedron.obj"},
-       "`textured_tetrahedron.obj`",
-       "not stated",
-       "mikedh/trimesh@a513c0e2: models; MIT",
-       Weighting::kAngle,
-       kSplitNormals},
-      {{"golden/static/groups.obj"},
-       "`groups.obj`",
-       "not stated",
-       "mikedh/trimesh@a513c0e2: models; MIT",
-       Weighting::kArea,
-       kSplitNormals},
-      {{"golden/blender_flat"},
-       "`blender_279_sausage_*.obj`",
-       "Blender, flat",
-       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain",
-       Weighting::kArea,
-       kSmoothingGroups},
-      {{"golden/static/spider.obj"},
-       "`spider.obj`",
-       "not stated",
-       "assimp/assimp: test/models/OBJ; BSD-3-Clause",
-       Weighting::kUniform,
-       kSmoothingGroups},
+      {"golden/maya_blend_inbetween", "`maya_blend_inbetween_*.obj`", "Maya",
+       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain", Weighting::kAreaAngle, kSmoothingGroups},
+      {"golden/maya_cache_sine", "`maya_cache_sine_12.obj`", "Maya", "ufbx/ufbx@fcc5d6ba: data; MIT or public domain",
+       Weighting::kAreaAngle, kSmoothingGroups},
+      {"caches/max_cache_box/max_cache_box_44.obj", "`max_cache_box_44.obj`", "3ds Max",
+       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain", Weighting::kAngle, kSplitNormals},
+      {"golden/static/textured_tetrahedron.obj", "`textured_tetrahedron.obj`", "not stated",
+       "mikedh/trimesh@a513c0e2: models; MIT", Weighting::kAngle, kSplitNormals},
+      {"golden/static/groups.obj", "`groups.obj`", "not stated", "mikedh/trimesh@a513c0e2: models; MIT",
+       Weighting::kArea, kSplitNormals},
+      {"golden/blender_flat", "`blender_279_sausage_*.obj`", "Blender, flat",
+       "ufbx/ufbx@fcc5d6ba: data; MIT or public domain", Weighting::kArea, kSmoothingGroups},
+      {"golden/static/spider.obj", "`spider.obj`", "not stated", "assimp/assimp: test/models/OBJ; BSD-3-Clause",
+       Weighting::kUniform, kSmoothingGroups},
   };
   return all;
 }
@@ -119,13 +91,10 @@ double largest_difference(const StoredNormals& stored, const NormalGroups& group
 }
 
 std::vector<std::filesystem::path> files_of(const Golden& golden, const std::filesystem::path& data) {
+  if (!std::filesystem::is_directory(data / golden.path)) return {data / golden.path};
   std::vector<std::filesystem::path> files;
-  for (const char* const path : golden.paths) {
-    if (!std::filesystem::is_directory(data / path)) files.push_back(data / path);
-    if (!std::filesystem::is_directory(data / path)) continue;
-    for (const auto& entry : std::filesystem::directory_iterator(data / path)) {
-      if (entry.path().extension() == ".obj") files.push_back(entry.path());
-    }
+  for (const auto& entry : std::filesystem::directory_iterator(data / golden.path)) {
+    if (entry.path().extension() == ".obj") files.push_back(entry.path());
   }
   return files;
 }
@@ -174,11 +143,14 @@ std::vector<std::string> pytorch3d_row(const std::filesystem::path& path) {
   return row_of("`test_meshes.py`, 2 cases", "PyTorch3D", Weighting::kArea, worst);
 }
 
-void write_golden(Page& page, const std::filesystem::path& data) {
-  std::vector<std::string> header = {"file", "written by", "rule"};
+}  // namespace
+
+std::string golden_part(const std::string& folder, const std::filesystem::path& data) {
+  Cells header = {"file", "written by", "rule"};
   for (const WeightingInfo& info : kWeightings) header.push_back(fmt::format("`{}`", info.name));
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Cells> rows;
   std::size_t file_count = 0;
+  std::string origins;
   for (const Golden& golden : all_golden()) {
     Differences worst{};
     for (const auto& path : files_of(golden, data)) {
@@ -189,33 +161,13 @@ void write_golden(Page& page, const std::filesystem::path& data) {
       ++file_count;
     }
     rows.push_back(row_of(golden.name, golden.tool, golden.weighting, worst));
+    origins += fmt::format("* {}: {}\n", golden.name, golden.origin);
   }
   rows.push_back(pytorch3d_row(data / "golden/pytorch3d_test_compute_normals.json"));
-  page.table(header, rows, 99);
-  page.text(fmt::format(
-      "{} files and a test. A mesh says nothing about two rules that agree on it: each corner of a flat face has one "
-      "face, so that all but `max` agree on those of Blender, which show that a quad that is not planar goes by its "
-      "vector area. The files are at:",
-      file_count));
-  for (const Golden& golden : all_golden()) page.bullet(fmt::format("{}: {}", golden.name, golden.origin));
-  page.bullet("`test_meshes.py`: facebookresearch/pytorch3d@050f650a: tests; BSD-3-Clause");
-  page.line("");
-}
-
-}  // namespace
-
-void write_files(Page& page, const std::filesystem::path& data) {
-  page.heading("2 Normals in files");
-  page.text(
-      "Normals that a tool stored beside the positions, held against ours: the largest difference in degrees over all "
-      "corners, with hard edges as the file has them (its smoothing groups, or where its normals split). The rule is "
-      "the "
-      "one that is below 0.01 degrees. `tests/normals/golden_test.cpp` demands the same; both need the files, where "
-      "the "
-      "variable CHRONORMAL_DATA says they are.");
-  begin_block(page, "golden");
-  if (!data.empty()) write_golden(page, data);
-  end_block(page, "golden");
+  Page part("weightings/golden.md.in", folder);
+  part.table("files", header, rows);
+  part.set({{"file_count", grouped(static_cast<double>(file_count))}, {"origins", origins}});
+  return part.markdown();
 }
 
 }  // namespace chronormal::weightings

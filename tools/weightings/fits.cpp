@@ -88,93 +88,61 @@ struct Part {
 constexpr std::array kParts = {Part{"cloth", 1, 3 * 266}, Part{"bend", 2, 3 * 298}, Part{"twist", 2, 3 * 200},
                                Part{"eversion", 2, 330}, Part{"soup", 1, 50}};
 
-std::string degrees(double value) { return value < 1e-9 ? "0" : ratio(value); }
+// The median, 99 % and the largest.
+void add_spread(Cells& row, const std::vector<double>& values) {
+  if (values.empty())
+    row.insert(row.end(), 3, "none");
+  else
+    row.insert(row.end(), {degrees(quantile(values, 0.5)), degrees(quantile(values, 0.99)), degrees(largest(values))});
+}
 
 }  // namespace
 
-void write_fits(Page& page) {
-  page.heading("3 Fits");
-  page.text(
-      "Weighted by anything but area, the normal of a vertex is no polynomial in time ([theory, section "
-      "10](theory.md#10-fits-and-their-bounds)). `fit_weighting()` takes the quadratic through the weighted normals at "
-      "t "
-      "= 0, 1/2 and 1, which plays at the cost of the exact one, and proves for each vertex how far it is off at most. "
-      "Below, that bound, and the error over 101 samples of t, in degrees: median, 99 % and largest over whole "
-      "vertices "
-      "of bands of each morph, all segments. Vertices without a bound (it is 180 degrees) are counted, and left out.");
-
-  std::vector<std::vector<std::string>> rows, times;
+void measure_fits(Page& page) {
+  Cells header = {"microseconds per vertex"};
+  for (const WeightingInfo& info : kWeightings) {
+    if (info.weighting != Weighting::kArea) header.push_back(fmt::format("`{}`", info.name));
+  }
+  std::vector<Cells> rows, times;
   std::vector<double> ratios;
   std::map<std::string, double> largest_of;  // by "morph weighting"
-  double soup_error = 0, soup_bound = 0;
   std::size_t unbounded = 0;
   for (const Part& part : kParts) {
-    const Patches patches = patches_of(make_builtin_morph(part.morph).value(), part.bands, part.faces_in_band);
-    std::vector<std::string> time_row = {part.morph};
+    const std::string morph = part.morph;
+    const Patches patches = patches_of(make_builtin_morph(morph).value(), part.bands, part.faces_in_band);
+    Cells time_row = {morph};
     for (const WeightingInfo& info : kWeightings) {
       if (info.weighting == Weighting::kArea) continue;
       const Errors errors = measure(patches, info.weighting);
-      const auto three = [](const std::vector<double>& v) {
-        if (v.empty()) return std::vector<std::string>(3, "none");
-        return std::vector{degrees(quantile(v, 0.5)), degrees(quantile(v, 0.99)), degrees(largest(v))};
-      };
-      std::vector<std::string> row = {fmt::format("{}, `{}`", part.morph, info.name),
-                                      grouped(static_cast<double>(errors.elements))};
-      for (const auto& cells : {three(errors.bounds), three(errors.sampled)})
-        row.insert(row.end(), cells.begin(), cells.end());
+      Cells row = {fmt::format("{}, `{}`", morph, info.name), grouped(static_cast<double>(errors.elements))};
+      add_spread(row, errors.bounds);
+      add_spread(row, errors.sampled);
       row.push_back(percent(static_cast<double>(errors.unbounded) / static_cast<double>(errors.elements), 1));
       rows.push_back(row);
       time_row.push_back(fmt::format("{:.0f}", errors.microseconds));
       unbounded += errors.unbounded;
-      if (std::string_view(part.morph) == "soup") {
+      if (!errors.sampled.empty()) largest_of[fmt::format("{} {}", morph, info.name)] = largest(errors.sampled);
+      if (morph == "soup") {
         require(!errors.sampled.empty(), "soup has bounds");
-        soup_error = std::max(soup_error, largest(errors.sampled));
-        soup_bound = std::max(soup_bound, largest(errors.bounds));
+        require(largest(errors.sampled) < 1e-6, "a single face is fitted exactly");
+        require(largest(errors.bounds) == 0, "the bound of a single face is 0");
       } else {
         ratios.insert(ratios.end(), errors.ratios.begin(), errors.ratios.end());
-        if (!errors.sampled.empty()) largest_of[fmt::format("{} {}", part.morph, info.name)] = largest(errors.sampled);
       }
     }
     times.push_back(time_row);
   }
-  page.table({"morph", "vertices", "bound, median", "99 %", "max", "error, median", "99 %", "max", "no bound"}, rows);
-
-  page.bullet(fmt::format(
-      "No sampled error is above its bound; the page would not be written. The median bound is {:.1f} times the error "
-      "(99 %: {:.1f} times), where the error is not mere rounding.",
-      quantile(ratios, 0.5), quantile(ratios, 0.99)));
-  bool best = true;
-  for (const char* const morph : {"cloth", "bend", "twist"}) {
-    for (const char* const other : {"angle", "uniform", "max"})
-      best = best && largest_of[fmt::format("{} area-angle", morph)] < largest_of[fmt::format("{} {}", morph, other)];
+  for (const std::string morph : {"cloth", "bend", "twist"}) {
+    for (const char* const other : {" angle", " uniform", " max"})
+      require(largest_of.at(morph + " area-angle") < largest_of.at(morph + other), "area-angle fits best");
   }
-  require(best, "area-angle fits best");
-  page.bullet(
-      "`area-angle` fits best on cloth, bend and twist: of its two factors one is the exact quadratic, and only the "
-      "angle has to be fitted. The weightings without the area have to follow a unit vector, as `quadratic` does in "
-      "[the paper, measured again](paper.md).");
-  require(soup_error < 1e-6, "a single face is fitted exactly");
   require(unbounded > 0, "some vertices have no bound");
-  page.bullet(
-      "On eversion triangles pass close to a collapse, or lose their area on the way. There the weighted normal turns "
-      "faster than a quadratic can, or jumps. Some vertices get no bound, and those that get one may be far from the "
-      "error: intervals are worst where terms vanish.");
-  require(soup_bound == 0, "the bound of a single face is 0");
-  page.bullet(
-      "In soup each vertex has one face, whose direction is the same in all weightings: its exact curve is taken, and "
-      "there is nothing to prove.");
-  page.line("");
-
-  begin_block(page, "times");
-  page.text(
-      "Microseconds of one core to fit a vertex and to prove its bound. Nearly all of it is the bound. Of the machine "
-      "that made this page, which had other work to do:");
-  std::vector<std::string> header = {"microseconds per vertex"};
-  for (const WeightingInfo& info : kWeightings) {
-    if (info.weighting != Weighting::kArea) header.push_back(fmt::format("`{}`", info.name));
-  }
-  page.table(header, times);
-  end_block(page, "times");
+  page.table("fits", {"morph", "vertices", "bound, median", "99 %", "max", "error, median", "99 %", "max", "no bound"},
+             rows);
+  page.table("fit_times", header, times);
+  page.set({{"fit_samples", grouped(kSamples + 1)},
+            {"bound_median", fmt::format("{:.1f}", quantile(ratios, 0.5))},
+            {"bound_99", fmt::format("{:.1f}", quantile(ratios, 0.99))}});
 }
 
 }  // namespace chronormal::weightings

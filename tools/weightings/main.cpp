@@ -2,33 +2,16 @@
 // (tools/make_weightings). With --partial it leaves out what it cannot measure here: other libraries that it was built
 // without, files where CHRONORMAL_DATA does not say where they are.
 
-#include <fmt/core.h>
-
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "weightings/sections.h"
 
 namespace chronormal::weightings {
 namespace {
-
-void write_head(Page& page) {
-  page.line("# Weightings, fits and other motions, measured\n");
-  page.text(
-      "Which rule makes which normals, what it costs to keep a rule that is no polynomial in time, and what there is "
-      "for motion that is not straight. Every figure here is computed by the command that writes this page and its "
-      "picture, and a test runs that command and compares:");
-  page.line("    tools/make_weightings\n");
-  page.text(
-      "Nothing but the blocks of times changes from run to run. Why things are as they are is in "
-      "[theory.md](theory.md), "
-      "sections 8 to 11.");
-  page.line("Contents: [1 Rules](#1-rules) · [2 Files](#2-normals-in-files) · [3 Fits](#3-fits) ·");
-  page.line("[4 Curved motion](#4-curved-motion) · [5 Rigid and affine motion](#5-rigid-and-affine-motion)\n");
-}
 
 void write_page(const std::string& folder, bool partial) {
   const char* const data = std::getenv("CHRONORMAL_DATA");
@@ -38,17 +21,13 @@ void write_page(const std::string& folder, bool partial) {
 #endif
     if (data == nullptr) throw std::runtime_error("set CHRONORMAL_DATA to the folder of the real data");
   }
-  Page page(folder);
-  write_head(page);
-  write_rules(page);
-  write_files(page, data == nullptr ? "" : data);
-  write_fits(page);
-  write_curves(page);
-  write_transforms(page);
-  std::string markdown = page.markdown();
-  while (markdown.ends_with("\n\n")) markdown.pop_back();
-  const Status written = write_output(folder + "/weightings.md", markdown, true);
-  if (!written) throw std::runtime_error(written.error().text());
+  Page page("weightings/weightings.md.in", folder);
+  page.set("peers", peers_part(folder));
+  page.set("golden", data == nullptr ? "" : golden_part(folder, data));
+  measure_fits(page);
+  measure_curves(page);
+  measure_transforms(page);
+  page.write("weightings.md");
 }
 
 }  // namespace
@@ -66,8 +45,9 @@ Motion posed(const Motion& motion, std::size_t segment, double t) {
   return result;
 }
 
-void begin_block(Page& page, std::string_view name) { page.line(fmt::format("<!-- {} -->", name)); }
-void end_block(Page& page, std::string_view name) { page.line(fmt::format("<!-- end of {} -->\n", name)); }
+std::string degrees(double value, int decimals) {
+  return value < 1e-9 ? "0" : value < 1e-3 ? scientific(value, decimals) : ratio(value);
+}
 
 }  // namespace chronormal::weightings
 
@@ -77,11 +57,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: chronormal_weightings [--partial] FOLDER\n");
     return 2;
   }
-  try {
-    chronormal::weightings::write_page(argv[argc - 1], partial);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "chronormal_weightings: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return chronormal::pages::run("chronormal_weightings",
+                                [&] { chronormal::weightings::write_page(argv[argc - 1], partial); });
 }

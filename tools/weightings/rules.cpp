@@ -1,4 +1,4 @@
-// Section 1: the rule of each weighting, and which of them other libraries have.
+// Section 1: which of our weightings other libraries have, and the rules of theirs that are not ours.
 
 #include <fmt/core.h>
 
@@ -14,24 +14,14 @@
 #endif
 
 namespace chronormal::weightings {
+
+#ifndef CHRONORMAL_HAVE_PEERS
+
+std::string peers_part(const std::string&) { return ""; }
+
+#else
+
 namespace {
-
-struct Rule {
-  Weighting weighting;
-  const char* adds;
-  const char* users;
-};
-constexpr std::array kRules = {
-    Rule{Weighting::kArea, "its vector area: the longer the larger the face",
-         "trimesh, PyTorch3D, `vtkTriangleMeshPointNormals`, OpenMesh (`correct`)"},
-    Rule{Weighting::kAngle, "its unit normal times its angle at the vertex", "3ds Max, MeshLab"},
-    Rule{Weighting::kUniform, "its unit normal", "Gouraud 1971, `vtkPolyDataNormals`, OpenMesh (`fast`)"},
-    Rule{Weighting::kAreaAngle, "its vector area times its angle at the vertex", "Maya, Marvelous Designer"},
-    Rule{Weighting::kMax, "the cross product of its two edges over the squares of both lengths",
-         "Max 1999, exact on spheres"},
-};
-
-#ifdef CHRONORMAL_HAVE_PEERS
 
 using Normals = std::vector<Vec3d>;
 
@@ -106,13 +96,13 @@ Normals smallest_circles(const Segment& segment, const NormalGroups& groups) {
 }
 
 // The neighbours of each vertex, counter-clockwise; none where its faces do not close round it.
-std::vector<std::vector<std::uint32_t>> rings(const Topology& topology) {
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> opposite(topology.vertex_count());
+std::vector<std::vector<std::uint32_t> > rings(const Topology& topology) {
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t> > > opposite(topology.vertex_count());
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const auto face = topology.face(f);
     for (std::size_t c = 0; c < 3; ++c) opposite[face[c]].emplace_back(face[(c + 1) % 3], face[(c + 2) % 3]);
   }
-  std::vector<std::vector<std::uint32_t>> result(topology.vertex_count());
+  std::vector<std::vector<std::uint32_t> > result(topology.vertex_count());
   for (std::size_t v = 0; v < result.size(); ++v) {
     const auto& edges = opposite[v];
     std::vector<std::uint32_t> ring;
@@ -162,13 +152,11 @@ std::vector<peers::Method> all_methods() {
   return all;
 }
 
-void write_peers(Page& page) {
-  page.text(
-      "What other libraries compute, held against each of our weightings: the difference in degrees, mean and largest "
-      "over the vertices of three of our morphs in the middle of their (first) segment, where nothing is symmetric any "
-      "more. They get the same float32 positions. The last column is the rule that reproduces them, with the largest "
-      "difference that is left; the rules that are not ours follow below.");
-  std::vector<std::string> header = {"degrees, mean / max"};
+}  // namespace
+
+std::string peers_part(const std::string& folder) {
+  Page part("weightings/peers.md.in", folder);
+  Cells header = {"degrees, mean / max"};
   for (const WeightingInfo& info : kWeightings) header.push_back(fmt::format("`{}`", info.name));
   header.emplace_back("rule, max");
 
@@ -183,14 +171,14 @@ void write_peers(Page& page) {
     std::vector<bool> inside, outside;
     for (const Vec3d& n : loops) inside.push_back(n != Vec3d{}), outside.push_back(n == Vec3d{});
 
-    std::vector<std::vector<std::string>> rows;
+    std::vector<Cells> rows;
     for (const peers::Method& method : all_methods()) {
       const auto peer =
           std::find_if(kPeers.begin(), kPeers.end(), [&](const Peer& p) { return p.call == method.call; });
       const Normals theirs = method.normals({motion.keyframes[0].positions, motion.topology.corners()});
       const std::string_view rule = peer->rule;
       const bool loop = rule == "Loop limit";
-      std::vector<std::string> row = {fmt::format("{} `{}`{}", method.library, method.call, loop ? " (inside)" : "")};
+      Cells row = {fmt::format("{} `{}`{}", method.library, method.call, loop ? " (inside)" : "")};
       double match = rule == "smallest circle" ? difference(theirs, circles, all).largest
                                                : difference(theirs, loops, inside).largest;
       for (const WeightingInfo& info : kWeightings) {
@@ -208,54 +196,16 @@ void write_peers(Page& page) {
     apart = std::max(apart, difference(all_weighted_normals_at(segment, groups, Weighting::kArea, 0),
                                        all_weighted_normals_at(segment, groups, Weighting::kUniform, 0), all)
                                 .largest);
-    page.text(fmt::format("**{}**, {} vertices:", name, grouped(static_cast<double>(count))));
-    page.table(header, rows, header.size() - 1);
+    part.set(fmt::format("{}_vertices", name), grouped(static_cast<double>(count)));
+    part.table(name, header, rows, header.size() - 1);
   }
   require(worst_match < 0.001, "every library is matched by a rule");
-  page.bullet(fmt::format(
-      "**VTK and OpenMesh** have `area` and `uniform`, each of them both, under names that do not say so: the "
-      "`correct` one of OpenMesh is `area`, the `fast` one `uniform`. Ours are theirs, to rounding. To take one for "
-      "the other costs up to {:.1f} degrees here, on triangles that are all of much the same size.",
-      apart));
-  page.bullet(
-      "**CGAL** adds nothing up: its normal is the one that sees the face farthest from it best (Aubry and Löhner, *On "
-      "the most 'normal' normal*; its manual says \"the average\"), the centre of the smallest circle around the unit "
-      "normals of the faces. No "
-      "weighting "
-      "is that, so no column comes out at 0. Its circles may miss a normal by 1.7e-4 of the cosine, so that on a flat "
-      "neighbourhood, within a degree, any two of the faces are enough; with that tolerance the rule is reproduced "
-      "(`tools/weightings/rules.cpp`). It can jump while the mesh moves, so there is no curve to fit.");
   require(loop_at_boundary > 90, "the Loop mask is of no use at a boundary");
-  page.bullet(fmt::format(
-      "**Loop** (OpenMesh) is the normal of another surface, the limit of the mesh under Loop's subdivision: the cross "
-      "product of two sums over the neighbours, which looks at no face, nor at the vertex itself. The sums move on "
-      "straight lines "
-      "as the vertices do, so that this is a quadratic in time too. At a boundary the call goes on as if the ring were "
-      "closed, "
-      "and is up to {:.0f} degrees off `area`; the rows leave those vertices out.",
-      loop_at_boundary));
-  page.line("");
+  part.set({{"area_from_uniform", fmt::format("{:.1f}", apart)},
+            {"loop_at_boundary", fmt::format("{:.0f}", loop_at_boundary)}});
+  return part.markdown();
 }
 
 #endif
-
-}  // namespace
-
-void write_rules(Page& page) {
-  page.heading("1 Rules");
-  page.text(
-      "The normal of a vertex is a sum over the faces around it. What each of them adds, in words (the formulas are in "
-      "[theory, section 9](theory.md#9-weightings)), and who adds it so:");
-  std::vector<std::vector<std::string>> rows;
-  for (const Rule& rule : kRules)
-    rows.push_back({fmt::format("`{}`", weighting_name(rule.weighting)), rule.adds, rule.users});
-  page.table({"name", "each face adds", "used by"}, rows, 0);
-
-  begin_block(page, "peers");
-#ifdef CHRONORMAL_HAVE_PEERS
-  write_peers(page);
-#endif
-  end_block(page, "peers");
-}
 
 }  // namespace chronormal::weightings

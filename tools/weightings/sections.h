@@ -1,31 +1,31 @@
-/// The sections of docs/weightings.md, a file each.
+/// The sections of docs/weightings.md, a file each. Each measures what its section of weightings.md.in has places for.
 #ifndef WEIGHTINGS_SECTIONS_H_
 #define WEIGHTINGS_SECTIONS_H_
 
 #include <filesystem>
+#include <string>
 
 #include "chronormal/chronormal.h"
+#include "support/numbers.h"
 #include "support/page.h"
-#include "support/statistics.h"
 
 namespace chronormal::weightings {
 
 using namespace pages;
 
-inline constexpr double kDegreesPerRadian = 57.29577951308232;
-
-void write_rules(Page& page);  ///< our weightings, and those of other libraries where they are built
-void write_files(Page& page, const std::filesystem::path& data);  ///< normals in files; no data: none are measured
-void write_fits(Page& page);        ///< quadratics in place of weighted normals: error, bound, cost
-void write_curves(Page& page);      ///< curved motion: exact, and cut into straight pieces
-void write_transforms(Page& page);  ///< rigid and affine motion
+/// Our weightings beside those of other libraries: the part of the page, empty where they are not built.
+[[nodiscard]] std::string peers_part(const std::string& folder);
+/// Normals in files: the part of the page, empty where there is no data.
+[[nodiscard]] std::string golden_part(const std::string& folder, const std::filesystem::path& data);
+void measure_fits(Page& page);        ///< quadratics in place of weighted normals: error, bound, cost
+void measure_curves(Page& page);      ///< curved motion: exact, and cut into straight pieces
+void measure_transforms(Page& page);  ///< rigid and affine motion
 
 /// A motion of one mesh that stands still: the positions of a segment at t, as float32.
 [[nodiscard]] Motion posed(const Motion& motion, std::size_t segment, double t);
 
-/// Begins and ends a part that a test compares only where it can be measured; the word is the reason.
-void begin_block(Page& page, std::string_view name);
-void end_block(Page& page, std::string_view name);
+/// 0 below 1e-9, and so many decimals where powers of ten take over.
+[[nodiscard]] std::string degrees(double value, int decimals = 0);
 
 }  // namespace chronormal::weightings
 

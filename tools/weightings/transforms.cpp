@@ -89,41 +89,23 @@ Worst measure(const Case& one, const Topology& topology, const std::vector<Vec3d
   return worst;
 }
 
-std::string degrees(double value) { return value < 1e-9 ? "0" : ratio(value); }
-
 }  // namespace
 
-void write_transforms(Page& page) {
-  page.heading("5 Rigid and affine motion");
-  page.text(
-      "A node that moves takes its mesh along, and `NormalMatrix`, the inverse transpose, its normals ([theory, "
-      "section "
-      "12](theory.md#12-rigid-and-affine-motion)). Vertex normals of twist (at t = 0.5) taken along, against those "
-      "recomputed from the moved positions in double: the largest angle in degrees over 21 times of a node that goes "
-      "from "
-      "where it stands to what the row says, as glTF interpolates it (0: below 1e-9). Beside it what the linear part "
-      "itself would do to them, and the matrix to normals weighted by angle:");
+void measure_transforms(Page& page) {
   const Motion motion = posed(make_builtin_morph("twist").value(), 0, 0.5);
   std::vector<Vec3d> rest;
   for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) rest.push_back(to_double(motion.segment(0).from[v]));
-  std::vector<std::vector<std::string>> rows;
-  bool exact = true, similar = true;
+  std::vector<Cells> rows;
   for (const Case& one : cases()) {
     const Worst worst = measure(one, motion.topology, rest);
     rows.push_back({one.name, degrees(worst.matrix), degrees(worst.linear_part), degrees(worst.by_angle)});
-    exact = exact && worst.matrix < 1e-9;
+    require(worst.matrix < 1e-9, "the inverse transpose is exact for area weights");
     const bool similarity = one.to.scale.x == one.to.scale.y && one.to.scale.y == one.to.scale.z && one.shear == 0;
-    similar = similar && similarity == (worst.by_angle < 1e-9) && similarity == (worst.linear_part < 1e-9);
+    require(similarity == (worst.by_angle < 1e-9) && similarity == (worst.linear_part < 1e-9),
+            "other weights, and the linear part, are right for similarities only");
   }
-  page.table({"motion", "inverse transpose", "linear part", "by angle"}, rows);
-  require(exact, "the inverse transpose is exact for area weights");
-  require(similar, "other weights, and the linear part, are right for similarities only");
-  page.text(
-      "Area weights go along with every affine motion, since the matrix of a sum is the sum of the matrices. Other "
-      "weights "
-      "change where angles do: they go along with rotations and uniform scales only, and so do normals that are moved "
-      "like "
-      "positions. A mirror turns every face inside out; the matrix keeps the side that was outside.");
+  page.table("transforms", {"motion", "inverse transpose", "linear part", "by angle"}, rows);
+  page.set("transform_samples", grouped(kSamples + 1));
 }
 
 }  // namespace chronormal::weightings

@@ -5,8 +5,8 @@
 /// counted as degenerate and left out; one for which only the scheme has no direction is counted as missing.
 ///
 /// The exact normals that every scheme is held against are computed as the paper writes them, by the cross product
-/// (eq. 1) of vertices interpolated at t, in double and from nothing but positions: no control normals and no scheme, so
-/// that an error of those cannot hide here.
+/// (eq. 1) of vertices interpolated at t, in double and from nothing but positions: no control normals and no scheme,
+/// so that an error of those cannot hide here.
 ///
 /// Units      radians inside; what is shown to people is in degrees.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_H_
@@ -21,8 +21,6 @@
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
-
-inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
 /// Writes n(t) of a range of faces, and (0, 0, 0) where n(t) is zero: where it is so small against the positions that
 /// it is made of (below 1e-10 of their products) that rounding would decide its direction. Threads: pure.

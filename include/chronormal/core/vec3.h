@@ -78,6 +78,9 @@ template <class S>
   return unit(cross(u, Vec3d{0, 0, 1}));
 }
 
+/// Angles are in radians; what is shown to people is in degrees.
+inline constexpr double kDegreesPerRadian = 57.295779513082320877;
+
 /// Angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. By atan2, never by acos, which loses
 /// all angles below 1e-8 in double and below 3e-4 in float.
 [[nodiscard]] inline double angle_between(const Vec3d& a, const Vec3d& b) noexcept {

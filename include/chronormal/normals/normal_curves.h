@@ -29,9 +29,8 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
@@ -40,11 +39,10 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/encodings.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/core/memory.h"
 
 namespace chronormal {
 
-struct CurveWeights;
+struct CurveData;
 
 /// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians
@@ -59,15 +57,17 @@ struct CurveOptions {
 
 class NormalCurves {
  public:
-  NormalCurves() = default;
+  /// Creates curves of no elements.
+  NormalCurves() noexcept;
   /// Curves can be moved, which leaves empty ones, but not copied.
-  NormalCurves(NormalCurves&& other) noexcept { *this = std::move(other); }
-  NormalCurves& operator=(NormalCurves&& other) noexcept;
+  NormalCurves(NormalCurves&&) noexcept;
+  NormalCurves& operator=(NormalCurves&&) noexcept;
+  ~NormalCurves();
 
   /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
-  /// The same of all faces of a segment, or of all elements of the groups, straight from positions, without an array
+  /// Prepares those of all faces of a segment, or of all elements of groups, straight from positions, without an array
   /// of control normals in between. (Meshes in no order need more for a while: 32 bytes a vertex, and groups of them
   /// 128 a face up to half a gigabyte.) Where many segments are prepared one after the other, name the curves of the
   /// one before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new
@@ -99,12 +99,12 @@ class NormalCurves {
   /// keeps_lengths() must hold; t in [0, 1]; result must have size() elements
   void normals(double t, VectorView<float> result) const noexcept;
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] bool keeps_lengths() const noexcept { return keeps_lengths_; }
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] bool keeps_lengths() const noexcept;
   /// How many elements have true degree 0, 1 and 2.
-  [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept { return degree_counts_; }
+  [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
   /// How many elements are evaluated in double.
-  [[nodiscard]] std::size_t flagged_count() const noexcept { return flagged_.size(); }
+  [[nodiscard]] std::size_t flagged_count() const noexcept;
   /// Memory that is kept, in bytes, but for what fills up the last block, and what is kept for the next `reuse`.
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// How many elements are kept in blocks of each number of bytes.
@@ -116,38 +116,12 @@ class NormalCurves {
 
  private:
   friend class NormalPlayback;
-  friend class CurveBuilder;
 
-  // Neighbouring blocks of one kind (normals/curves/kernels/curve_blocks.h).
-  struct Run {
-    std::size_t first_block = 0;
-    std::size_t block_count = 0;
-    std::size_t offset = 0;  // of the first block, in blocks_
-    int kind = 0;
-  };
-  template <class Output>
-  std::size_t evaluate_range(IndexRange range, double t, const CurveWeights& weights,
-                             const Output& output) const noexcept;
-  template <class Output>
-  std::size_t write_flagged(IndexRange range, double t, const Output& output) const noexcept;
-  std::size_t write_flagged(double t, VectorView<float> result) const noexcept;
-  template <class Output>
-  std::size_t evaluate_all(double t, const Output& output, Threads threads) const;
-  template <class Output>
-  std::size_t evaluate_many(std::span<const double> times, std::span<const Output> outputs, std::size_t step,
-                            Threads threads) const;
-  template <class Body>
-  std::size_t over_pieces(Threads threads, std::size_t piece, Body body) const;
+  explicit NormalCurves(std::unique_ptr<CurveData> data) noexcept;
+  [[nodiscard]] const CurveData& data() const noexcept;
+  [[nodiscard]] static CurveData* data_of(NormalCurves* reuse);
 
-  std::size_t size_ = 0;
-  bool keeps_lengths_ = true;
-  std::array<std::size_t, 3> degree_counts_{};
-  AlignedBytes blocks_;
-  std::vector<Run> runs_;
-  std::vector<std::int16_t> exponents_;  // a block holds n * 2^-exponent; empty where all are 0
-  std::vector<std::size_t> flagged_;     // elements that are evaluated in double, ascending
-  std::vector<ControlNormals> exact_;    // of these
-  AlignedArray<float> scratch_;          // of preparing, for the next one
+  std::unique_ptr<CurveData> data_;  // nothing: of no elements
 };
 
 }  // namespace chronormal

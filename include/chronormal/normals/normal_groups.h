@@ -1,6 +1,6 @@
 /// Which corners of faces share one normal, and the control normals of those that do.
 ///
-/// The normal of a vertex is a sum over the faces around it, and the normal of a corner is a sum over some of them: those
+/// The normal of a vertex is a sum over the faces around it, and that of a corner is a sum over some of them: those
 /// across edges that are smooth. Both are a partition of the corners into *elements*; each element has one normal. Two
 /// triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
@@ -13,8 +13,8 @@
 /// same element: copies of a vertex that are one point of the surface, corners across a smooth edge. Their normals are
 /// then the same to the last bit.
 ///
-/// Files cut a surface at seams of texture and at hard edges: there, two or more vertices lie at one *point*. Where they
-/// lie at one point in every keyframe, they are one point of the surface that deforms, and a seam must not show:
+/// Files cut a surface at seams of texture and at hard edges: there, two or more vertices lie at one *point*. Where
+/// they lie at one point in every keyframe, they are one point of the surface that deforms, and a seam must not show:
 ///
 ///     vertex            0  1  2  3  4        1 and 3 coincide in all keyframes, 2 and 4 in the first one only
 ///     point_of_vertex   0  1  2  1  3
@@ -72,8 +72,8 @@ class NormalGroups {
  public:
   NormalGroups() = default;
 
-  /// One element for each point, with all of its corners; outputs are vertices. Elements are numbered as the points.
-  /// points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
+  /// Makes an element of each point, with all of its corners. Outputs are vertices; elements are numbered as points.
+  /// The points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
 
   /// Outputs are corners. Two corners of a point share a normal if their faces have an edge in common that begins or
@@ -82,8 +82,8 @@ class NormalGroups {
   /// edge around a point, across angles that add up, and stops at boundaries: two fans that touch in a point only stay
   /// apart. Edges are between points, whatever their direction. More exactly:
   ///   * between two faces that are wound in opposite ways the angle is taken as it is, near 180 degrees: a hard edge;
-  ///   * an edge of 3 to 16 faces is smooth between those pairs of them that satisfy the angle; an edge of more is
-  ///   hard;
+  ///   * an edge of 3 to 16 faces is smooth between those pairs of them that satisfy the angle;
+  ///     an edge of more is hard;
   ///   * a face without a normal in keyframe 0 counts as 180 degrees from every other.
   /// A crease angle of 180 makes every edge smooth, whatever its faces. Errors: kUsage where it is outside [0, 180].
   [[nodiscard]] static Result<NormalGroups> by_crease_angle(const Motion& motion, const Points& points, double degrees);
@@ -103,7 +103,7 @@ class NormalGroups {
                                                              VectorView<const float> normal_of_corner,
                                                              double degrees = kSplitNormalTolerance);
 
-  /// How many elements there are: different normals.
+  /// How many elements, and so different normals, there are.
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size() - 1; }
   /// The corners that share the normal of element e, as indices into Topology::corners(); none for an isolated vertex.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t e) const noexcept { return part(corners_, e); }
@@ -121,8 +121,8 @@ class NormalGroups {
   /// How many elements have no corner: isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
-  /// Frees what only sums by angle need: corners(e), element_of_corner() and, where outputs are corners, those must not
-  /// be asked for from then on.
+  /// Frees what only sums by angle need. From then on corners(e), element_of_corner() and, where outputs are corners,
+  /// element_of_output() must not be called.
   void forget_corners() noexcept;
 
   /// Copies the normal of each element to every output that shows it.

@@ -20,11 +20,10 @@
 #define CHRONORMAL_NORMALS_PLAYBACK_H_
 
 #include <cstddef>
-#include <vector>
+#include <memory>
 
 #include "chronormal/core/views.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/core/memory.h"
 
 namespace chronormal {
 
@@ -35,34 +34,27 @@ inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
 class NormalPlayback {
  public:
-  /// start and every start + k step that is played lie in [0, 1]. anchor_interval 0 means: never after the first time.
+  /// Begins at start. It and every start + k step that is played must lie in [0, 1]. With an anchor_interval of 0 the
+  /// state is never made anew.
   NormalPlayback(const NormalCurves& curves, double start, double step,
                  std::size_t anchor_interval = kDefaultAnchorInterval);
+  NormalPlayback(NormalPlayback&&) noexcept;
+  NormalPlayback& operator=(NormalPlayback&&) noexcept;
+  ~NormalPlayback();
 
   /// Writes the unit normals at the current t, as NormalCurves::unit_normals() does but for the drift, and steps on.
   /// Returns the number of (0, 0, 0) written. result must have as many vectors as the curves have elements
   std::size_t next(VectorView<float> result) noexcept;
 
   /// How many elements are not played but evaluated at random access, the flagged and compact ones of the curves aside.
-  [[nodiscard]] std::size_t unplayed_count() const noexcept { return unplayed_.size(); }
+  [[nodiscard]] std::size_t unplayed_count() const noexcept;
   /// Memory of the state, in bytes.
-  [[nodiscard]] std::size_t bytes() const noexcept { return state_.size() * sizeof(float); }
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  void anchor(double t) noexcept;
+  struct Parts;
 
-  const NormalCurves* curves_;
-  double start_, step_;
-  std::size_t anchor_interval_;
-  std::size_t index_ = 0;      // of the current step
-  AlignedArray<float> state_;  // of the blocks that are played, in their order
-
-  // An element that is not played.
-  struct Unplayed {
-    std::size_t element;
-    ControlNormals normals;
-  };
-  std::vector<Unplayed> unplayed_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace chronormal

@@ -13,20 +13,21 @@
 ///            as x y z, 32 bytes for each.
 /// Order      sums are added in the order of groups.faces(): shuffling the faces of the mesh gives the same bits.
 /// Threads    unit_normals() uses the scratch of the object: one call at a time. On one thread it does not allocate or
-///            throw. The same bits on every instruction
-///            set, compiler and number of threads.
+///            throw. The same bits on every instruction set, compiler and number of threads.
 /// Speed      triangles whose positions are packed, and results aligned to 64 bytes, as planes or packed, are fastest;
 ///            polygons go one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_H_
 
 #include <cstddef>
+#include <memory>
+#include <vector>
 
 #include "chronormal/core/parallel.h"
+#include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/core/memory.h"
 
 namespace chronormal {
 
@@ -35,16 +36,24 @@ namespace chronormal {
 /// t in [0, 1]; result must have faces.count elements; faces must lie inside the topology
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept;
 
+/// The easy way from a motion and a time in seconds to normals: finds the segment of the time, and returns the unit
+/// normals of all faces, (F, 3), or those of all outputs of groups, (V, 3) or (corners, 3). On all cores. Everything is
+/// made anew in each call; for many times keep a SegmentNormals for each segment, and ask find_instant() for its t.
+/// The motion must be valid, the groups of its topology. Errors: those of find_instant().
+[[nodiscard]] Result<std::vector<float>> unit_normals_at(const Motion& motion, double time);
+[[nodiscard]] Result<std::vector<float>> unit_normals_at(const Motion& motion, const NormalGroups& groups, double time);
+
 class NormalRecompute {
  public:
-  /// Of no elements.
-  NormalRecompute() = default;
-  /// Can be moved, not copied; what was moved from may only be destroyed or assigned to.
-  NormalRecompute(NormalRecompute&&) = default;
-  NormalRecompute& operator=(NormalRecompute&&) = default;
-  /// Of the faces of a segment. Throws std::bad_alloc only.
+  /// Creates an object of no elements.
+  NormalRecompute() noexcept;
+  /// Objects can be moved, which leaves one of no elements, but not copied.
+  NormalRecompute(NormalRecompute&&) noexcept;
+  NormalRecompute& operator=(NormalRecompute&&) noexcept;
+  ~NormalRecompute();
+  /// Makes the normals of the faces of a segment. Throws std::bad_alloc only.
   explicit NormalRecompute(const Segment& segment);
-  /// Of the elements of the groups, which must be of the topology of the segment and outlive the object.
+  /// Makes those of the elements of groups, which must be of the topology of the segment and outlive the object.
   NormalRecompute(const Segment& segment, const NormalGroups& groups);
 
   /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
@@ -55,20 +64,12 @@ class NormalRecompute {
   /// How many elements there are.
   [[nodiscard]] std::size_t size() const noexcept;
   /// Scratch memory, in bytes.
-  [[nodiscard]] std::size_t bytes() const noexcept { return pairs_.size() * sizeof(float) + normals_.size(); }
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  class Call;
-  friend std::size_t unit_normals_at(const Segment&, IndexRange, double, VectorView<float>) noexcept;
+  struct Parts;
 
-  void choose_positions();
-
-  Segment segment_;
-  const NormalGroups* groups_ = nullptr;  // nothing: faces
-  bool vertices_are_near_ = true;         // those of neighbouring faces are neighbours in memory
-  AlignedArray<float> pairs_;             // x y z _ of both ends of each vertex, or nothing
-  std::size_t window_ = 0;                // normals of faces, a power of two; 0: all
-  AlignedBytes normals_;                  // of faces, for groups
+  std::unique_ptr<Parts> parts_;  // nothing: of no elements
 };
 
 }  // namespace chronormal

@@ -83,7 +83,7 @@ void face_normals_at(const Segment& segment, double t, IndexRange faces, std::sp
 void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, double t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
-/// The same for all elements. On all cores.
+/// Returns those of all elements. Runs on all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
                                                          Weighting weighting, double t);
 
@@ -93,8 +93,8 @@ struct WeightingFit {
 };
 
 /// Fits all elements of a segment. For area the control normals are those of all_group_control_normals(), and the
-/// bounds are 0. On all cores; some 0.1 ms per element of mild motion, up to 1.5 ms where it is strong. The same bits
-/// on every number of threads.
+/// bounds are 0. Runs on all cores, and takes some 0.1 ms per element of mild motion, up to 1.5 ms where it is strong.
+/// The bits are the same on every number of threads.
 [[nodiscard]] WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting);
 
 }  // namespace chronormal

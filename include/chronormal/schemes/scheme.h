@@ -54,12 +54,12 @@ struct OperationCounts {
 };
 
 /// Sequential access: a scheme that is played at equal steps of t, each made from the one before.
-class Playback {
+class SchemePlayback {
  public:
-  Playback() = default;
-  Playback(const Playback&) = delete;
-  Playback& operator=(const Playback&) = delete;
-  virtual ~Playback() = default;
+  SchemePlayback() = default;
+  SchemePlayback(const SchemePlayback&) = delete;
+  SchemePlayback& operator=(const SchemePlayback&) = delete;
+  virtual ~SchemePlayback() = default;
 
   /// Writes the unit normals at the current t, and steps on. Returns how many (0, 0, 0) were written.
   /// result must have as many vectors as the block has elements
@@ -89,7 +89,8 @@ class Scheme {
   /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials by forward differences, arcs by a
   /// rotation per step. The state drifts with every step and is made anew every anchor_interval steps (0: never).
   /// Returns nothing where the scheme has no incremental form. The scheme must outlive the playback, unprepared anew.
-  [[nodiscard]] virtual std::unique_ptr<Playback> play(double start, double step, std::size_t anchor_interval) const {
+  [[nodiscard]] virtual std::unique_ptr<SchemePlayback> play(double start, double step,
+                                                             std::size_t anchor_interval) const {
     (void)start, (void)step, (void)anchor_interval;
     return nullptr;
   }

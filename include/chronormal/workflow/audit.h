@@ -7,7 +7,7 @@
 ///     authored offset    the angle between a stored base normal and the weighted normal of the geometry
 ///     motion error       the angle between what is shown at a sample and what should be, the offset kept
 ///
-///     glTF       the rotation from n(0) to the stored N, fixed per vertex (workflow/gltf_shading.h)
+///     glTF       the rotation from n(0) to the stored N, fixed per vertex
 ///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///
@@ -159,8 +159,8 @@ struct Audit {
 /// Audits the targets of all meshes, each alone, and all weight tracks. Extra targets of a bake are no subjects: with
 /// each target alone they get the products that they stand for, and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
-/// Errors: of GltfDocument and read_gltf_shading(); kUsage for an animation that is not there, and fewer than 2
-/// samples.
+/// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
+/// animation that is not there, and fewer than 2 samples.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject

@@ -21,7 +21,6 @@
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/gltf_shading.h"
 
 namespace chronormal {
 
@@ -80,9 +79,9 @@ struct GltfBake {
 ///            extra target. Exact is meant at these; other weights are as exact but for pairs that got none.
 /// Fits       by weightings other than area, exact works where no two targets move a normal at once.
 ///
-/// Errors: of GltfDocument and of read_gltf_shading(); kInvalidInput where nothing moves, more than most_bytes would be
-/// added (with what it would take), extras of a mesh are no object, base normals to replace are compressed by Draco, or
-/// an extension drives weights; kUsage for a weighting that cannot be exact.
+/// Errors: of GltfDocument; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
+/// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
+/// compressed by Draco, or an extension drives weights; kUsage for a weighting that cannot be exact.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {

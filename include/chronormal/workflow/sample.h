@@ -6,9 +6,10 @@
 ///                be negative or more than 1, which extrapolates
 ///     neither    of a mesh that stands still: one keyframe and no segment
 ///
-/// Area-weighted normals at times are exact: the control normals of a segment are made once and evaluated in float32
-/// to 1e-6 rad (normals/normal_curves.h). Other weightings are no polynomials and are computed anew at each time, and
-/// so are all normals of weights; both in double, from positions that are not rounded to float32 before.
+/// Area-weighted unit normals at times are exact to 1e-6 rad, by curves of the segment or from its positions, whichever
+/// costs less for as many times as are asked for there (normals/segment_normals.h). All others are computed anew, in
+/// double, from positions that are not rounded to float32 before: areas themselves, other weightings, which are no
+/// polynomials, and normals of weights.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those
 ///            that show the same element have the same bits.
@@ -28,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,8 +39,8 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 
 namespace chronormal {
@@ -93,9 +95,9 @@ class NormalSampler {
   /// Errors: of make_groups(); kUsage for faces with another weighting than area, and for the length kArea with one.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
 
-  /// The pose at a time. Errors: of find_instant(). Cost: once per segment the control normals, as long as times of one
-  /// segment follow each other; all faces anew for weightings other than area.
-  [[nodiscard]] Result<Pose> at_time(double time);
+  /// The pose at a time. evaluations says how many times of its segment will follow each other, this one included; what
+  /// is prepared for the first of them serves all. Errors: of find_instant()
+  [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
 
   /// The pose of weights. Errors: of check_weights(); kUsage for weights with which a vertex leaves the range of
   /// float32.
@@ -118,17 +120,16 @@ class NormalSampler {
 
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
-  // By curves, which are kept for the next moment of the segment.
-  [[nodiscard]] std::vector<float> area_normals(const Segment& segment, double t);
+  // By area, and prepared for the next moment of the segment.
+  [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
   // Anew.
   [[nodiscard]] std::vector<float> weighted_normals(const Segment& segment, double t) const;
-  [[nodiscard]] Pose at(const Segment& segment, double t);
 
   const Motion* motion_;
   SampleOptions options_;
-  NormalGroups groups_;                       // but for faces
-  NormalCurves curves_;                       // of one segment
-  std::optional<std::size_t> curve_segment_;  // which
+  std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
+  std::optional<SegmentNormals> segment_normals_;  // of one segment
+  std::size_t segment_ = 0;                        // which
 };
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };

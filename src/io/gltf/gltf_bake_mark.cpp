@@ -10,11 +10,14 @@
 namespace chronormal::gltf {
 namespace {
 
+constexpr std::size_t kVersion = 1;
+constexpr const char* kBase = "base";
+
 // A factor: the index of a target, or "base".
 std::size_t read_factor(const JsonView& factors, const nlohmann::json& value, std::size_t index,
                         std::size_t target_count) {
   if (value.is_string()) {
-    if (value.get_ref<const std::string&>() == "base") return GltfExtraTarget::kBase;
+    if (value.get_ref<const std::string&>() == kBase) return GltfExtraTarget::kBase;
     factors.item(index).complain("a factor is the index of a target or \"base\"");
     return 0;
   }
@@ -53,7 +56,7 @@ void check_extras(const JsonView& list, const std::vector<GltfExtraTarget>& extr
 GltfBakeMark read_mark(const JsonView& view, const nlohmann::json& value, std::size_t target_count) {
   GltfBakeMark mark;
   const std::size_t version = view.required_count("version", std::size_t{1} << 31);
-  if (version != 1) view.complain("version", "it was written by another version of chronormal");
+  if (version != kVersion) view.complain("version", "it was written by another version of chronormal");
   mark.encode = view.required_text("encode");
   if (mark.encode != "exact" && mark.encode != "endpoint") view.complain("encode", "it is neither exact nor endpoint");
   mark.sequence = view.flag("sequence");
@@ -91,6 +94,15 @@ void read_bake_mark(const nlohmann::json& document, const std::string& pointer, 
     mesh.mark_fault = complaint.first();
   else
     mesh.mark = std::move(mark);
+}
+
+nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark) {
+  using Json = nlohmann::ordered_json;
+  const auto factor = [](std::size_t i) { return i == GltfExtraTarget::kBase ? Json(kBase) : Json(i); };
+  Json extras = Json::array();
+  for (const GltfExtraTarget& extra : mark.extras)
+    extras.push_back({{"target", extra.target}, {"factors", Json::array({factor(extra.i), factor(extra.j)})}});
+  return {{"version", kVersion}, {"encode", mark.encode}, {"sequence", mark.sequence}, {"extras", std::move(extras)}};
 }
 
 }  // namespace chronormal::gltf

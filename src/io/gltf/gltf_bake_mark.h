@@ -1,4 +1,4 @@
-/// Reads extras.chronormal of a mesh: what a bake wrote there. Private to io.
+/// The mark that a bake leaves in extras.chronormal of a mesh: written and read here. Private to io and workflow.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
 #define CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
 
@@ -13,6 +13,9 @@ namespace chronormal::gltf {
 /// they never make a file unreadable. pointer is that of the mesh, name that of the file; mesh has its target_count.
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
+
+/// A mark as it is written.
+[[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
 }  // namespace chronormal::gltf
 

@@ -13,6 +13,7 @@
 #include "io/gltf/gltf_edit_layout.h"
 #include "io/json/json.h"
 #include "io/json/json_text.h"
+#include "io/json/json_writer.h"
 
 namespace chronormal {
 

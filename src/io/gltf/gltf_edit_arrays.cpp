@@ -1,10 +1,8 @@
 #include "io/gltf/gltf_edit_arrays.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -12,11 +10,12 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
+#include "io/json/json_writer.h"
 
 namespace chronormal::gltf {
 namespace {
 
-constexpr int kFloat = 5126, kArrayBuffer = 34962;
+constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
 // What the JSON of a sparse accessor has more than that of a dense one, about.
 constexpr std::size_t kSparseJson = 130;
 
@@ -29,41 +28,23 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// A float as JSON that reads back to it, as a double too: readers compare bounds with what they find.
-void append_number(std::string& text, float value) {
-  std::array<char, 32> digits{};
-  const double number = value == 0 ? 0 : static_cast<double>(value);  // no -0
-  const auto [end, code] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-  text.append(digits.data(), end);
-}
-
-std::string bounds_of(std::span<const float> values, std::size_t components) {
-  std::string least = ",\"min\":[", most = "],\"max\":[";
+// The smallest or the largest number of each component, as JSON. Readers compare it in double with what they find in the
+// array, so that its digits have to read back as a double.
+template <class Choose>
+std::string bound_of(std::span<const float> values, std::size_t components, const Choose& choose) {
+  std::string json = "[";
   for (std::size_t c = 0; c < components; ++c) {
-    float low = values[c], high = values[c];
-    for (std::size_t i = c; i < values.size(); i += components) {
-      low = std::min(low, values[i]);
-      high = std::max(high, values[i]);
-    }
-    if (c > 0) {
-      least += ',';
-      most += ',';
-    }
-    append_number(least, low);
-    append_number(most, high);
+    float bound = values[c];
+    for (std::size_t i = c; i < values.size(); i += components) bound = choose(bound, values[i]);
+    json.append(c > 0 ? "," : "").append(json_number(bound == 0 ? 0.0 : double{bound}));  // no -0
   }
-  return least + most + "]";
-}
-
-void append_field(std::string& text, const char* key, std::size_t value) {
-  if (!text.ends_with('{')) text += ',';
-  text.append("\"").append(key).append("\":").append(std::to_string(value));
+  return json + "]";
 }
 
 // "bufferView":3,"byteOffset":16
-void append_place(std::string& text, std::size_t view, std::size_t offset) {
-  append_field(text, "bufferView", view);
-  if (offset > 0) append_field(text, "byteOffset", offset);
+void add_place(std::size_t view, std::size_t offset, JsonObject& object) {
+  object.add("bufferView", view);
+  if (offset > 0) object.add("byteOffset", offset);
 }
 
 }  // namespace
@@ -72,7 +53,10 @@ NewArrays::Array NewArrays::encode(std::span<const float> values, std::size_t co
   Array array;
   array.components = components;
   array.count = values.size() / components;
-  if (options.bounds) array.bounds = bounds_of(values, components);
+  if (options.bounds) {
+    array.least = bound_of(values, components, [](float a, float b) { return std::min(a, b); });
+    array.most = bound_of(values, components, [](float a, float b) { return std::max(a, b); });
+  }
 
   std::size_t used = 0, last_used = 0;
   const auto element = [&](std::size_t i) { return values.subspan(i * components, components); };
@@ -115,7 +99,7 @@ std::size_t NewArrays::add(std::span<const float> values, std::size_t components
   Array array = encode(values, components, options);
   const std::hash<std::string_view> hash_of;
   std::size_t hash = array.count;
-  for (const std::string* const part : {&array.dense, &array.indices, &array.values, &array.bounds})
+  for (const std::string* const part : {&array.dense, &array.indices, &array.values, &array.least, &array.most})
     hash = hash * 1000003 ^ hash_of(*part);
   const auto [first, end] = by_hash_.equal_range(hash);
   const auto found = std::find_if(first, end, [&](const auto& entry) { return arrays_[entry.second] == array; });
@@ -161,16 +145,13 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
   const auto add_view = [&](std::size_t size, bool of_vertices) {
     const std::size_t index = first_view + result.views.size();
     if (size == 0) return index;
-    std::string view = "{";
-    append_field(view, "buffer", buffer);
-    if (offset > 0) append_field(view, "byteOffset", offset);
-    append_field(view, "byteLength", size);
+    JsonObject view;
+    view.add("buffer", buffer);
+    if (offset > 0) view.add("byteOffset", offset);
+    view.add("byteLength", size);
     // Vertex attributes that share a view need a stride, and other arrays must have none.
-    if (of_vertices) {
-      append_field(view, "byteStride", 3 * sizeof(float));
-      append_field(view, "target", kArrayBuffer);
-    }
-    result.views.push_back(view + "}");
+    if (of_vertices) view.add("byteStride", 3 * sizeof(float)).add("target", kArrayBuffer);
+    result.views.push_back(view.text());
     offset += size;
     return index;
   };
@@ -179,28 +160,26 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
 
   Sizes at;
   for (const Array& array : arrays_) {
-    std::string accessor = "{";
+    JsonObject accessor;
     if (!array.dense.empty()) {
       std::size_t& place = array.components == 1 ? at.scalars : at.vectors;
-      append_place(accessor, array.components == 1 ? scalars_view : vectors_view, place);
+      add_place(array.components == 1 ? scalars_view : vectors_view, place, accessor);
       place += array.dense.size();
     }
-    append_field(accessor, "componentType", kFloat);
-    append_field(accessor, "count", array.count);
-    accessor.append(array.components == 1 ? ",\"type\":\"SCALAR\"" : ",\"type\":\"VEC3\"").append(array.bounds);
+    accessor.add("componentType", kFloat).add("count", array.count);
+    accessor.add("type", quote_json(array.components == 1 ? "SCALAR" : "VEC3"));
+    if (!array.least.empty()) accessor.add("min", array.least).add("max", array.most);
     if (array.sparse_count > 0) {
-      accessor += ",\"sparse\":{";
-      append_field(accessor, "count", array.sparse_count);
-      accessor += ",\"indices\":{";
-      append_place(accessor, sparse_view, at.sparse);
-      append_field(accessor, "componentType", static_cast<std::size_t>(array.index_type));
+      JsonObject sparse, indices, values;
+      add_place(sparse_view, at.sparse, indices);
+      indices.add("componentType", array.index_type);
       at.sparse += array.indices.size();
-      accessor += "},\"values\":{";
-      append_place(accessor, sparse_view, at.sparse);
+      add_place(sparse_view, at.sparse, values);
       at.sparse += array.values.size();
-      accessor += "}}";
+      sparse.add("count", array.sparse_count).add("indices", indices.text()).add("values", values.text());
+      accessor.add("sparse", sparse.text());
     }
-    result.accessors.push_back(accessor + "}");
+    result.accessors.push_back(accessor.text());
   }
   return result;
 }

@@ -39,9 +39,9 @@ class NewArrays {
     std::size_t components = 1, count = 0;
     std::string dense;  // padded to a multiple of 4, as all bytes are
     std::size_t sparse_count = 0;
-    int index_type = 0;
+    std::size_t index_type = 0;
     std::string indices, values;  // of the sparse_count elements that are not zero
-    std::string bounds;           // as JSON, or empty
+    std::string least, most;      // bounds as JSON, or empty
 
     bool operator==(const Array&) const = default;
   };

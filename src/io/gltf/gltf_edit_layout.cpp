@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/gltf/gltf_uri.h"
+#include "io/json/json_writer.h"
 
 namespace chronormal::gltf {
 namespace {
@@ -48,14 +49,12 @@ void append_base64(std::string& text, const std::vector<std::string_view>& piece
   text.append((3 - size % 3) % 3, '=');
 }
 
-// The other members of an object, each with a comma before it.
-std::string other_members(const std::vector<JsonMember>& members, std::initializer_list<std::string_view> without) {
-  std::string result;
+// Adds the members of an object but for some.
+void add_other_members(const std::vector<JsonMember>& members, std::initializer_list<std::string_view> without,
+                       JsonObject& object) {
   for (const JsonMember& member : members) {
-    if (std::find(without.begin(), without.end(), member.name) != without.end()) continue;
-    result.append(",").append(quote_json(member.name)).append(":").append(member.value);
+    if (std::find(without.begin(), without.end(), member.name) == without.end()) object.add(member.name, member.value);
   }
-  return result;
 }
 
 const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_view name) {
@@ -197,27 +196,26 @@ Status EditLayout::lay_out_glb() {
   if (Status status = add_arrays(0, arrays_at); !status) return status;
   std::size_t view = document_.model.views.size() + document_.arrays.view_count();
   for (const Image& image : images_) {
-    std::string json = R"({"buffer":0,"byteOffset":)";
-    json.append(std::to_string(add_to_bin(image.bytes, kAlignment))).append(",\"byteLength\":");
-    json.append(std::to_string(image.bytes.size())).append("}");
-    if (Status status = append("/bufferViews", std::move(json)); !status) return status;
+    JsonObject of_image, of_view;
+    of_view.add("buffer", 0).add("byteOffset", add_to_bin(image.bytes, kAlignment));
+    of_view.add("byteLength", image.bytes.size());
+    if (Status status = append("/bufferViews", of_view.text()); !status) return status;
     const std::string pointer = item_pointer("images", image.index);
-    json = "{\"bufferView\":";
-    json.append(std::to_string(view++)).append(",\"mimeType\":\"").append(image.media_type).append("\"");
-    json.append(other_members(document_.source.members(pointer), {"uri", "bufferView", "mimeType"})).append("}");
-    if (Status status = set(pointer, std::move(json)); !status) return status;
+    of_image.add("bufferView", view++).add("mimeType", quote_json(image.media_type));
+    add_other_members(document_.source.members(pointer), {"uri", "bufferView", "mimeType"}, of_image);
+    if (Status status = set(pointer, of_image.text()); !status) return status;
   }
 
   if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even where no other has any
-  std::string length = std::to_string(bin_size_);
+  JsonObject buffer;
+  buffer.add("byteLength", bin_size_);
   if (must_move) {
-    std::string json = "[{\"byteLength\":";
-    json.append(length).append(first_buffer_).append("}").append(other_buffers_).append("]");
-    return set("/buffers", std::move(json));
+    add_other_members(first_buffer_, {"uri", "byteLength"}, buffer);
+    return set("/buffers", "[" + buffer.text() + other_buffers_ + "]");
   }
   if (!grows) return Success{};
-  if (!buffers.empty()) return set("/buffers/0/byteLength", std::move(length));
-  return append("/buffers", std::move(length.insert(0, "{\"byteLength\":").append("}")));
+  if (!buffers.empty()) return set("/buffers/0/byteLength", std::to_string(bin_size_));
+  return append("/buffers", buffer.text());
 }
 
 // Moves all buffers that have bytes into the BIN chunk, which is buffer 0 then. Those without any, which compressed
@@ -236,7 +234,7 @@ Status EditLayout::move_buffers() {
     const Result<std::string_view> bytes = declared_bytes(i);
     if (!bytes) return bytes.error();
     moved.push_back({0, is_bin(i) ? 0 : add_to_bin(bytes.value(), kAlignment)});
-    if (i == 0) first_buffer_ = other_members(document_.source.members(pointer), {"uri", "byteLength"});
+    if (i == 0) first_buffer_ = document_.source.members(pointer);
   }
   for (std::size_t i = 0; i < document_.model.views.size(); ++i) {
     const std::string pointer = item_pointer("bufferViews", i);
@@ -286,9 +284,9 @@ Status EditLayout::lay_out_gltf() {
   if (Status status = add_arrays(buffers.size(), 0); !status) return status;
   const std::size_t size = document_.arrays.byte_count();
   if (size == 0) return Success{};
-  std::string buffer = "{\"byteLength\":";
-  buffer.append(std::to_string(size)).append(",\"uri\":").append(data_uri(kBytes, document_.arrays.pieces()));
-  return append("/buffers", buffer + "}");
+  JsonObject buffer;
+  buffer.add("byteLength", size).add("uri", data_uri(kBytes, document_.arrays.pieces()));
+  return append("/buffers", buffer.text());
 }
 
 }  // namespace chronormal::gltf

@@ -83,7 +83,8 @@ class EditLayout {
   JsonText json_;
   std::optional<std::vector<std::string_view>> bin_;
   std::size_t bin_size_ = 0;
-  std::string first_buffer_, other_buffers_;  // after move_buffers(): members of buffer 0, and whole objects
+  std::vector<JsonMember> first_buffer_;  // after move_buffers(): what buffer 0 was
+  std::string other_buffers_;             // after move_buffers(): each with a comma before it
   std::vector<Image> images_;
   std::deque<FileBytes> files_;
   std::vector<std::string> warnings_;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "io/json/json_writer.h"
+
 namespace chronormal {
 namespace {
 
@@ -147,26 +149,6 @@ std::string decode_json_string(std::string_view quoted) {
   return result;
 }
 
-std::string quote_json(std::string_view text) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < 0x20) {
-      result += "\\u00";
-      result += kDigits[byte >> 4];
-      result += kDigits[byte & 15];
-    } else {
-      result += c;
-    }
-  }
-  result += '"';
-  return result;
-}
-
 std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer) {
   std::vector<std::string> tokens;
   if (!pointer.empty() && pointer.front() != '/') return std::nullopt;
@@ -289,10 +271,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
       return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
     // What is missing is made as one.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
-    for (std::size_t k = tokens->size() - 1; k > i; --k) {
-      std::string outer = "{";
-      made = outer.append(quote_json((*tokens)[k])).append(":").append(made).append("}");
-    }
+    for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();
     add_member(node, token, std::move(made));
     for (Node* const changed : way) changed->changed = true;
     return Success{};

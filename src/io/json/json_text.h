@@ -29,8 +29,6 @@ namespace chronormal {
 
 /// The text of a string: "\u00e9" without its quotation marks, in UTF-8. quoted must be a valid JSON string.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
-/// A string as JSON. text must be UTF-8.
-[[nodiscard]] std::string quote_json(std::string_view text);
 
 /// The names in a pointer; nothing where it is none.
 [[nodiscard]] std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer);

@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "core/blocks.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 
 namespace chronormal {
 namespace {
@@ -23,7 +25,6 @@ constexpr std::size_t kBlockOfVertices = 16384;
 constexpr double kMostBound = 14;
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 
-constexpr double kHalfEpsilon = 0x1p-53;
 constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
 
 // Nanoseconds, fitted to a face of 19,158 vertices with up to 102 targets, as quads and as triangles, on one core of
@@ -35,8 +36,6 @@ constexpr double kFinishedElement = 5.5;  // from the base to length 1
 constexpr double kMovedVertex = 2.4;      // of a target, and back again
 constexpr double kFace = 1.5, kTriangle = 1.9, kTermOfSum = 1.1, kSummedElement = 2.5;
 constexpr double kRim = 1.04;  // a part of the elements has more faces than its share
-
-double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 
 // What of an ascending list lies inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
@@ -222,7 +221,7 @@ class Call {
   void blend_positions() {
     double reach = source_.base.reach;
     for (const std::uint32_t i : scratch_.active) reach += std::fabs(weights_[i]) * source_.storage.targets()[i].reach;
-    position_noise_ = kHalfEpsilon * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
+    position_noise_ = kUnitRoundoff * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
     for_moved([this](std::size_t i, const BlendTarget& target, IndexRange part) {
       const double weight = weights_[i];
       for (std::size_t n = part.first; n < part.end(); ++n) {
@@ -259,26 +258,29 @@ class Call {
     return {p[0], p[1], p[2]};
   }
 
-  // The vector area over a fan. Edges and both products of a component are within 10 half eps of the absolute products,
+  // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
   // each triangle adds a rounding, and positions bring their own.
   void make_face(std::size_t f) {
     const auto face = source_.set.topology.face(f);
+    struct Edge {
+      Vec3d vector;
+      double size;
+    };
     const Vec3d a = position(face[0]);
-    Vec3d e = position(face[1]) - a;
+    const auto edge_to = [&](std::size_t c) {
+      const Vec3d edge = position(face[c]) - a;
+      return Edge{edge, sum_abs(edge)};
+    };
     BlendedFace result;
-    double products = 0, edges = sum_abs(e), e_size = edges;
-    for (std::size_t c = 2; c < face.size(); ++c) {
-      const Vec3d g = position(face[c]) - a;
-      const double g_size = sum_abs(g);
-      result.normal = result.normal + cross(e, g);
-      products += e_size * g_size;
-      edges += 2 * g_size;
-      e = g;
-      e_size = g_size;
-    }
+    double products = 0, edges = edge_to(1).size;
+    for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
+      result.normal = result.normal + cross(e.vector, g.vector);
+      products += e.size * g.size;
+      edges += 2 * g.size;
+    });
     const auto corners = static_cast<double>(face.size());
     const double moved = 4 * position_noise_;
-    result.noise = kHalfEpsilon * (10 + corners) * products + moved * (edges + corners * moved);
+    result.noise = kUnitRoundoff * (10 + corners) * products + moved * (edges + corners * moved);
     scratch_.normals[f] = result;
   }
 
@@ -297,7 +299,7 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition is within half an eps of the sum of absolute normals, which are at most twice the products that
+    // Each addition is within u of the sum of absolute normals, which are at most twice the products that
     // make_face() counts 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rounding.h"
 #include "normals/blend/blend_storage.h"
 #include "normals/blend/blend_terms.h"
 
@@ -25,7 +26,7 @@ BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms) {
   for (std::size_t e = 0; e < count; ++e) {
     const Vec3d n = normals.values[e];
     double* const sum = base.sums.data() + kLanes * e;
-    sum[0] = n.x, sum[1] = n.y, sum[2] = n.z, sum[3] = normals.noise[e] / kFloatHalfEpsilon;
+    sum[0] = n.x, sum[1] = n.y, sum[2] = n.z, sum[3] = normals.noise[e] / kFloatUnitRoundoff;
     const Vec3f u = to_float(unit(n));
     float* const to = base.units.data() + 3 * e;
     to[0] = u.x, to[1] = u.y, to[2] = u.z;

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/rounding.h"
 #include "normals/blend/blend_scratch.h"
 
 namespace chronormal {
@@ -40,7 +41,7 @@ double largest_of(const BlendTerm& term) {
 }
 
 void put(const Vec3d& value, double noise, double scale, float* lanes) {
-  const double bound = (length(value) + noise / kFloatHalfEpsilon) / scale * kMargin + kSmallestBound;
+  const double bound = (length(value) + noise / kFloatUnitRoundoff) / scale * kMargin + kSmallestBound;
   lanes[0] = static_cast<float>(value.x / scale);
   lanes[1] = static_cast<float>(value.y / scale);
   lanes[2] = static_cast<float>(value.z / scale);

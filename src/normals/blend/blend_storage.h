@@ -16,10 +16,9 @@
 namespace chronormal {
 
 /// Bounds of rounding are kept in this unit, that of float32.
-inline constexpr double kFloatHalfEpsilon = 0x1p-24;
 
 /// Coefficients at some elements, `scale` times what stands there: for a target A and C_ii, for a pair C_ij. A
-/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatHalfEpsilon of it.
+/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff of it.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;

@@ -4,7 +4,6 @@
 #define CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,11 +11,11 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
-#include "core/noise.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 
 namespace chronormal {
 
-inline constexpr double kHalfEpsilon = 0x1p-53;
 /// Faces of so many corners cost no memory of their own.
 inline constexpr std::size_t kSmallFace = 4;
 
@@ -47,34 +46,33 @@ class CornerVectors {
   return positions;
 }
 
-[[nodiscard]] inline double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-
 /// A sum of products of edges.
 class ProductSum {
  public:
   /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
-  /// Edges and both products of a component are within 10 half eps of the absolute products; each triangle adds a
-  /// rounding, and four for what counts as noise.
+  /// Edges and both products of a component are within 10 u of the absolute products; each triangle adds a rounding, and
+  /// four for what counts as one.
   void add(const CornerVectors& p, const CornerVectors& q) {
-    Vec3d e = p[1] - p[0];
-    for (std::size_t c = 2; c < p.size(); ++c) {
-      const Vec3d f = q[c] - q[0];
-      sum_.add(cross(e, f));
-      products_ += sum_abs(e) * sum_abs(f);
-      e = p[c] - p[0];
-    }
+    struct Edge {
+      Vec3d p, q;
+    };
+    const auto edge_to = [&](std::size_t c) { return Edge{p[c] - p[0], q[c] - q[0]}; };
+    for_fan(p.size(), edge_to, [this](const Edge& e, const Edge& f) {
+      sum_.add(cross(e.p, f.q));
+      products_ += sum_abs(e.p) * sum_abs(f.q);
+    });
     roundings_ += static_cast<double>(10 + 5 * p.size());
   }
 
-  [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
-  [[nodiscard]] double noise() const { return kHalfEpsilon * roundings_ * products_; }
+  [[nodiscard]] Vec3d value() const { return sum_.without_rounding(); }
+  [[nodiscard]] double noise() const { return kUnitRoundoff * roundings_ * products_; }
 
  private:
   VectorSum sum_;
   double products_ = 0, roundings_ = 0;
 };
 
-/// The sum of faces around an element: each adds a rounding, and four for what counts as noise.
+/// The sum of faces around an element: each adds a rounding, and four for what counts as one.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {
@@ -84,8 +82,8 @@ class ElementSum {
     ++count_;
   }
 
-  [[nodiscard]] Vec3d value() const { return sum_.without_noise(); }
-  [[nodiscard]] double noise() const { return noise_ + 5 * kHalfEpsilon * count_ * size_; }
+  [[nodiscard]] Vec3d value() const { return sum_.without_rounding(); }
+  [[nodiscard]] double noise() const { return noise_ + 5 * kUnitRoundoff * count_ * size_; }
 
  private:
   VectorSum sum_;

@@ -218,20 +218,19 @@ class EndsSideBySide {
   Segment segment_;
 };
 
-}  // namespace
-
-struct CurveBuilder::Part {
+// What one thread makes at a time.
+struct Part {
   IndexRange elements;
   std::byte* begin = nullptr;  // of its blocks
   std::size_t bytes = 0;
-  std::vector<NormalCurves::Run> runs;  // offsets from begin
+  std::vector<CurveData::Run> runs;  // offsets from begin
   std::vector<std::size_t> flagged;
   std::vector<ControlNormals> exact;    // of the flagged
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
   std::array<std::size_t, 3> degree_counts{};
 };
 
-class CurveBuilder::PartBuilder {
+class PartBuilder {
  public:
   PartBuilder(Part& part, const PrecisionLimits& limits, bool with_lengths)
       : part_(part), limits_(limits), with_lengths_(with_lengths), tiles_(kChunkTiles) {}
@@ -362,11 +361,10 @@ class CurveBuilder::PartBuilder {
   }
 
   void append_run(std::size_t first_block, std::size_t block_count, BlockKind kind) {
-    const int number = static_cast<int>(kind);
-    if (!part_.runs.empty() && part_.runs.back().kind == number) {
+    if (!part_.runs.empty() && part_.runs.back().kind == kind) {
       part_.runs.back().block_count += block_count;
     } else {
-      part_.runs.push_back({first_block, block_count, part_.bytes, number});
+      part_.runs.push_back({first_block, block_count, part_.bytes, kind});
     }
     part_.bytes += block_count * kTile * bytes_of(kind);
   }
@@ -379,13 +377,13 @@ class CurveBuilder::PartBuilder {
 };
 
 template <class MakeSource>
-NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, Threads threads, NormalCurves* reuse,
-                                 MakeSource make_source) {
-  NormalCurves curves;
-  if (reuse != nullptr) curves.blocks_ = std::exchange(*reuse, {}).blocks_;
-  curves.blocks_.resize(0);
-  curves.size_ = size;
-  curves.keeps_lengths_ = !(options.tolerance > kExactTolerance);
+CurveData build(std::size_t size, const CurveOptions& options, Threads threads, CurveData* reuse,
+                MakeSource make_source) {
+  CurveData curves;
+  if (reuse != nullptr) curves.blocks = std::exchange(*reuse, {}).blocks;
+  curves.blocks.resize(0);
+  curves.size = size;
+  curves.keeps_lengths = !(options.tolerance > kExactTolerance);
   if (size == 0) return curves;
   const PrecisionLimits limits = PrecisionLimits::for_tolerance(options.tolerance);
 
@@ -394,14 +392,14 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
   const std::size_t part = part_size(size);
   std::vector<Part> parts((size + part - 1) / part);
   const std::size_t whole = (size + kTile - 1) / kTile * kTile;
-  if (curves.blocks_.capacity() < whole * kWorst) {
-    curves.blocks_ = {};
-    curves.blocks_ = AlignedBytes(whole * kWorst);
+  if (curves.blocks.capacity() < whole * kWorst) {
+    curves.blocks = {};
+    curves.blocks = AlignedBytes(whole * kWorst);
   }
   const auto make = [&](std::size_t p, std::byte* begin, auto& source) {
     parts[p].elements = {p * part, std::min(part, size - p * part)};
     parts[p].begin = begin;
-    PartBuilder(parts[p], limits, curves.keeps_lengths_).run(source);
+    PartBuilder(parts[p], limits, curves.keeps_lengths).run(source);
   };
   if (threads == Threads::kAll && parts.size() > 1) {
     // A source for each thread, which takes the next part until there is none.
@@ -409,11 +407,11 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
     parallel_for(std::min(thread_count(), parts.size()), [&](std::size_t) {
       auto source = make_source();
       for (std::size_t p = next++; p < parts.size(); p = next++)
-        make(p, curves.blocks_.data() + p * part * kWorst, source);
+        make(p, curves.blocks.data() + p * part * kWorst, source);
     });
   } else {
     auto source = make_source();
-    std::byte* begin = curves.blocks_.data();
+    std::byte* begin = curves.blocks.data();
     for (std::size_t p = 0; p < parts.size(); ++p) {
       make(p, begin, source);
       begin += parts[p].bytes;
@@ -423,43 +421,45 @@ NormalCurves CurveBuilder::build(std::size_t size, const CurveOptions& options, 
   // Move the parts together, and put what they found one after the other.
   std::size_t bytes = 0;
   for (const Part& made : parts) {
-    std::memmove(curves.blocks_.data() + bytes, made.begin, made.bytes);
-    for (const NormalCurves::Run& run : made.runs) {
-      if (!curves.runs_.empty() && curves.runs_.back().kind == run.kind) {
-        curves.runs_.back().block_count += run.block_count;
+    std::memmove(curves.blocks.data() + bytes, made.begin, made.bytes);
+    for (const CurveData::Run& run : made.runs) {
+      if (!curves.runs.empty() && curves.runs.back().kind == run.kind) {
+        curves.runs.back().block_count += run.block_count;
       } else {
-        curves.runs_.push_back({run.first_block, run.block_count, bytes + run.offset, run.kind});
+        curves.runs.push_back({run.first_block, run.block_count, bytes + run.offset, run.kind});
       }
     }
     bytes += made.bytes;
-    curves.flagged_.insert(curves.flagged_.end(), made.flagged.begin(), made.flagged.end());
-    curves.exact_.insert(curves.exact_.end(), made.exact.begin(), made.exact.end());
-    for (std::size_t d = 0; d < 3; ++d) curves.degree_counts_[d] += made.degree_counts[d];
-    if (!made.exponents.empty() && curves.keeps_lengths_) {
-      curves.exponents_.resize(whole / kTile);
+    curves.flagged.insert(curves.flagged.end(), made.flagged.begin(), made.flagged.end());
+    curves.exact.insert(curves.exact.end(), made.exact.begin(), made.exact.end());
+    for (std::size_t d = 0; d < 3; ++d) curves.degree_counts[d] += made.degree_counts[d];
+    if (!made.exponents.empty() && curves.keeps_lengths) {
+      curves.exponents.resize(whole / kTile);
       std::copy(made.exponents.begin(), made.exponents.end(),
-                curves.exponents_.begin() + static_cast<std::ptrdiff_t>(made.elements.first / kTile));
+                curves.exponents.begin() + static_cast<std::ptrdiff_t>(made.elements.first / kTile));
     }
   }
-  curves.blocks_.resize(bytes);
-  if (reuse == nullptr && threads == Threads::kAll) curves.blocks_.release_rest();
+  curves.blocks.resize(bytes);
+  if (reuse == nullptr && threads == Threads::kAll) curves.blocks.release_rest();
   return curves;
 }
 
-NormalCurves CurveBuilder::of_control_normals(std::span<const ControlNormals> normals, const CurveOptions& options) {
+// Builds from a copy of the segment in which both positions of a vertex lie side by side.
+template <class Build>
+CurveData from_both_ends(const Segment& segment, Threads threads, CurveData* reuse, Build build_from) {
+  EndsSideBySide ends(segment, threads, reuse != nullptr ? std::exchange(reuse->scratch, {}) : AlignedArray<float>());
+  CurveData curves = build_from(ends.segment());
+  if (reuse != nullptr) curves.scratch = ends.take_memory();
+  return curves;
+}
+
+}  // namespace
+
+CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options) {
   return build(normals.size(), options, Threads::kOne, nullptr, [&] { return GivenNormals(normals); });
 }
 
-template <class Build>
-NormalCurves CurveBuilder::from_both_ends(const Segment& segment, Threads threads, NormalCurves* reuse, Build build) {
-  EndsSideBySide ends(segment, threads, reuse != nullptr ? std::exchange(reuse->scratch_, {}) : AlignedArray<float>());
-  NormalCurves curves = build(ends.segment());
-  if (reuse != nullptr) curves.scratch_ = ends.take_memory();
-  return curves;
-}
-
-NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
-                                    NormalCurves* reuse) {
+CurveData build_curves(const Segment& segment, const CurveOptions& options, Threads threads, CurveData* reuse) {
   const auto build_from = [&](const Segment& from) {
     return build(from.topology->face_count(), options, threads, reuse, [&] { return FaceNormals(from); });
   };
@@ -469,8 +469,8 @@ NormalCurves CurveBuilder::of_faces(const Segment& segment, const CurveOptions& 
   return build_from(segment);
 }
 
-NormalCurves CurveBuilder::of_groups(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
-                                     Threads threads, NormalCurves* reuse) {
+CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options, Threads threads,
+                       CurveData* reuse) {
   const auto build_from = [&](const Segment& from, const AllFaceRows* rows) {
     return build(groups.size(), options, threads, reuse, [&, rows] { return GroupNormals(from, groups, rows); });
   };

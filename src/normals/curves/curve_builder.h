@@ -1,4 +1,4 @@
-/// Makes NormalCurves: control normals, sixteen at a time, into blocks of the fewest bytes.
+/// Makes curves: control normals, sixteen at a time, into blocks of the fewest bytes.
 ///
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
@@ -10,31 +10,24 @@
 
 #include <span>
 
+#include "chronormal/core/parallel.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
+#include "normals/curves/curve_data.h"
 
 namespace chronormal {
 
-class CurveBuilder {
- public:
-  [[nodiscard]] static NormalCurves of_control_normals(std::span<const ControlNormals> normals,
-                                                       const CurveOptions& options);
-  [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options, Threads threads,
-                                             NormalCurves* reuse);
-  [[nodiscard]] static NormalCurves of_groups(const Segment& segment, const NormalGroups& groups,
-                                              const CurveOptions& options, Threads threads, NormalCurves* reuse);
+/// Makes the curves of elements whose control normals are there already.
+[[nodiscard]] CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options);
 
- private:
-  template <class MakeSource>
-  static NormalCurves build(std::size_t size, const CurveOptions& options, Threads threads, NormalCurves* reuse,
-                            MakeSource make_source);
-
-  // Builds from a copy of the segment in which both positions of a vertex lie side by side.
-  template <class Build>
-  static NormalCurves from_both_ends(const Segment& segment, Threads threads, NormalCurves* reuse, Build build);
-
-  struct Part;
-  class PartBuilder;
-};
+/// Makes the curves of all faces of a segment, or of all elements of the groups. Where `reuse` names curves, they are
+/// emptied and their memory is used again.
+[[nodiscard]] CurveData build_curves(const Segment& segment, const CurveOptions& options, Threads threads,
+                                     CurveData* reuse);
+[[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
+                                     Threads threads, CurveData* reuse);
 
 }  // namespace chronormal
 

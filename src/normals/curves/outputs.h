@@ -22,13 +22,14 @@ namespace chronormal {
 
 /// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.
 template <class... Pointer>
-[[nodiscard]] Access access_to(Access of_pass, Pointer... arrays) {
+[[nodiscard]] MemoryAccess access_to(MemoryAccess of_pass, Pointer... arrays) {
   const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
   return {of_pass.working_set, of_pass.stream && aligned};
 }
 
 struct PackedOutput {
-  PackedOutput(const VectorView<float>& view, Access of_pass) : result(view), access(access_to(of_pass, view.x)) {}
+  PackedOutput(const VectorView<float>& view, MemoryAccess of_pass)
+      : result(view), access(access_to(of_pass, view.x)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, access});
@@ -36,11 +37,11 @@ struct PackedOutput {
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
 
   VectorView<float> result;
-  Access access;
+  MemoryAccess access;
 };
 
 struct PlanesOutput {
-  PlanesOutput(const VectorView<float>& view, Access of_pass)
+  PlanesOutput(const VectorView<float>& view, MemoryAccess of_pass)
       : result(view), access(access_to(of_pass, view.x, view.y, view.z)) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
@@ -49,11 +50,11 @@ struct PlanesOutput {
   void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
 
   VectorView<float> result;
-  Access access;
+  MemoryAccess access;
 };
 
 struct OctahedralOutput {
-  OctahedralOutput(std::span<Octahedral> normals, Access of_pass)
+  OctahedralOutput(std::span<Octahedral> normals, MemoryAccess of_pass)
       : result(normals), access(access_to(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
@@ -63,11 +64,11 @@ struct OctahedralOutput {
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_octahedral(v); }
 
   std::span<Octahedral> result;
-  Access access;
+  MemoryAccess access;
 };
 
 struct Rgb10A2Output {
-  Rgb10A2Output(std::span<Rgb10A2> normals, Access of_pass)
+  Rgb10A2Output(std::span<Rgb10A2> normals, MemoryAccess of_pass)
       : result(normals), access(access_to(of_pass, normals.data())) {}
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
@@ -77,7 +78,7 @@ struct Rgb10A2Output {
   void set(std::size_t i, const Vec3f& v) const { result[i] = encode_rgb10a2(v); }
 
   std::span<Rgb10A2> result;
-  Access access;
+  MemoryAccess access;
 };
 
 /// Any other form, by a function of index and vector: through planes on the stack, a few blocks at a time.
@@ -103,7 +104,7 @@ AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
 /// Calls body(output) with the form that a view has; returns what it returns.
 template <class Body>
-auto with_output(const VectorView<float>& result, Access of_pass, Body body) {
+auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body body) {
   if (is_packed(result)) return body(PackedOutput(result, of_pass));
   if (result.stride == 1) return body(PlanesOutput(result, of_pass));
   return body(AnyOutput{of_pass.working_set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <string>
 
-#include "core/noise.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 
 namespace chronormal {
 namespace {
 
 // The error of de Casteljau's algorithm in degree up to 6, and of the control normals.
-constexpr double kNoise = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kError = 32 * kUnitRoundoff;
 
 template <std::size_t K>
 PolynomialSegment<K> empty_segment(const Topology& topology, double start_time, double end_time) {
@@ -33,8 +33,8 @@ Bernstein<Vec3d, K> edge(const PolynomialSegment<K>& segment, std::uint32_t from
 
 // The first of the control normals, from the end that is asked for, that is not rounding; zero if there is none.
 template <class Iterator>
-Vec3d first_direction(Iterator begin, Iterator end, double noise) {
-  const auto found = std::find_if(begin, end, [noise](const Vec3d& n) { return max_abs(n) > noise; });
+Vec3d first_direction(Iterator begin, Iterator end, double error) {
+  const auto found = std::find_if(begin, end, [error](const Vec3d& n) { return max_abs(n) > error; });
   return found == end ? Vec3d{} : unit(*found);
 }
 
@@ -80,9 +80,8 @@ void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange fac
   for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = segment.topology->face(faces.first + i);
     PolynomialNormals<K> sum{}, size{};
-    Bernstein<Vec3d, K> e = edge(segment, face[0], face[1]);
-    for (std::size_t c = 2; c < face.size(); ++c) {
-      const Bernstein<Vec3d, K> f = edge(segment, face[0], face[c]);
+    const auto edge_to = [&](std::size_t c) { return edge(segment, face[0], face[c]); };
+    for_fan(face.size(), edge_to, [&](const Bernstein<Vec3d, K>& e, const Bernstein<Vec3d, K>& f) {
       const auto normal = multiply(e, f, cross<double>);
       const auto products = multiply(e, f, [](const Vec3d& a, const Vec3d& b) {
         const double largest = max_abs(a) * max_abs(b);
@@ -92,10 +91,9 @@ void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange fac
         sum[k] = sum[k] + normal[k];
         size[k] = size[k] + products[k];
       }
-      e = f;
-    }
+    });
     for (std::size_t k = 0; k < sum.size(); ++k)
-      result[i][k] = max_abs(sum[k]) > kNoise * static_cast<double>(face.size()) * size[k].x ? sum[k] : Vec3d{};
+      result[i][k] = without_rounding(sum[k], kError * static_cast<double>(face.size()) * size[k].x);
   }
 }
 
@@ -109,7 +107,7 @@ void polynomial_group_normals(const NormalGroups& groups, std::span<const Polyno
       assert(f < of_faces.size());
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k].add(of_faces[f][k]);
     }
-    for (std::size_t k = 0; k < sum.size(); ++k) result[i][k] = sum[k].without_noise();
+    for (std::size_t k = 0; k < sum.size(); ++k) result[i][k] = sum[k].without_rounding();
   }
 }
 
@@ -119,12 +117,12 @@ UnitNormal unit_normal_at(const std::array<Vec3d, N>& normals, double t) noexcep
   Bernstein<double, N - 1> sizes;
   for (std::size_t k = 0; k < N; ++k) sizes[k] = max_abs(normals[k]);
   const Vec3d n = after[0];
-  if (max_abs(n) > kNoise * evaluate(sizes, t)) return {unit(n), Direction::kRegular};
+  if (max_abs(n) > kError * evaluate(sizes, t)) return {unit(n), Direction::kRegular};
 
   // n(t) = 0: near t the curve leaves along the first control normal of either part that is not zero.
-  const double noise = kNoise * *std::max_element(sizes.begin(), sizes.end());
-  const Vec3d next = first_direction(after.begin() + 1, after.end(), noise);
-  const Vec3d last = first_direction(before.rbegin() + 1, before.rend(), noise);
+  const double error = kError * *std::max_element(sizes.begin(), sizes.end());
+  const Vec3d next = first_direction(after.begin() + 1, after.end(), error);
+  const Vec3d last = first_direction(before.rbegin() + 1, before.rend(), error);
   const Vec3d given = t <= 0 || last == Vec3d{} ? next : last;
   if (given == Vec3d{}) return {{}, Direction::kNone};
   const bool inside = t > 0 && t < 1 && next != Vec3d{} && last != Vec3d{};

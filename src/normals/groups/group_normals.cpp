@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "core/blocks.h"
-#include "core/noise.h"
+#include "normals/groups/group_sum.h"
 
 namespace chronormal {
 namespace {
@@ -17,14 +17,12 @@ void group_control_normals(const NormalGroups& groups, std::span<const ControlNo
                            std::span<ControlNormals> result) noexcept {
   assert(result.size() == elements.count && elements.end() <= groups.size());
   for (std::size_t i = 0; i < elements.count; ++i) {
-    VectorSum n0, m, n1;
+    ControlNormalsSum sum;
     for (const std::uint32_t f : groups.faces(elements.first + i)) {
       assert(f < of_faces.size());
-      n0.add(of_faces[f].n0);
-      m.add(of_faces[f].m);
-      n1.add(of_faces[f].n1);
+      sum.add(of_faces[f]);
     }
-    result[i] = {n0.without_noise(), m.without_noise(), n1.without_noise()};
+    result[i] = sum.without_rounding();
   }
 }
 

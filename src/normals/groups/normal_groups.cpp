@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 
 // What the rounding of positions to float32 may add to the angle of an edge, radians.
 constexpr double kCreaseRounding = 1e-6;

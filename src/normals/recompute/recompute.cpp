@@ -14,8 +14,12 @@
 
 #include "chronormal/normals/control_normals.h"
 #include "core/blocks.h"
+#include "core/memory.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 #include "motion/coherence.h"
 #include "normals/curves/curve_elements.h"
+#include "normals/groups/face_window.h"
 #include "normals/groups/group_sum.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
 
@@ -35,18 +39,13 @@ constexpr std::size_t kMostParts = 64;
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 constexpr double kMostLinesPerFace = 1;
 
-constexpr double kHalfEpsilon = 0x1p-53;
-constexpr double kFloatHalfEpsilon = 0x1p-24;
-
 // n(t) in double from the positions, and what it may be off by.
 struct NormalAtTime {
   Vec3d n;
   double error = 0;
 };
 
-double sum_abs(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-
-// With u = 2^-53: edges, and both products of each component after them, are within 10 u of the absolute products; and
+// Edges, and both products of each component after them, are within 10 u of the absolute products; and
 // each triangle of a fan adds a rounding.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
@@ -56,19 +55,16 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
     Vec3d at;
     double size;
   };
-  const auto edge = [&](std::size_t c) {
+  const auto edge_to = [&](std::size_t c) {
     const Vec3d e0 = to_double(segment.from[face[c]]) - a0, e1 = to_double(segment.to[face[c]]) - a1;
     return Edge{s * e0 + t * e1, s * sum_abs(e0) + t * sum_abs(e1)};
   };
   NormalAtTime result;
-  Edge e = edge(1);
-  for (std::size_t c = 2; c < face.size(); ++c) {
-    const Edge f_c = edge(c);
-    result.n = result.n + cross(e.at, f_c.at);
-    result.error += e.size * f_c.size;
-    e = f_c;
-  }
-  result.error *= kHalfEpsilon * static_cast<double>(10 + face.size());
+  for_fan(face.size(), edge_to, [&result](const Edge& e, const Edge& g) {
+    result.n = result.n + cross(e.at, g.at);
+    result.error += e.size * g.size;
+  });
+  result.error *= kUnitRoundoff * static_cast<double>(10 + face.size());
   return result;
 }
 
@@ -76,7 +72,7 @@ constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
   // A little more, for the rounding of the bound.
-  const double error = 1.01 * (length(normal.n) + normal.error / kFloatHalfEpsilon);
+  const double error = 1.01 * (length(normal.n) + normal.error / kFloatUnitRoundoff);
   if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
   const Vec3f n = to_float(normal.n);
   return {n.x, n.y, n.z, static_cast<float>(error)};
@@ -182,10 +178,16 @@ bool is_packed(const VectorView<const float>& points) {
   return points.stride == 3 && points.y == points.x + 1 && points.z == points.x + 2;
 }
 
-}  // namespace
+// What a NormalRecompute keeps for its calls.
+struct Scratch {
+  bool vertices_are_near = true;  // those of neighbouring faces are neighbours in memory
+  AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or nothing
+  std::size_t window = 0;         // normals of faces, a power of two; 0: all
+  AlignedBytes normals;           // of faces, for groups
+};
 
 // One evaluation.
-class NormalRecompute::Call {
+class Call {
  public:
   // Of faces, without scratch. Element `first` goes to result[0].
   Call(const Segment& segment, double t, VectorView<float> result, std::size_t first)
@@ -200,15 +202,16 @@ class NormalRecompute::Call {
     triangles_.to = segment.to.x;
   }
 
-  Call(NormalRecompute& owner, double t, VectorView<float> result) : Call(owner.segment_, t, result, 0) {
-    groups_ = owner.groups_;
-    normals_ = reinterpret_cast<FaceNormal*>(owner.normals_.data());
-    window_ = owner.window_;
-    triangles_.is_coherent = owner.vertices_are_near_;
-    if (owner.pairs_.size() > 0) {
+  Call(const Segment& segment, const NormalGroups* groups, Scratch& scratch, double t, VectorView<float> result)
+      : Call(segment, t, result, 0) {
+    groups_ = groups;
+    normals_ = reinterpret_cast<FaceNormal*>(scratch.normals.data());
+    window_ = scratch.window;
+    triangles_.is_coherent = scratch.vertices_are_near;
+    if (scratch.pairs.size() > 0) {
       by_kernel_ = true;
-      triangles_.from = owner.pairs_.data();
-      triangles_.to = owner.pairs_.data() + 4;
+      triangles_.from = scratch.pairs.data();
+      triangles_.to = scratch.pairs.data() + 4;
       triangles_.is_paired = true;
     }
   }
@@ -227,7 +230,7 @@ class NormalRecompute::Call {
   std::size_t elements(IndexRange elements, std::size_t part) const noexcept {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
-    IndexRange ready;  // in the window
+    FaceWindow window{window_};
     // Faces that may be written there, so that elements which jump to and fro cost no more than a few times their own.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
@@ -239,7 +242,7 @@ class NormalRecompute::Call {
       const auto around = faces_of(*groups_, batch);
       const IndexRange needed = around.empty() ? IndexRange{} : range_of(around);
       credit = std::min(credit + 4 * around.size(), 4 * window_);
-      if (bring(needed, normals, ready, credit))
+      if (bring(needed, normals, window, credit))
         zeros += batch_of_groups(batch, {normals, window_ - 1, false});
       else
         zeros += scattered_groups(batch);
@@ -292,25 +295,17 @@ class NormalRecompute::Call {
     }
   }
 
-  // Makes the window hold the needed faces. Those in it follow on each other up to ready.end(), and more are added
-  // there; false where the needed ones do not fit, or would cost more than there is credit for.
-  bool bring(IndexRange needed, FaceNormal* normals, IndexRange& ready, std::size_t& credit) const {
-    if (needed.count == 0) return true;
-    const bool follows = ready.first <= needed.first && needed.first <= ready.end();
-    if (follows && needed.end() <= ready.end()) return true;
-    std::size_t first = follows ? ready.end() : needed.first / kFaceBlock * kFaceBlock;
+  // Makes the window hold the needed faces. False where they do not fit, or would cost more than there is credit for.
+  bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
+    if (needed.count == 0 || window.holds(needed)) return true;
+    const bool follows = window.begin <= needed.first && needed.first <= window.end;
+    const std::size_t first = follows ? window.end : needed.first / kFaceBlock * kFaceBlock;
     const std::size_t end =
         std::min((needed.end() + kFaceBlock - 1) / kFaceBlock * kFaceBlock, segment_.topology->face_count());
-    if (end - needed.first > window_ || end - first > credit) return false;
+    if (end - needed.first > window.capacity || end - first > credit) return false;
     credit -= end - first;
-    const std::size_t oldest = follows ? ready.first : first;
-    while (first < end) {
-      const std::size_t place = first & (window_ - 1), count = std::min(end - first, window_ - place);
-      write_normals({first, count}, normals + place);
-      first += count;
-    }
-    const std::size_t held = std::min(end - oldest, window_);
-    ready = {end - held, held};
+    if (!follows) window.start_at(first);
+    window.extend(end, [&](IndexRange faces, std::size_t place) { write_normals(faces, normals + place); });
     return true;
   }
 
@@ -346,37 +341,64 @@ class NormalRecompute::Call {
   std::size_t window_ = 0;
 };
 
+}  // namespace
+
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept {
   assert(result.count == faces.count && faces.end() <= segment.topology->face_count());
-  return NormalRecompute::Call(segment, t, result, faces.first).faces(faces);
+  return Call(segment, t, result, faces.first).faces(faces);
 }
 
-NormalRecompute::NormalRecompute(const Segment& segment) : segment_(segment) { choose_positions(); }
-
-NormalRecompute::NormalRecompute(const Segment& segment, const NormalGroups& groups)
-    : segment_(segment), groups_(&groups), window_(window_for(groups)) {
-  choose_positions();
-  const std::size_t parts = std::clamp<std::size_t>(groups.size() / kSmallestPart, 1, kMostParts);
-  const std::size_t normals = window_ == 0 ? segment.topology->face_count() : parts * window_;
-  normals_ = AlignedBytes(normals * sizeof(FaceNormal));
+Result<std::vector<float>> unit_normals_at(const Motion& motion, double time) {
+  const Result<Instant> instant = find_instant(motion, time);
+  if (!instant) return instant.error();
+  std::vector<float> normals(3 * motion.topology.face_count());
+  NormalRecompute recompute(motion.segment(instant.value().segment));
+  recompute.unit_normals(instant.value().t, VectorView<float>::packed(normals.data(), recompute.size()), Threads::kAll);
+  return normals;
 }
 
-void NormalRecompute::choose_positions() {
-  const Topology& topology = *segment_.topology;
-  if (!topology.all_triangles() || topology.face_count() == 0) return;
-  const std::size_t vertices = topology.vertex_count();
-  vertices_are_near_ = vertices * 6 * sizeof(float) <= kNearBytes || lines_per_face(topology) <= kMostLinesPerFace;
-  if (!vertices_are_near_ || !is_packed(segment_.from) || !is_packed(segment_.to))
-    pairs_ = AlignedArray<float>(8 * vertices);
+Result<std::vector<float>> unit_normals_at(const Motion& motion, const NormalGroups& groups, double time) {
+  const Result<Instant> instant = find_instant(motion, time);
+  if (!instant) return instant.error();
+  const std::size_t outputs = groups.element_of_output().size();
+  std::vector<float> different(3 * groups.size()), normals(3 * outputs);
+  const auto elements = VectorView<float>::packed(different.data(), groups.size());
+  NormalRecompute(motion.segment(instant.value().segment), groups)
+      .unit_normals(instant.value().t, elements, Threads::kAll);
+  groups.copy_to_outputs(elements, VectorView<float>::packed(normals.data(), outputs));
+  return normals;
 }
 
-std::size_t NormalRecompute::size() const noexcept {
-  if (segment_.topology == nullptr) return 0;
-  return groups_ == nullptr ? segment_.topology->face_count() : groups_->size();
+struct NormalRecompute::Parts {
+  explicit Parts(const Segment& of_segment, const NormalGroups* of_groups = nullptr);
+
+  [[nodiscard]] std::size_t size() const noexcept {
+    return groups == nullptr ? segment.topology->face_count() : groups->size();
+  }
+  std::size_t unit_normals(double t, VectorView<float> result, Threads threads);
+
+  Segment segment;
+  const NormalGroups* groups;  // nothing: faces
+  Scratch scratch;
+};
+
+NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_groups)
+    : segment(of_segment), groups(of_groups) {
+  const Topology& topology = *segment.topology;
+  const std::size_t faces = topology.face_count(), vertices = topology.vertex_count();
+  if (topology.all_triangles() && faces > 0) {
+    scratch.vertices_are_near =
+        vertices * 6 * sizeof(float) <= kNearBytes || lines_per_face(topology) <= kMostLinesPerFace;
+    if (!scratch.vertices_are_near || !is_packed(segment.from) || !is_packed(segment.to))
+      scratch.pairs = AlignedArray<float>(8 * vertices);
+  }
+  if (groups == nullptr) return;
+  scratch.window = window_for(*groups);
+  const std::size_t parts = std::clamp<std::size_t>(groups->size() / kSmallestPart, 1, kMostParts);
+  scratch.normals = AlignedBytes((scratch.window == 0 ? faces : parts * scratch.window) * sizeof(FaceNormal));
 }
 
-std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Threads threads) {
-  assert(result.count == size());
+std::size_t NormalRecompute::Parts::unit_normals(double t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
   // The same blocks whatever the threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
@@ -385,28 +407,49 @@ std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Th
     else
       parallel_blocks(count, block, body);
   };
-  if (pairs_.size() > 0) {
-    in_blocks(segment_.topology->vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
-      float* pair = pairs_.data() + 8 * vertices.first;
+  if (scratch.pairs.size() > 0) {
+    in_blocks(segment.topology->vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
+      float* pair = scratch.pairs.data() + 8 * vertices.first;
       for (std::size_t v = vertices.first; v < vertices.end(); ++v, pair += 8) {
-        const Vec3f from = segment_.from[v], to = segment_.to[v];
+        const Vec3f from = segment.from[v], to = segment.to[v];
         pair[0] = from.x, pair[1] = from.y, pair[2] = from.z, pair[3] = 0;
         pair[4] = to.x, pair[5] = to.y, pair[6] = to.z, pair[7] = 0;
       }
     });
   }
-  const Call call(*this, t, result);
+  const Call call(segment, groups, scratch, t, result);
   std::atomic<std::size_t> zeros = 0;
-  if (groups_ == nullptr) {
+  if (groups == nullptr) {
     in_blocks(size(), kSmallestPart, [&](IndexRange faces) { zeros += call.faces(faces); });
     return zeros;
   }
-  if (window_ == 0)
-    in_blocks(segment_.topology->face_count(), kSmallestPart, [&](IndexRange faces) { call.write_all_normals(faces); });
-  const std::size_t parts = window_ == 0 ? kMostParts : normals_.size() / sizeof(FaceNormal) / window_;
+  if (scratch.window == 0)
+    in_blocks(segment.topology->face_count(), kSmallestPart, [&](IndexRange faces) { call.write_all_normals(faces); });
+  const std::size_t parts =
+      scratch.window == 0 ? kMostParts : scratch.normals.size() / sizeof(FaceNormal) / scratch.window;
   const std::size_t part = std::max((size() / parts + kGroupBatch) / kGroupBatch * kGroupBatch, kSmallestPart);
   in_blocks(size(), part, [&](IndexRange elements) { zeros += call.elements(elements, elements.first / part); });
   return zeros;
+}
+
+NormalRecompute::NormalRecompute() noexcept = default;
+NormalRecompute::NormalRecompute(NormalRecompute&&) noexcept = default;
+NormalRecompute& NormalRecompute::operator=(NormalRecompute&&) noexcept = default;
+NormalRecompute::~NormalRecompute() = default;
+
+NormalRecompute::NormalRecompute(const Segment& segment) : parts_(std::make_unique<Parts>(segment)) {}
+NormalRecompute::NormalRecompute(const Segment& segment, const NormalGroups& groups)
+    : parts_(std::make_unique<Parts>(segment, &groups)) {}
+
+std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Threads threads) {
+  assert(result.count == size());
+  return parts_ ? parts_->unit_normals(t, result, threads) : 0;
+}
+
+std::size_t NormalRecompute::size() const noexcept { return parts_ ? parts_->size() : 0; }
+
+std::size_t NormalRecompute::bytes() const noexcept {
+  return parts_ ? parts_->scratch.pairs.size() * sizeof(float) + parts_->scratch.normals.size() : 0;
 }
 
 }  // namespace chronormal

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
+#include "core/rounding.h"
 #include "normals/groups/corner_sets.h"
 
 namespace chronormal {
@@ -39,13 +39,8 @@ struct MovingEdge {
   }
 };
 
-/// 16 eps: the error of a cross product of two such edges, relative to the product of their sizes, and a margin.
-inline constexpr double kCrossNoise = 16 * std::numeric_limits<double>::epsilon();
-
-/// v, or zero where it is nothing but rounding of things of this size.
-[[nodiscard]] inline Vec3d without_noise(const Vec3d& v, double size) noexcept {
-  return max_abs(v) > kCrossNoise * size ? v : Vec3d{};
-}
+/// The error of a cross product of two such edges, relative to the product of their sizes, and a margin.
+inline constexpr double kCrossError = 32 * kUnitRoundoff;
 
 /// What a corner of a face with normal n adds; n is not zero. Zero where an edge has no length.
 [[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
@@ -54,9 +49,12 @@ inline constexpr double kCrossNoise = 16 * std::numeric_limits<double>::epsilon(
   if (weighting == Weighting::kUniform) return unit(n);
   const MovingEdge e = MovingEdge::at(segment, corner.here, corner.next, t);
   const MovingEdge f = MovingEdge::at(segment, corner.here, corner.previous, t);
-  if (without_noise(e.vector, e.size) == Vec3d{} || without_noise(f.vector, f.size) == Vec3d{}) return {};
+  const auto is_rounding = [](const MovingEdge& edge) {
+    return without_rounding(edge.vector, kCrossError * edge.size) == Vec3d{};
+  };
+  if (is_rounding(e) || is_rounding(f)) return {};
   if (weighting == Weighting::kMax) {
-    const Vec3d product = without_noise(cross(e.vector, f.vector), e.size * f.size);
+    const Vec3d product = without_rounding(cross(e.vector, f.vector), kCrossError * (e.size * f.size));
     return (1 / (dot(e.vector, e.vector) * dot(f.vector, f.vector))) * product;
   }
   const double angle = angle_between(e.vector, f.vector);

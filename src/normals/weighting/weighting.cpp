@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/blocks.h"
+#include "core/vector_area.h"
 #include "normals/weighting/corner_terms.h"
 
 namespace chronormal {
@@ -14,14 +15,12 @@ constexpr std::size_t kBlock = 1024;
 Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
   Vec3d n;
   double size = 0;
-  MovingEdge e = MovingEdge::at(segment, face[0], face[1], t);
-  for (std::size_t c = 2; c < face.size(); ++c) {
-    const MovingEdge f = MovingEdge::at(segment, face[0], face[c], t);
+  const auto edge_to = [&](std::size_t c) { return MovingEdge::at(segment, face[0], face[c], t); };
+  for_fan(face.size(), edge_to, [&](const MovingEdge& e, const MovingEdge& f) {
     n = n + cross(e.vector, f.vector);
     size += e.size * f.size;
-    e = f;
-  }
-  return without_noise(n, static_cast<double>(face.size() - 2) * size);
+  });
+  return without_rounding(n, kCrossError * (static_cast<double>(face.size() - 2) * size));
 }
 
 }  // namespace
@@ -69,7 +68,7 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
       sum = sum + term;
       size += max_abs(term);
     }
-    result[i] = without_noise(sum, size);
+    result[i] = without_rounding(sum, kCrossError * size);
   }
 }
 

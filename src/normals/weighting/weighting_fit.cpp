@@ -9,6 +9,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
+#include "core/vector_area.h"
 #include "normals/weighting/corner_terms.h"
 #include "normals/weighting/taylor.h"
 
@@ -57,9 +58,8 @@ std::array<Interval, 3> cross_of(const std::array<Interval, 3>& a, const std::ar
 
 IntervalNormals face_intervals(const Segment& segment, std::span<const std::uint32_t> face) {
   IntervalNormals sum{};
-  IntervalEdge e = edge_between(segment, face[0], face[1]);
-  for (std::size_t c = 2; c < face.size(); ++c) {
-    const IntervalEdge f = edge_between(segment, face[0], face[c]);
+  const auto edge_to = [&](std::size_t c) { return edge_between(segment, face[0], face[c]); };
+  for_fan(face.size(), edge_to, [&sum](const IntervalEdge& e, const IntervalEdge& f) {
     const auto n0 = cross_of(e.from, f.from), n1 = cross_of(e.to, f.to);
     const auto before = cross_of(e.from, f.to), after = cross_of(e.to, f.from);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -67,8 +67,7 @@ IntervalNormals face_intervals(const Segment& segment, std::span<const std::uint
       sum.control[1][i] = sum.control[1][i] + 0.5 * (before[i] + after[i]);
       sum.control[2][i] = sum.control[2][i] + n1[i];
     }
-    e = f;
-  }
+  });
   return sum;
 }
 
@@ -327,7 +326,7 @@ Sampled sample(const Segment& segment, std::span<const Vec3d> of_faces, const El
     terms += length(term);
     areas += length(n);
   }
-  result.normal = without_noise(result.normal, terms);
+  result.normal = without_rounding(result.normal, kCrossError * terms);
   result.to_area = terms > 0 ? areas / terms : 0;
   return result;
 }

@@ -15,6 +15,7 @@
 #include <hwy/cache_control.h>
 
 #include "schemes/kernels/formulas-inl.h"
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,7 +55,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 }
 
 template <class F>
-HWY_NOINLINE void EvaluateBlocks(const CurveBlocks& curves, std::size_t first_block, std::size_t block_count,
+HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
   // Copies, so that the compiler sees that no store changes them.
   const BlockResult result = result_of_caller;
@@ -70,7 +71,7 @@ HWY_NOINLINE void EvaluateBlocks(const CurveBlocks& curves, std::size_t first_bl
 }
 
 template <class F>
-HWY_NOINLINE void AdvanceBlocks(const CurveBlocks& curves, std::size_t first_block, std::size_t block_count,
+HWY_NOINLINE void AdvanceBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                 float* state, const BlockResult& result_of_caller) {
   const BlockResult result = result_of_caller;
   const float* values = curves.values + first_block * F::kPlanes * kBlock;
@@ -124,7 +125,7 @@ auto Visit(Formula formula, Visitor visit) {
 // Calls write(first block, number of blocks, where) until all elements have their normals. A layout that vectors cannot
 // be stored in, and a last block that is not full, go through a buffer.
 template <class Write>
-void WriteBlocks(const CurveBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
+void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;
   std::size_t done = 0;  // blocks
   const bool packed = result.stride == 3 && result.y == result.x + 1 && result.z == result.x + 2;
@@ -146,15 +147,15 @@ void WriteBlocks(const CurveBlocks& curves, VectorView<float> result, std::size_
   }
 }
 
-void EvaluateCurves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
-                    std::size_t stream_from) {
+void EvaluateCurves(Formula formula, const CoefficientBlocks& curves, const SharedValues& shared,
+                    VectorView<float> result, std::size_t stream_from) {
   const auto evaluate = Visit(formula, [](auto f) { return &EvaluateBlocks<decltype(f)>; });
   WriteBlocks(curves, result, stream_from, [&](std::size_t first, std::size_t count, const BlockResult& to) {
     evaluate(curves, first, count, shared, to);
   });
 }
 
-void AdvanceCurves(Formula formula, const CurveBlocks& curves, float* state, VectorView<float> result) {
+void AdvanceCurves(Formula formula, const CoefficientBlocks& curves, float* state, VectorView<float> result) {
   const auto advance = VisitPlayable(formula, [](auto f) { return &AdvanceBlocks<decltype(f)>; });
   WriteBlocks(curves, result, kStreamFrom, [&](std::size_t first, std::size_t count, const BlockResult& to) {
     advance(curves, first, count, state, to);
@@ -182,13 +183,13 @@ std::vector<Counting> counting(std::span<const float> values) {
 
 }  // namespace
 
-void evaluate_curves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
-                     std::size_t stream_from) noexcept {
+void evaluate_curves(Formula formula, const CoefficientBlocks& curves, const SharedValues& shared,
+                     VectorView<float> result, std::size_t stream_from) noexcept {
   assert(result.count == curves.element_count);
   HWY_DYNAMIC_DISPATCH(EvaluateCurves)(formula, curves, shared, result, stream_from);
 }
 
-void advance_curves(Formula formula, const CurveBlocks& curves, float* state, VectorView<float> result) noexcept {
+void advance_curves(Formula formula, const CoefficientBlocks& curves, float* state, VectorView<float> result) noexcept {
   assert(result.count == curves.element_count);
   HWY_DYNAMIC_DISPATCH(AdvanceCurves)(formula, curves, state, result);
 }

@@ -16,6 +16,7 @@
 
 #include "chronormal/core/views.h"
 #include "chronormal/schemes/scheme.h"
+#include "core/memory.h"
 
 namespace chronormal {
 
@@ -40,7 +41,7 @@ enum class Formula {
 };
 
 /// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
-struct CurveBlocks {
+struct CoefficientBlocks {
   const float* values = nullptr;
   std::size_t plane_count = 0;
   std::size_t element_count = 0;
@@ -48,12 +49,12 @@ struct CurveBlocks {
 
 /// Writes the unit normals of all elements at one t.
 /// stream_from: see core/memory.h. result must have as many vectors as there are elements, and may have any layout
-void evaluate_curves(Formula formula, const CurveBlocks& curves, const SharedValues& shared, VectorView<float> result,
-                     std::size_t stream_from = kStreamFrom) noexcept;
+void evaluate_curves(Formula formula, const CoefficientBlocks& curves, const SharedValues& shared,
+                     VectorView<float> result, std::size_t stream_from = kStreamFrom) noexcept;
 
 /// Writes the unit normals of a state that is being played, and moves it on by a step. The state lies in blocks like
 /// the coefficients. The formula must be a sum of 2, 3 or 4, or an arc at uniform speed.
-void advance_curves(Formula formula, const CurveBlocks& curves, float* state, VectorView<float> result) noexcept;
+void advance_curves(Formula formula, const CoefficientBlocks& curves, float* state, VectorView<float> result) noexcept;
 
 /// What either costs for one element of these coefficients: the same text, instantiated with a scalar that counts.
 [[nodiscard]] OperationCounts count_evaluation(Formula formula, std::span<const float> coefficients,

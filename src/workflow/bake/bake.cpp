@@ -1,3 +1,11 @@
+// Bakes a glTF file. A mesh goes through four steps, each a function of the values of those before it:
+//
+//     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
+//     plan_mesh             which products of weights the animations need                            plan
+//     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
+//     MeshWriter            the arrays and all that counts targets, as edits of the file             write_mesh
+//
+// The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
 #include "chronormal/workflow/bake.h"
 
 #include <algorithm>
@@ -6,242 +14,239 @@
 #include <set>
 #include <utility>
 
-#include "workflow/bake/bake_mesh.h"
-#include "workflow/bake/bake_plan.h"
-#include "workflow/bake/bake_terms.h"
+#include "chronormal/analysis/quality.h"
+#include "workflow/bake/deltas.h"
+#include "workflow/bake/drivers.h"
+#include "workflow/bake/plan.h"
+#include "workflow/bake/terms.h"
+#include "workflow/bake/warnings.h"
+#include "workflow/bake/write_mesh.h"
+#include "workflow/bake/write_tracks.h"
+#include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
 namespace {
 
-// Hosts that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
-// specification asks for).
-constexpr std::size_t kMorphedAttributes = 8;
+// What became of one mesh.
+struct MeshBake {
+  BakedMesh report;
+  std::vector<std::string> warnings;
+  std::vector<WeightProduct> extras;
+  std::optional<nlohmann::ordered_json> drivers;  // where nothing in the file drives the extra targets
+};
 
-std::string mesh_name(const GltfMesh& mesh, std::size_t index) {
-  return mesh.name.empty() ? std::string("mesh ").append(std::to_string(index)) : mesh.name;
+// The weights that a file gives to a mesh.
+struct MeshWeights {
+  std::vector<WeightTrack> tracks;  // of the animations; `use` refers to them
+  WeightUse use;
+  bool is_driven = false;  // an animation gives some moving target a weight
+};
+
+// The meshes that might move: only their arrays tell whether they do.
+std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
+  std::vector<std::size_t> result;
+  for (std::size_t m = 0; m < document.meshes().size(); ++m) {
+    const auto has_targets = [](const GltfPrimitive& primitive) {
+      return primitive.has_faces() && std::any_of(primitive.targets.begin(), primitive.targets.end(),
+                                                  [](const auto& target) { return target.positions; });
+    };
+    const auto& primitives = document.meshes()[m].primitives;
+    if (std::any_of(primitives.begin(), primitives.end(), has_targets)) result.push_back(m);
+  }
+  return result;
 }
 
-class Baker {
- public:
-  Baker(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit)
-      : document_(document), options_(options), edit_(edit), zeros_(edit, options.dense_zeros) {}
+bool any_moves(const GltfShading& shading) {
+  return std::any_of(shading.set.targets.begin(), shading.set.targets.end(),
+                     [](const BlendTarget& target) { return !target.vertices.empty(); });
+}
 
-  Result<GltfBake> run() {
-    const std::vector<std::size_t> moving = moving_meshes();
-    for (const std::size_t mesh : moving) total_ += document_.meshes()[mesh].target_count;
-    bake_.meshes.reserve(moving.size());
-    for (const std::size_t mesh : moving) {
-      if (Status status = bake_mesh(mesh); !status) return status.error();
+bool any_shaded(const GltfShading& shading) {
+  return std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
+                     [](std::uint32_t e) { return e != GltfShading::kNoElement; });
+}
+
+Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::size_t mesh) {
+  const std::string extras = std::string("/meshes/").append(std::to_string(mesh)).append("/extras");
+  if (!edit.has(extras) || edit.text(extras).starts_with("{")) return Success{};
+  return invalid_input(document.name() + ", " + extras,
+                       "it is no object, so that there is no place to say what was baked");
+}
+
+// Tracks with the same keys, which drive the mesh through several nodes, count once.
+Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
+  const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
+  MeshWeights weights{{}, WeightUse(targets), false};
+  for (std::size_t a = 0; a < document.animations().size(); ++a) {
+    std::set<std::size_t> seen;
+    const std::vector<GltfTrack>& tracks = document.animations()[a].tracks;
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      if (document.nodes()[tracks[t].node].mesh != mesh || !seen.insert(tracks[t].same_keys_as).second) continue;
+      Result<GltfKeys> keys = document.keys(a, t);
+      if (!keys) return keys.error();
+      weights.tracks.push_back({tracks[t].interpolation, std::move(keys).value(), targets});
     }
-    std::vector<BakedMesh*> reports;
-    for (const std::size_t n : report_of_plan_) reports.push_back(&bake_.meshes[n]);
-    if (Status status = write_tracks(document_, plans_, options_.tolerance, edit_, reports, bake_.converted_tracks);
-        !status)
+  }
+  for (const WeightTrack& track : weights.tracks) weights.use.add_track(track);
+  for (std::size_t i = 0; i < targets; ++i) weights.is_driven |= moves(shading, i) && weights.use.together(i, i);
+  weights.use.add_pose(document.meshes()[mesh].weights);
+  for (const GltfNode& node : document.nodes()) {
+    if (node.mesh == mesh && !node.weights.empty()) weights.use.add_pose(node.weights);
+  }
+  return weights;
+}
+
+// The parts whose base normals are made anew.
+std::vector<bool> replaced_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
+  std::vector<bool> result;
+  for (const GltfPart& part : shading.parts)
+    result.push_back(mesh.primitives[part.primitive].has_normals ? options.recompute_base : options.smooth);
+  return result;
+}
+
+// The report as far as it follows from the plan.
+void report_plan(const MeshPlan& plan, std::size_t target_count, BakedMesh& report) {
+  report.encoding = plan.encoding;
+  for (const WeightProduct& extra : plan.extras)
+    report.extras.push_back({target_count + report.extras.size(), extra.i, extra.j});
+  report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
+  if (plan.encoding == BakeEncoding::kExact)
+    report.undriven = static_cast<std::size_t>(std::count(plan.is_line.begin(), plan.is_line.end(), true));
+  report.largest_error = plan.lines.largest_error() * kDegreesPerRadian;
+  report.fitted_elements = plan.lines.elements();
+  report.resampling_error = plan.left_out;
+}
+
+GltfBakeMark mark_of(const BakedMesh& report) {
+  return {report.encoding == BakeEncoding::kExact ? "exact" : "endpoint", false, report.extras};
+}
+
+// Bakes what was read of one mesh, which moves and has normals. step() is called for each target that is done.
+Status bake_shading(const GltfDocument& document, const GltfShading& shading, const BakeOptions& options,
+                    const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
+  const GltfMesh& mesh = document.meshes()[shading.mesh];
+  if (Status status = check_extras(document, edit, shading.mesh); !status) return status;
+  const Result<MeshWeights> weights = read_weights(document, shading);
+  if (!weights) return weights.error();
+  const NormalTerms terms(shading, options.weighting);
+  const Result<MeshPlan> planned =
+      plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
+  if (!planned) return planned.error();
+  const MeshPlan& plan = planned.value();
+  report_plan(plan, mesh.target_count, baked.report);
+
+  const std::size_t bytes_before = edit.added_bytes();
+  MeshWriter writer(document, shading, options.smooth, zeros, edit);
+  const std::vector<bool> is_replaced = replaced_parts(mesh, shading, options);
+  const bool any_replaced = std::find(is_replaced.begin(), is_replaced.end(), true) != is_replaced.end();
+  const std::vector<float> recomputed =
+      any_replaced ? recomputed_base_normals(shading, terms, is_replaced) : std::vector<float>();
+  if (Status status = writer.write_base(is_replaced, recomputed); !status) return status;
+
+  const DeltaSource source{shading, terms, plan, any_replaced ? recomputed : shading.normals};
+  const BaseFaults faults = find_base_faults(source);
+  baked.report.without_base = faults.without_base;
+  baked.report.without_stored = faults.without_stored;
+  for (std::size_t i = 0; i < mesh.target_count; ++i) {
+    std::optional<TargetDeltas> deltas;
+    if (moves(shading, i)) {
+      deltas = own_target_deltas(source, i);
+      baked.report.largest_error = std::fmax(baked.report.largest_error, deltas->error * kDegreesPerRadian);
+    }
+    writer.write_target(i, deltas);
+    step();
+  }
+  for (const WeightProduct& extra : plan.extras) {
+    writer.append_target(extra_target_deltas(source, extra));
+    step();
+  }
+  writer.append_weights(baked.report.extras);
+  writer.set_mark(mark_of(baked.report));
+  baked.report.bytes = edit.added_bytes() - bytes_before;
+
+  baked.extras = plan.extras;
+  warn_of_baked(mesh, shading, plan, options, baked.report, baked.warnings);
+  if (!plan.is_driven && !plan.extras.empty()) baked.drivers = drivers_of(mesh, baked.report);
+  return Success{};
+}
+
+// Nothing for a mesh that does not move.
+Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
+                                          const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit) {
+  const GltfMesh& mesh = document.meshes()[index];
+  MeshBake baked;
+  baked.report.mesh = index;
+  baked.report.name = mesh.name;
+  if (mesh.mark_fault) return *mesh.mark_fault;
+  if (mesh.mark) {
+    baked.report.already_baked = true;
+    baked.report.encoding = mesh.mark->encode == "exact" ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
+    return std::optional(std::move(baked));
+  }
+  Result<GltfShading> shading = read_gltf_shading(document, index, {options.smooth, options.crease_angle, false});
+  if (!shading) return shading.error();
+  if (options.weighting == Weighting::kArea) shading.value().groups.forget_corners();
+  if (!any_moves(shading.value())) return std::optional<MeshBake>();
+  for (const GltfPrimitive& primitive : mesh.primitives) {
+    if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;
+  }
+  warn_of_flat(mesh, baked.report, baked.warnings);
+  if (any_shaded(shading.value())) {
+    if (Status status = bake_shading(document, shading.value(), options, step, zeros, edit, baked); !status)
       return status.error();
-    return finish();
   }
-
- private:
-  // Those that might move: it takes their arrays to know.
-  [[nodiscard]] std::vector<std::size_t> moving_meshes() const {
-    std::vector<std::size_t> result;
-    for (std::size_t m = 0; m < document_.meshes().size(); ++m) {
-      const auto moves = [](const GltfPrimitive& primitive) {
-        return primitive.has_faces() && std::any_of(primitive.targets.begin(), primitive.targets.end(),
-                                                    [](const auto& target) { return target.positions; });
-      };
-      const auto& primitives = document_.meshes()[m].primitives;
-      if (std::any_of(primitives.begin(), primitives.end(), moves)) result.push_back(m);
-    }
-    return result;
-  }
-
-  Status bake_mesh(std::size_t index) {
-    const GltfMesh& mesh = document_.meshes()[index];
-    BakedMesh report;
-    report.mesh = index;
-    report.name = mesh.name;
-    if (mesh.mark_fault) return *mesh.mark_fault;
-    if (mesh.mark) {
-      report.already_baked = true;
-      report.encoding = mesh.mark->encode == "exact" ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
-      bake_.meshes.push_back(std::move(report));
-      return Success{};
-    }
-    Result<GltfShading> read = read_gltf_shading(document_, index, {options_.smooth, options_.crease_angle, false});
-    if (!read) return read.error();
-    if (options_.weighting == Weighting::kArea) read.value().groups.forget_corners();
-    const GltfShading& shading = read.value();
-    bool any_moves = false;
-    for (std::size_t i = 0; i < mesh.target_count; ++i) any_moves = any_moves || moves(shading, i);
-    if (!any_moves) return Success{};
-    for (const GltfPrimitive& primitive : mesh.primitives) {
-      if (primitive.has_faces() && !primitive.has_normals && !options_.smooth) ++report.left_flat;
-    }
-    if (report.left_flat > 0) {
-      bake_.warnings.push_back(mesh_name(mesh, index) + ": " + std::to_string(report.left_flat) +
-                               (report.left_flat == 1 ? " primitive has" : " primitives have") +
-                               " no normals and stays flat, as hosts shade it by the specification "
-                               "(--smooth gives it normals)");
-    }
-    const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
-                                        [](std::uint32_t e) { return e != GltfShading::kNoElement; });
-    if (any_shaded) {
-      if (Status status = write(shading, report); !status) return status;
-    }
-    bake_.meshes.push_back(std::move(report));
-    return Success{};
-  }
-
-  Status write(const GltfShading& shading, BakedMesh& report) {
-    const std::size_t index = shading.mesh;
-    const GltfMesh& mesh = document_.meshes()[index];
-    const std::string extras = std::string("/meshes/").append(std::to_string(index)).append("/extras");
-    if (edit_.has(extras) && !edit_.text(extras).starts_with("{")) {
-      return invalid_input(std::string(document_.name()).append(", ").append(extras),
-                           "it is no object, so that there is no place to say what was baked");
-    }
-    std::vector<WeightTrack> tracks;
-    if (Status status = read_tracks(index, tracks); !status) return status;
-    WeightUse use(mesh.target_count);
-    for (const WeightTrack& track : tracks) use.add_track(track);
-    bool is_driven = false;
-    for (std::size_t i = 0; i < mesh.target_count; ++i) is_driven |= moves(shading, i) && use.together(i, i);
-    add_poses(index, use);
-    const NormalTerms terms(shading, options_.weighting);
-    Result<MeshPlan> plan = plan_mesh(document_, shading, terms, use, is_driven, options_);
-    if (!plan) return plan.error();
-    const auto step = [this] {
-      if (options_.progress) options_.progress(std::min(++done_, total_), total_);
-    };
-    const std::size_t bytes_before = edit_.added_bytes();
-    if (Status status = write_mesh(document_, shading, terms, plan.value(), options_, step, zeros_, edit_, report);
-        !status)
-      return status;
-    report.bytes = edit_.added_bytes() - bytes_before;
-    warn(plan.value(), report);
-    if (shading.split_by_crease > 0) {
-      bake_.warnings.push_back(mesh_name(mesh, index) + ": " + std::to_string(shading.split_by_crease) +
-                               " vertices lie on edges sharper than the crease angle and got one normal all the same");
-    }
-    plan.value().is_shown = std::vector<bool>();
-    plan.value().largest = std::vector<double>();
-    plan.value().lines = FittedLines();
-    plans_.push_back(std::move(plan).value());
-    report_of_plan_.push_back(bake_.meshes.size());
-    return Success{};
-  }
-
-  // The tracks that drive a mesh through any node; those of the same keys once.
-  Status read_tracks(std::size_t mesh, std::vector<WeightTrack>& tracks) const {
-    for (std::size_t a = 0; a < document_.animations().size(); ++a) {
-      std::set<std::size_t> seen;
-      const std::vector<GltfTrack>& of_animation = document_.animations()[a].tracks;
-      for (std::size_t t = 0; t < of_animation.size(); ++t) {
-        if (document_.nodes()[of_animation[t].node].mesh != mesh) continue;
-        if (!seen.insert(of_animation[t].same_keys_as).second) continue;
-        Result<GltfKeys> keys = document_.keys(a, t);
-        if (!keys) return keys.error();
-        tracks.push_back(
-            {of_animation[t].interpolation, std::move(keys).value(), document_.meshes()[mesh].target_count});
-      }
-    }
-    return Success{};
-  }
-
-  void add_poses(std::size_t mesh, WeightUse& use) const {
-    use.add_pose(document_.meshes()[mesh].weights);
-    for (const GltfNode& node : document_.nodes()) {
-      if (node.mesh == mesh && !node.weights.empty()) use.add_pose(node.weights);
-    }
-  }
-
-  void warn(const MeshPlan& plan, const BakedMesh& report) {
-    const GltfMesh& mesh = document_.meshes()[plan.mesh];
-    const std::string name = mesh_name(mesh, plan.mesh) + ": ";
-    if (!plan.is_driven && !options_.encoding) {
-      bake_.warnings.push_back(name +
-                               "no animation drives its targets, so that nothing could drive extra ones: each got the "
-                               "best single delta (--encode exact writes them all the same)");
-    }
-    if (report.undriven > 0) {
-      bake_.warnings.push_back(name + std::to_string(report.undriven) +
-                               (report.undriven == 1 ? " target is" : " targets are") +
-                               " driven by no animation and got the best single delta");
-    }
-    if (report.without_stored > 0) {
-      bake_.warnings.push_back(name + std::to_string(report.without_stored) +
-                               " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
-    }
-    constexpr std::size_t kMany = 64;
-    if (plan.extras.size() > kMany) {
-      bake_.warnings.push_back(name + std::to_string(plan.extras.size()) +
-                               " extra targets, for so many are active at once: --encode endpoint needs none");
-    }
-    if (report.without_base > 0) {
-      bake_.warnings.push_back(name + std::to_string(report.without_base) +
-                               " vertices have no area around them in the base: their normals are right but for "
-                               "weights near 0");
-    }
-    if (!plan.extras.empty() && (mesh.target_count + plan.extras.size()) * 2 > kMorphedAttributes) {
-      const std::size_t targets = mesh.target_count + plan.extras.size();
-      bake_.warnings.push_back(
-          name + std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
-          " morphed attributes; hosts that have room for 8 leave out those of the smallest weights");
-    }
-    if (!plan.is_driven && !plan.extras.empty()) add_drivers(mesh, report);
-  }
-
-  void add_drivers(const GltfMesh& mesh, const BakedMesh& report) {
-    nlohmann::ordered_json extras = nlohmann::ordered_json::array();
-    for (const GltfExtraTarget& extra : report.extras) {
-      const std::string formula = formula_of(extra);
-      nlohmann::ordered_json entry = {{"target", extra.target}};
-      if (!mesh.target_names.empty()) entry["targetName"] = "chronormal " + formula;
-      entry["formula"] = formula;
-      entry["factors"] = {extra.i, extra.j};
-      extras.push_back(std::move(entry));
-    }
-    drivers_.push_back({{"mesh", report.mesh}, {"name", mesh.name}, {"extras", std::move(extras)}});
-  }
-
-  Result<GltfBake> finish() {
-    Result<std::vector<std::string>> pointers = edit_.pointers();
-    if (!pointers) return pointers.error();
-    bake_.pointers = std::move(pointers).value();
-    bake_.added_bytes = edit_.added_bytes();
-    bake_.changed = !bake_.pointers.empty();
-    for (const BakedMesh& mesh : bake_.meshes) bake_.added_targets += mesh.extras.size();
-    if (options_.most_bytes && bake_.added_bytes > *options_.most_bytes) {
-      return invalid_input(document_.name(), "the new arrays take " + std::to_string(bake_.added_bytes) +
-                                                 " bytes, and at most " + std::to_string(*options_.most_bytes) +
-                                                 " are allowed");
-    }
-    if (!drivers_.empty()) {
-      bake_.drivers = nlohmann::ordered_json({{"version", 1}, {"meshes", std::move(drivers_)}})
-                          .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-      bake_.drivers += '\n';
-    }
-    return std::move(bake_);
-  }
-
-  const GltfDocument& document_;
-  const BakeOptions& options_;
-  GltfEdit& edit_;
-  ZeroVectors zeros_;
-  GltfBake bake_;
-  std::vector<MeshPlan> plans_;
-  std::vector<std::size_t> report_of_plan_;  // indices of bake_.meshes
-  nlohmann::ordered_json drivers_ = nlohmann::ordered_json::array();
-  std::size_t done_ = 0, total_ = 0;
-};
+  return std::optional(std::move(baked));
+}
 
 }  // namespace
 
 Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit) {
   assert(options.tolerance >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
-  return Baker(document, options, edit).run();
+  const std::vector<std::size_t> candidates = candidate_meshes(document);
+  std::size_t done = 0, total = 0;
+  for (const std::size_t mesh : candidates) total += document.meshes()[mesh].target_count;
+  const auto step = [&] {
+    if (options.progress) options.progress(std::min(++done, total), total);
+  };
+
+  GltfBake result;
+  ZeroVectors zeros(edit, options.dense_zeros);
+  std::vector<GrownMesh> grown;
+  std::vector<std::size_t> report_of_grown;
+  std::vector<nlohmann::ordered_json> drivers;
+  for (const std::size_t mesh : candidates) {
+    Result<std::optional<MeshBake>> baked = bake_mesh(document, mesh, options, step, zeros, edit);
+    if (!baked) return baked.error();
+    if (!baked.value()) continue;
+    MeshBake& of_mesh = *baked.value();
+    if (!of_mesh.extras.empty()) {
+      grown.push_back({mesh, std::move(of_mesh.extras)});
+      report_of_grown.push_back(result.meshes.size());
+    }
+    result.added_targets += of_mesh.report.extras.size();
+    result.meshes.push_back(std::move(of_mesh.report));
+    std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(result.warnings));
+    if (of_mesh.drivers) drivers.push_back(std::move(*of_mesh.drivers));
+  }
+  const Result<WrittenTracks> tracks = write_tracks(document, grown, options.tolerance / kDegreesPerRadian, edit);
+  if (!tracks) return tracks.error();
+  for (std::size_t n = 0; n < grown.size(); ++n)
+    result.meshes[report_of_grown[n]].resampling_error += tracks.value().errors[n] * kDegreesPerRadian;
+  result.converted_tracks = tracks.value().converted;
+
+  Result<std::vector<std::string>> pointers = edit.pointers();
+  if (!pointers) return pointers.error();
+  result.pointers = std::move(pointers).value();
+  result.changed = !result.pointers.empty();
+  result.added_bytes = edit.added_bytes();
+  if (options.most_bytes && result.added_bytes > *options.most_bytes) {
+    return invalid_input(document.name(), "the new arrays take " + std::to_string(result.added_bytes) +
+                                              " bytes, and at most " + std::to_string(*options.most_bytes) +
+                                              " are allowed");
+  }
+  result.drivers = drivers_file(drivers);
+  return result;
 }
 
 }  // namespace chronormal

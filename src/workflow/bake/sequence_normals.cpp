@@ -4,35 +4,27 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
-#include "core/noise.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
 
 namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // faces or elements that one task takes
 
-// Twice the vector area of a polygon, with components that are nothing but the rounding of its products set to zero.
-Vec3d vector_area(std::span<const std::uint32_t> face, const std::vector<Vec3d>& positions) {
-  Vec3d sum, magnitude;
+// The normal of a polygon, with components that are nothing but the rounding of its products set to zero.
+Vec3d polygon_normal(std::span<const std::uint32_t> face, const std::vector<Vec3d>& positions) {
+  CrossSum sum;
   const Vec3d a = positions[face[0]];
-  Vec3d e = positions[face[1]] - a;
-  for (std::size_t c = 2; c < face.size(); ++c) {
-    const Vec3d f = positions[face[c]] - a;
-    sum = sum + cross(e, f);
-    const Vec3d p{std::fabs(e.x), std::fabs(e.y), std::fabs(e.z)}, q{std::fabs(f.x), std::fabs(f.y), std::fabs(f.z)};
-    magnitude = magnitude + Vec3d{p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
-    e = f;
-  }
-  const double noise = 4 * std::numeric_limits<double>::epsilon() * static_cast<double>(face.size() - 2);
-  const auto keep = [noise](double v, double m) { return std::fabs(v) <= noise * m ? 0.0 : v; };
-  return {keep(sum.x, magnitude.x), keep(sum.y, magnitude.y), keep(sum.z, magnitude.z)};
+  const auto edge_to = [&](std::size_t c) { return positions[face[c]] - a; };
+  for_fan(face.size(), edge_to, [&sum](const Vec3d& e, const Vec3d& f) { sum.add(e, f); });
+  return sum.without_rounding();
 }
 
 }  // namespace
@@ -95,15 +87,11 @@ std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
 std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
   const Topology& topology = motion_->topology;
   std::vector<Vec3d> faces(topology.face_count()), result(elements());
-  numbered_blocks(faces.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t f = first; f < end; ++f) faces[f] = vector_area(topology.face(f), positions);
-  });
-  numbered_blocks(result.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t e = first; e < end; ++e) {
-      VectorSum sum;
-      for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
-      result[e] = sum.without_noise();
-    }
+  parallel_each(faces.size(), kBlock, [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
+  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+    VectorSum sum;
+    for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
+    result[e] = sum.without_rounding();
   });
   return result;
 }

@@ -52,9 +52,27 @@ class SequenceNormals {
   std::vector<std::vector<double>> bounds_;
 };
 
-/// The control normals of one element in one segment, from both of its keys and its bend (eq. 5).
-[[nodiscard]] inline ControlNormals with_bend(const Vec3d& n0, const Vec3d& n1, const Vec3d& bend) noexcept {
-  return {n0, 0.5 * (n0 + n1 - bend), n1};
+/// The normals of all elements in one segment.
+struct SegmentForm {
+  std::vector<Vec3d> from, to, bends;
+
+  /// The control normals of one element, from both of its keys and its bend (eq. 5).
+  [[nodiscard]] ControlNormals control_normals(std::size_t element) const noexcept {
+    return {from[element], 0.5 * (from[element] + to[element] - bends[element]), to[element]};
+  }
+};
+
+/// Calls body(segment, form) for every segment, one after the other, until it returns an error.
+template <class Body>
+[[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
+  SegmentForm form{{}, normals.at_key(0), {}};
+  for (std::size_t s = 0; s + 1 < normals.keys(); ++s) {
+    form.from.swap(form.to);
+    form.to = normals.at_key(s + 1);
+    form.bends = normals.bends(s);
+    if (Status status = body(s, form); !status) return status;
+  }
+  return Success{};
 }
 
 }  // namespace chronormal

@@ -11,9 +11,10 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/workflow/gltf_shading.h"
+#include "workflow/shading/gltf_shading.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
+#include "core/vector_area.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal {
@@ -62,7 +63,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
         const double* p = positions.data() + 3 * std::size_t{face[c]};
         return Vec3d{p[0], p[1], p[2]};
       };
-      for (std::size_t c = 1; c + 1 < face.size(); ++c) faces[f] = faces[f] + cross(at(c) - at(0), at(c + 1) - at(0));
+      faces[f] = twice_vector_area(face.size(), at);
     }
   });
   if (subject.groups == nullptr) return faces;
@@ -107,10 +108,10 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// Judges rows of weights, one after the other.
-class Judge {
+// Measures the errors at rows of weights, one after the other.
+class BlendMeter {
  public:
-  explicit Judge(const Subject& subject)
+  explicit BlendMeter(const Subject& subject)
       : subject_(subject),
         moved_(moved_outputs(subject)),
         normals_(subject.groups != nullptr
@@ -125,8 +126,8 @@ class Judge {
   }
 
   // Errors over rows of weights, with least squares over others.
-  BlendErrors judge(std::span<const double> rows, std::span<const double> fitted_rows,
-                    const std::function<void()>& progress) {
+  BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
+                      const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);
     BlendErrors errors;
     errors.rows = rows.size() / targets();
@@ -138,7 +139,7 @@ class Judge {
       const std::span<const double> weights = rows.subspan(row * targets(), targets());
       errors.active = std::max(errors.active, static_cast<std::size_t>(std::count_if(weights.begin(), weights.end(),
                                                                                      [](double w) { return w != 0; })));
-      judge(row, weights, best, errors);
+      measure(row, weights, best, errors);
       progress();
     }
     for (BlendError& error : errors.deltas) locate_worst(rows, error);
@@ -168,7 +169,7 @@ class Judge {
     return sum;
   }
 
-  void judge(std::size_t row, std::span<const double> weights, const DeltaNormals& best, BlendErrors& errors) {
+  void measure(std::size_t row, std::span<const double> weights, const DeltaNormals& best, BlendErrors& errors) {
     const std::size_t elements = normals_.size();
     std::vector<float> exact(3 * elements);
     (void)normals_.unit_normals(weights, VectorView<float>::packed(exact.data(), elements), Threads::kAll);
@@ -291,13 +292,13 @@ std::vector<double> random_rows(const Subject& subject, const std::vector<std::s
   return rows;
 }
 
-void judge_random(Judge& judge, const Subject& subject, const std::vector<std::size_t>& own,
-                  const BlendCompareOptions& options, const std::function<void()>& progress, BlendSubject& result) {
+void measure_random(BlendMeter& meter, const Subject& subject, const std::vector<std::size_t>& own,
+                    const BlendCompareOptions& options, const std::function<void()>& progress, BlendSubject& result) {
   for (const std::size_t active : active_counts(own.size(), options.active)) {
     const std::vector<double> rows = random_rows(subject, own, options.rows, active, options.seed);
     const std::vector<double> others =
         random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
-    result.errors.push_back(judge.judge(rows, others, progress));
+    result.errors.push_back(meter.measure(rows, others, progress));
     result.errors.back().active = active;  // without extra ones
   }
 }
@@ -398,8 +399,8 @@ Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOpt
   };
   BlendComparison result;
   result.subjects.push_back(describe(subject, kind));
-  Judge judge(subject);
-  judge_random(judge, subject, own, options, progress, result.subjects.back());
+  BlendMeter meter(subject);
+  measure_random(meter, subject, own, options, progress, result.subjects.back());
   return result;
 }
 
@@ -451,8 +452,8 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
     const Result<GltfShading> shading = read_gltf_shading(document, m);
     if (!shading) return shading.error();
     Subject subject{&shading.value().set, &shading.value().groups, &shading.value(), outputs_of(shading.value())};
-    Judge judge(subject);
-    if (!judge.moves()) {
+    BlendMeter meter(subject);
+    if (!meter.moves()) {
       ++result.still;
       continue;
     }
@@ -464,9 +465,9 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
       if (!poses) return poses.error();
       std::vector<double> rows;
       for (const std::vector<double>& pose : poses.value()) rows.insert(rows.end(), pose.begin(), pose.end());
-      described.errors.push_back(judge.judge(rows, rows, progress));
+      described.errors.push_back(meter.measure(rows, rows, progress));
     } else {
-      judge_random(judge, subject, own_targets(meshes[m]), options, progress, described);
+      measure_random(meter, subject, own_targets(meshes[m]), options, progress, described);
     }
     result.subjects.push_back(std::move(described));
   }

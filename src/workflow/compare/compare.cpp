@@ -131,7 +131,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   std::vector<float> planes(3 * range.count);
   float* const first = planes.data();
   const auto result = VectorView<float>::planes(first, first + range.count, first + 2 * range.count, range.count);
-  std::vector<std::unique_ptr<Playback>> playbacks(schemes.size());
+  std::vector<std::unique_ptr<SchemePlayback>> playbacks(schemes.size());
   if (access == Access::kSequential) {
     const double step = time_of_sample(1, samples);
     for (std::size_t s = 0; s < schemes.size(); ++s) playbacks[s] = schemes[s]->play(0, step, kDefaultAnchorInterval);

@@ -90,49 +90,47 @@ Result<NormalSampler> NormalSampler::make(const Motion& motion, const SampleOpti
   }
   Result<NormalGroups> groups = make_groups(motion, options.elements);
   if (!groups) return groups.error();
-  sampler.groups_ = std::move(groups).value();
+  sampler.groups_ = std::make_unique<const NormalGroups>(std::move(groups).value());
   return sampler;
 }
 
 std::size_t NormalSampler::element_count() const noexcept {
-  return are_faces() ? motion_->topology.face_count() : groups_.size();
+  return are_faces() ? motion_->topology.face_count() : groups_->size();
 }
 
 std::size_t NormalSampler::output_count() const noexcept {
-  return are_faces() ? motion_->topology.face_count() : groups_.element_of_output().size();
+  return are_faces() ? motion_->topology.face_count() : groups_->element_of_output().size();
 }
 
 std::span<const std::uint32_t> NormalSampler::element_of_output() const noexcept {
-  return are_faces() ? std::span<const std::uint32_t>() : groups_.element_of_output();
+  return are_faces() ? std::span<const std::uint32_t>() : groups_->element_of_output();
 }
 
 std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
   assert(pose.normals.size() == 3 * element_count());
   if (are_faces()) return pose.normals;
   std::vector<float> normals(3 * output_count());
-  groups_.copy_to_outputs(VectorView<const float>::packed(pose.normals.data(), element_count()),
-                          VectorView<float>::packed(normals.data(), output_count()));
+  groups_->copy_to_outputs(VectorView<const float>::packed(pose.normals.data(), element_count()),
+                           VectorView<float>::packed(normals.data(), output_count()));
   return normals;
 }
 
-std::vector<float> NormalSampler::area_normals(const Segment& segment, double t) {
-  if (curve_segment_ != segment.index) {
-    curves_ = are_faces() ? NormalCurves::of_faces(segment, {}, Threads::kAll, &curves_)
-                          : NormalCurves::of_groups(segment, groups_, {}, Threads::kAll, &curves_);
-    curve_segment_ = segment.index;
+std::vector<float> NormalSampler::unit_normals(const Segment& segment, double t, double evaluations) {
+  if (!segment_normals_ || segment_ != segment.index) {
+    const StrategyOptions strategy{.evaluations = evaluations};
+    segment_normals_ = are_faces() ? SegmentNormals(segment, strategy, Threads::kAll)
+                                   : SegmentNormals(segment, *groups_, strategy, Threads::kAll);
+    segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  const auto result = VectorView<float>::packed(normals.data(), element_count());
-  if (options_.length == NormalLength::kArea)
-    curves_.normals(t, result);
-  else
-    curves_.unit_normals(t, result, Threads::kAll);  // who writes them counts those without a direction
+  // Who writes them counts those without a direction.
+  segment_normals_->unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
 
 std::vector<float> NormalSampler::weighted_normals(const Segment& segment, double t) const {
   const std::vector<Vec3d> exact =
-      are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, groups_, options_.weighting, t);
+      are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, *groups_, options_.weighting, t);
   std::vector<float> normals;
   normals.reserve(3 * exact.size());
   for (const Vec3d& n : exact) {
@@ -142,15 +140,14 @@ std::vector<float> NormalSampler::weighted_normals(const Segment& segment, doubl
   return normals;
 }
 
-Pose NormalSampler::at(const Segment& segment, double t) {
-  const bool by_area = options_.weighting == Weighting::kArea;
-  return {positions_at(segment, t), by_area ? area_normals(segment, t) : weighted_normals(segment, t)};
-}
-
-Result<Pose> NormalSampler::at_time(double time) {
+Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
-  return at(motion_->segment(instant.value().segment), instant.value().t);
+  const Segment segment = motion_->segment(instant.value().segment);
+  const double t = instant.value().t;
+  const bool are_units = options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
+  return Pose{positions_at(segment, t),
+              are_units ? unit_normals(segment, t, evaluations) : weighted_normals(segment, t)};
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {

@@ -27,8 +27,22 @@ constexpr std::array<FormatName, 4> kFormats = {{
 
 bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || format == SampleFormat::kNpz; }
 
-Result<Pose> pose_of(NormalSampler& sampler, const Moments& moments, std::size_t i) {
-  if (!moments.times.empty()) return sampler.at_time(moments.times[i]);
+// For each time, how many times from it on lie in the same segment without a break.
+Result<std::vector<double>> times_in_a_row(const Motion& motion, const std::vector<double>& times) {
+  std::vector<double> counts(times.size(), 1);
+  std::size_t later = 0;  // the segment of the time after
+  for (std::size_t i = times.size(); i-- > 0;) {
+    const Result<Instant> instant = find_instant(motion, times[i]);
+    if (!instant) return instant.error();
+    if (i + 1 < times.size() && instant.value().segment == later) counts[i] += counts[i + 1];
+    later = instant.value().segment;
+  }
+  return counts;
+}
+
+Result<Pose> pose_of(NormalSampler& sampler, const Moments& moments, const std::vector<double>& in_a_row,
+                     std::size_t i) {
+  if (!moments.times.empty()) return sampler.at_time(moments.times[i], in_a_row[i]);
   if (!moments.weights.empty()) return sampler.at_weights(moments.weights[i]);
   return sampler.at_rest();
 }
@@ -162,6 +176,8 @@ Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& o
   Result<NormalSampler> made = NormalSampler::make(motion, options);
   if (!made) return made.error();
   NormalSampler& sampler = made.value();
+  const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
+  if (!in_a_row) return in_a_row.error();
 
   std::optional<Arrays> arrays;
   if (is_array(output.format)) {
@@ -174,7 +190,7 @@ Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& o
 
   SampleSummary summary;
   for (std::size_t i = 0; i < count; ++i) {
-    const Result<Pose> pose = pose_of(sampler, moments, i);
+    const Result<Pose> pose = pose_of(sampler, moments, in_a_row.value(), i);
     if (!pose) return pose.error();
     const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
     summary.normals += normals.size() / 3;

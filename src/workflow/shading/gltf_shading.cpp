@@ -1,4 +1,4 @@
-#include "chronormal/workflow/gltf_shading.h"
+#include "workflow/shading/gltf_shading.h"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/transform.h"
 #include "core/blocks.h"
+#include "core/vector_area.h"
 
 namespace chronormal {
 namespace {
@@ -331,7 +332,7 @@ Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> 
       const double* p = positions.data() + 3 * std::size_t{topology.face(f)[c]};
       return Vec3d{p[0], p[1], p[2]};
     };
-    result = result + cross(at(1) - at(0), at(2) - at(0));
+    result = result + twice_vector_area(3, at);
   }
   return result;
 }

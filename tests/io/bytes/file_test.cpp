@@ -17,7 +17,7 @@
 #include "chronormal/io/output.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::file_test {
 namespace {
 
 using test::read_whole;
@@ -255,4 +255,4 @@ TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::file_test

@@ -8,7 +8,7 @@
 #include "tests/support/cache_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::maya_cache_test {
 namespace {
 
 using std::string_literals::operator""s;
@@ -198,4 +198,4 @@ TEST(ReadMayaCache, files_that_are_not_there_are_named) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::maya_cache_test

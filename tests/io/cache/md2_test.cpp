@@ -6,7 +6,7 @@
 
 #include "tests/support/cache_bytes.h"
 
-namespace chronormal {
+namespace chronormal::md2_test {
 namespace {
 
 using std::string_literals::operator""s;
@@ -49,4 +49,4 @@ TEST(ReadMd2, errors_say_where_and_what) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::md2_test

@@ -8,7 +8,7 @@
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
 
-namespace chronormal {
+namespace chronormal::mdd_test {
 namespace {
 
 using std::string_literals::operator""s;
@@ -70,4 +70,4 @@ TEST(WriteMdd, refuses_times_that_float32_can_not_tell_apart) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::mdd_test

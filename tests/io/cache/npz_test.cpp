@@ -12,7 +12,7 @@
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
 
-namespace chronormal {
+namespace chronormal::npz_test {
 namespace {
 
 using std::string_literals::operator""s;
@@ -371,4 +371,4 @@ TEST(Zip, damaged_zip64_records_are_errors) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::npz_test

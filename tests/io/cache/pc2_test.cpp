@@ -9,7 +9,7 @@
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
 
-namespace chronormal {
+namespace chronormal::pc2_test {
 namespace {
 
 std::string error_of(const std::string& bytes) {
@@ -85,4 +85,4 @@ TEST(WritePc2, refuses_what_the_format_can_not_hold) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::pc2_test

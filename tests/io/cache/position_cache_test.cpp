@@ -7,7 +7,7 @@
 #include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 
-namespace chronormal {
+namespace chronormal::position_cache_test {
 namespace {
 
 PositionCache cache_at(std::vector<double> times) {
@@ -44,4 +44,4 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::position_cache_test

@@ -16,7 +16,7 @@
 #include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::real_caches_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST_F(RealCaches, hostile_maya_files_are_caches_or_clear_errors_within_a_second
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::real_caches_test

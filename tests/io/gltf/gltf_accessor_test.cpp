@@ -9,7 +9,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "tests/support/gltf_builder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_accessor_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -204,4 +204,4 @@ TEST(GltfQuantised, normals_and_tangents_are_normalised_signed_integers) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_accessor_test

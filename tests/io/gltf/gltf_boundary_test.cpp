@@ -17,7 +17,7 @@
 #include "tests/support/gltf_documents.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal {
+namespace chronormal::gltf_boundary_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -246,4 +246,4 @@ TEST(GltfBoundary, random_edits) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_boundary_test

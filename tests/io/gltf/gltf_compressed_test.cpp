@@ -16,7 +16,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_compressed.h"
 
-namespace chronormal {
+namespace chronormal::gltf_compressed_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture, test::DracoOrder;
@@ -484,4 +484,4 @@ TEST(GltfDraco, every_truncated_stream_is_refused) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_compressed_test

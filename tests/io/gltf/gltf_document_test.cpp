@@ -14,7 +14,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_document_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -417,4 +417,4 @@ TEST(GltfFindAnimation, goes_by_name_and_then_by_index) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_document_test

@@ -17,7 +17,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_edit_files_test {
 namespace {
 
 using test::base64;
@@ -304,4 +304,4 @@ TEST(GltfEditFiles, failed_write_leaves_the_old_file_and_no_temporary) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_edit_files_test

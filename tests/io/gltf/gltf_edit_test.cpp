@@ -13,7 +13,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_edit_test {
 namespace {
 
 using test::bytes_of;
@@ -311,4 +311,4 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_edit_test

@@ -19,7 +19,7 @@
 #include "tests/support/gltf_compressed.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -354,4 +354,4 @@ TEST_F(HostileData, what_the_validator_calls_an_error_is_refused_or_not_read) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_hostile_test

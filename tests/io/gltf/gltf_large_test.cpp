@@ -11,7 +11,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_large_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -113,4 +113,4 @@ TEST(GltfLarge, what_stands_still_is_read_when_it_is_asked_for) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_large_test

@@ -14,7 +14,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 
-namespace chronormal {
+namespace chronormal::gltf_motion_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture, test::positions_at;
@@ -466,4 +466,4 @@ TEST(GltfMemory, keyframes_beyond_what_is_allowed_are_refused_before_they_are_ma
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_motion_test

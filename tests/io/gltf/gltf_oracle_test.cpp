@@ -18,7 +18,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "io/gltf/gltf_motion.h"
 
-namespace chronormal {
+namespace chronormal::gltf_oracle_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ TEST_F(GltfOracle, positions_and_targets_are_those_of_assimp_bit_for_bit) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_oracle_test

@@ -11,7 +11,7 @@
 #include "fuzz/gltf_invariants.h"
 #include "tests/support/gltf_builder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_refusal_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -394,4 +394,4 @@ TEST(GltfRefusals, of_containers_name_a_byte) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_refusal_test

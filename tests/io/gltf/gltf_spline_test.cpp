@@ -13,7 +13,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 
-namespace chronormal {
+namespace chronormal::gltf_spline_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -207,4 +207,4 @@ TEST(GltfSpline, that_would_need_more_pieces_than_any_is_refused_at_once) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_spline_test

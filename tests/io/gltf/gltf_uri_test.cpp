@@ -11,7 +11,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::gltf_uri_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,4 +164,4 @@ TEST_F(GltfUris, file_in_the_current_folder_finds_its_buffers) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_uri_test

@@ -10,7 +10,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 
-namespace chronormal {
+namespace chronormal::gltf_world_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -141,4 +141,4 @@ TEST(GltfWorld, transforms_that_are_none_are_refused_with_their_place) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_world_test

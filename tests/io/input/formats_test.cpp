@@ -17,7 +17,7 @@
 #include "tests/support/ply_bytes.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal {
+namespace chronormal::formats_test {
 namespace {
 
 struct Fixture {
@@ -280,4 +280,4 @@ TEST(ReadMesh, unknown_format_is_an_error_that_lists_what_can_be_read) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::formats_test

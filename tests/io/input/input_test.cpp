@@ -18,7 +18,7 @@
 #include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::input_test {
 namespace {
 
 constexpr const char* kObj = "v 9 9 9\nv 8 8 8\nv 7 7 7\nf 1 2 3\n";
@@ -326,4 +326,4 @@ TEST_F(OpenInput, keyframes_are_handed_out_by_number) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::input_test

@@ -1,4 +1,5 @@
-// Walks the readers of motions and caches in the table of formats: a reader that has no fixtures here, and no fuzz target, fails.
+// Walks the readers of motions and caches in the table of formats: one that has no fixtures here, and no fuzz target,
+// fails.
 #include "io/input/formats.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@
 #include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal {
+namespace chronormal::motion_readers_test {
 namespace {
 
 struct Fixture {
@@ -229,4 +230,4 @@ TEST(MotionFormats, are_found_by_content_where_the_name_does_not_tell) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::motion_readers_test

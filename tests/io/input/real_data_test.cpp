@@ -12,7 +12,7 @@
 #include "io/input/formats.h"
 #include "tests/support/read_input.h"
 
-namespace chronormal {
+namespace chronormal::real_data_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST_F(RealData, files_that_break_the_ply_grammar_are_refused) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::real_data_test

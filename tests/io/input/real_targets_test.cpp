@@ -13,7 +13,7 @@
 #include "chronormal/motion/motion.h"
 #include "tests/support/read_input.h"
 
-namespace chronormal {
+namespace chronormal::real_targets_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST(RealTargets, face_and_all_its_targets_are_one_star_of_base_plus_deltas) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::real_targets_test

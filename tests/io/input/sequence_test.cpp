@@ -15,7 +15,7 @@
 #include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::sequence_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -245,4 +245,4 @@ TEST(WriteSequence, one_file_that_exists_keeps_all_from_being_written) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::sequence_test

@@ -12,7 +12,7 @@
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::targets_test {
 namespace {
 
 using test::gzip, test::kLift, test::kSquare, test::kSquareObj, test::TemporaryFolder;
@@ -174,4 +174,4 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::targets_test

@@ -11,8 +11,9 @@
 
 #include "fuzz/json_tokens.h"
 #include "io/json/json.h"
+#include "io/json/json_writer.h"
 
-namespace chronormal {
+namespace chronormal::json_text_test {
 namespace {
 
 struct Change {
@@ -248,4 +249,4 @@ TEST(ParseJson, numbers_beyond_double_are_infinite_and_all_others_what_they_are)
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::json_text_test

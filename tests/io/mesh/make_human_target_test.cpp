@@ -16,7 +16,7 @@
 #include "tests/support/random_edits.h"
 #include "tests/support/target_bytes.h"
 
-namespace chronormal {
+namespace chronormal::make_human_target_test {
 namespace {
 
 using test::gzip, test::kLift, test::kSquare;
@@ -256,4 +256,4 @@ TEST(MakeHumanTarget, has_a_fuzz_target_and_seeds) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::make_human_target_test

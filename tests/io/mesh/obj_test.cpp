@@ -12,7 +12,7 @@
 #include "tests/support/random_edits.h"
 #include "tests/support/random_mesh.h"
 
-namespace chronormal {
+namespace chronormal::obj_test {
 namespace {
 
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -277,4 +277,4 @@ TEST(WriteObj, normals_read_back_corner_by_corner) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::obj_test

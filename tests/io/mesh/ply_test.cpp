@@ -11,7 +11,7 @@
 #include "tests/support/ply_bytes.h"
 #include "tests/support/random_mesh.h"
 
-namespace chronormal {
+namespace chronormal::ply_test {
 namespace {
 
 using Positions = std::vector<float>;
@@ -286,4 +286,4 @@ TEST(WritePly, faces_of_more_than_255_corners_read_back) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::ply_test

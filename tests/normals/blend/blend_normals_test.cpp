@@ -24,7 +24,7 @@
 #include "tests/support/blend_oracle.h"
 #include "tests/support/read_input.h"
 
-namespace chronormal {
+namespace chronormal::blend_normals_test {
 namespace {
 
 constexpr BlendPath kPaths[] = {BlendPath::kTerms, BlendPath::kTouched, BlendPath::kWhole};
@@ -582,4 +582,4 @@ TEST_F(RealBlendNormals, morph_targets_of_gltf_files_equal_blended_positions) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_normals_test

@@ -14,7 +14,7 @@
 #include "tests/support/blend_oracle.h"
 #include "tests/support/elements.h"
 
-namespace chronormal {
+namespace chronormal::blend_terms_test {
 namespace {
 
 using exact::Rational;
@@ -196,4 +196,4 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_terms_test

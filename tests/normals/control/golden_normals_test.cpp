@@ -23,12 +23,10 @@
 #include "io/mesh/obj.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::golden_normals_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 // What the reader of the product leaves out: the normal of each corner, and the smoothing group of each face.
 struct Golden {
@@ -200,4 +198,4 @@ TEST_F(GoldenNormals, pytorch3d_sums_areas_and_leaves_faces_without_area_zero) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::golden_normals_test

@@ -12,7 +12,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 
-namespace chronormal {
+namespace chronormal::transform_test {
 namespace {
 
 using fixtures::Random;
@@ -154,4 +154,4 @@ RC_GTEST_PROP(Transform, normals_under_a_moving_node_are_those_of_the_moved_mesh
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::transform_test

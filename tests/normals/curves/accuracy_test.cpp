@@ -19,7 +19,7 @@
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::accuracy_test {
 namespace {
 
 constexpr std::size_t kFaces = 300;
@@ -346,4 +346,4 @@ TEST(NormalCurvesAccuracy, give_the_same_direction_in_any_layout) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::accuracy_test

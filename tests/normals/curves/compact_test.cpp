@@ -21,7 +21,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 
-namespace chronormal {
+namespace chronormal::compact_test {
 namespace {
 
 using test::angle_to;
@@ -424,4 +424,4 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::compact_test

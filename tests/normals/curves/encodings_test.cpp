@@ -15,7 +15,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 
-namespace chronormal {
+namespace chronormal::encodings_test {
 namespace {
 
 constexpr double kOctahedral = 7e-5, kRgb10A2 = 1.7e-3;  // radians, encodings.h
@@ -210,4 +210,4 @@ TEST(EncodedResults, of_nothing_are_zero_and_counted) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::encodings_test

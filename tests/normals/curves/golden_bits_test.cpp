@@ -16,7 +16,7 @@
 #include "simd/targets.h"
 #include "tests/support/integer_mesh.h"
 
-namespace chronormal {
+namespace chronormal::golden_bits_test {
 namespace {
 
 // FNV-1a over words of 32 bits, so that the order of bytes does not matter.
@@ -136,4 +136,4 @@ TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_com
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::golden_bits_test

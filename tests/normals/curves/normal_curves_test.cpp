@@ -12,7 +12,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 
-namespace chronormal {
+namespace chronormal::normal_curves_test {
 namespace {
 
 const ControlNormals kStill{{0, 0, 2}, {0, 0, 2}, {0, 0, 2}};
@@ -262,4 +262,4 @@ TEST(NormalCurves, moved_from_are_as_good_as_new) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::normal_curves_test

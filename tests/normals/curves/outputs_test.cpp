@@ -18,18 +18,13 @@
 #include "motion/coherence.h"
 #include "normals/curves/kernels/evaluate.h"
 #include "simd/targets.h"
+#include "tests/support/child_process.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 #include "tests/support/integer_mesh.h"
 
-namespace chronormal {
+namespace chronormal::outputs_test {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitizer = true;
-#else
-constexpr bool kSanitizer = false;
-#endif
 
 constexpr std::array<double, 4> kTolerances{1e-6, 1e-3, 5e-3, 2e-2};
 
@@ -444,7 +439,7 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
   EXPECT_TRUE(access_of_pass(0, kManyOctahedral * 4 * elements.size()).stream);
   const std::size_t plane = (elements.size() + 15) / 16 * 16;
   for (const std::int64_t target : supported_targets()) {
-    if (kSanitizer && target != current_target()) continue;
+    if (test::is_sanitized() && target != current_target()) continue;
     const ScopedTarget scoped(target);
     SCOPED_TRACE(target_name(target));
     for (const double tolerance : {1e-6, 5e-3}) {
@@ -478,4 +473,4 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::outputs_test

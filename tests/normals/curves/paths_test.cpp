@@ -18,7 +18,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::paths_test {
 namespace {
 
 using reference::Real;
@@ -253,4 +253,4 @@ TEST(PolynomialMotion, a_straight_motion_is_one_piece_and_one_too_curved_is_an_e
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::paths_test

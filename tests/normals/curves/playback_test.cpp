@@ -16,7 +16,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 
-namespace chronormal {
+namespace chronormal::playback_test {
 namespace {
 
 struct Prepared {
@@ -270,4 +270,4 @@ TEST(Operations, one_vector_more_changes_the_count) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::playback_test

@@ -18,7 +18,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::group_normals_test {
 namespace {
 
 using fixtures::Point;
@@ -288,4 +288,4 @@ TEST(GroupNormals, a_polygon_with_two_corners_at_a_point_counts_with_both) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::group_normals_test

@@ -15,7 +15,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::normal_groups_test {
 namespace {
 
 using fixtures::make_polygons;
@@ -330,4 +330,4 @@ TEST(CreaseAngle, of_180_makes_edges_smooth_of_however_many_faces) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::normal_groups_test

@@ -13,7 +13,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::weld_test {
 namespace {
 
 using fixtures::Point;
@@ -65,4 +65,4 @@ TEST(Weld, vertices_of_two_bodies_are_never_one_point) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weld_test

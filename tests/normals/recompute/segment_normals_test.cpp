@@ -17,7 +17,7 @@
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::segment_normals_test {
 namespace {
 
 using Normals = std::vector<Vec3f>;
@@ -234,4 +234,4 @@ TEST(MeshShape, order_and_degree_are_seen) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::segment_normals_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::taylor_test {
 namespace {
 
 using Real = long double;
@@ -108,4 +108,4 @@ RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::taylor_test

@@ -19,7 +19,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::weighting_fit_test {
 namespace {
 
 using fixtures::Point;
@@ -335,4 +335,4 @@ TEST(WeightingFit, elements_without_area_are_zero_with_bound_0) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weighting_fit_test

@@ -16,7 +16,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::weighting_test {
 namespace {
 
 using fixtures::Point;
@@ -181,4 +181,4 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::weighting_test

@@ -14,7 +14,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/shaded_mesh.h"
 
-namespace chronormal {
+namespace chronormal::audit_test {
 namespace {
 
 using test::GltfBuilder;
@@ -669,4 +669,4 @@ TEST_F(AuditOfRealFiles, angle_weighted_normals_are_an_authored_offset) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::audit_test

@@ -16,7 +16,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::bake_clients_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -156,4 +156,4 @@ TEST_F(BakedQuad, is_exact_as_assimp_reads_it) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_clients_test

@@ -14,7 +14,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::bake_large_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -179,4 +179,4 @@ TEST(BakeLarge, an_audit_takes_memory_below_four_times_the_file) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_large_test

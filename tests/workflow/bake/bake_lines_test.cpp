@@ -8,7 +8,7 @@
 
 #include "tests/support/bake_fixture.h"
 
-namespace chronormal {
+namespace chronormal::bake_lines_test {
 namespace {
 
 using test::Baked;
@@ -97,14 +97,14 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
     double sum = 0;
     for (const test::Pose& pose : poses) {
       const auto base = truth.normals_at({0, 0, 0})[vertex], at = truth.normals_at(pose.before)[vertex];
-      const test::LongVector right = test::GltfTruth::turn(base, truth.vertices[vertex].stored, at);
-      test::LongVector shown = truth.vertices[vertex].stored;
+      const test::Vector right = test::GltfTruth::turn(base, truth.vertices[vertex].stored, at);
+      test::Vector shown = truth.vertices[vertex].stored;
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t c = 0; c < 3; ++c)
-          shown[c] += static_cast<test::Long>(pose.after[k]) * static_cast<test::Long>(deltas[k][3 * vertex + c]);
+          shown[c] += static_cast<test::Real>(pose.after[k]) * static_cast<test::Real>(deltas[k][3 * vertex + c]);
       }
-      const test::LongVector side = test::cross_of(shown, right);
-      sum += static_cast<double>(test::dot_of(side, side) / test::dot_of(right, right));
+      const test::Vector side = test::crossed(shown, right);
+      sum += static_cast<double>(test::dotted(side, side) / test::dotted(right, right));
     }
     return sum;
   };
@@ -294,4 +294,4 @@ TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_er
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_lines_test

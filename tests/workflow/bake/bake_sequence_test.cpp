@@ -23,7 +23,7 @@
 #include "tests/support/reference.h"
 #include "tests/support/shown_glb.h"
 
-namespace chronormal {
+namespace chronormal::bake_sequence_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -566,4 +566,4 @@ TEST(BakeSequence, real_sequences_are_exact) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_sequence_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/bake_fixture.h"
 
-namespace chronormal {
+namespace chronormal::bake_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -218,7 +218,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
     poses.push_back({{weights.begin(), weights.end()}, weights});
   }
   test::expect_exact(test::shown_error(truth, *smooth.after, 0, poses));
-  const std::vector<test::LongVector> base = truth.normals_at({0, 0});
+  const std::vector<test::Vector> base = truth.normals_at({0, 0});
   for (std::size_t v = 0; v < base.size(); ++v)
     EXPECT_LT(test::degrees_between(base[v], truth.vertices[v].stored), 1e-4);
 }
@@ -228,10 +228,10 @@ TEST(Bake, recomputed_base_is_that_of_the_geometry) {
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   const Baked baked = test::bake_document(builder, {.recompute_base = true});
   ASSERT_EQ(baked.error, "");
-  const std::vector<test::LongVector> base = test::GltfTruth(*baked.before, 0).normals_at({0});
+  const std::vector<test::Vector> base = test::GltfTruth(*baked.before, 0).normals_at({0});
   const std::vector<float> stored = baked.numbers(baked.mesh()["primitives"][0]["attributes"]["NORMAL"]);
   for (std::size_t v = 0; v < base.size(); ++v) {
-    const test::LongVector n = {stored[3 * v], stored[3 * v + 1], stored[3 * v + 2]};
+    const test::Vector n = {stored[3 * v], stored[3 * v + 1], stored[3 * v + 2]};
     EXPECT_LT(test::degrees_between(base[v], n), 1e-4);
     EXPECT_NEAR(static_cast<double>(test::length_of(n)), 1, 1e-6);
   }
@@ -401,4 +401,4 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_test

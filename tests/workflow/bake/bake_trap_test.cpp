@@ -9,7 +9,7 @@
 #include "tests/support/bake_fixture.h"
 #include "tests/support/gltf_compressed.h"
 
-namespace chronormal {
+namespace chronormal::bake_trap_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -452,4 +452,4 @@ TEST(BakeTraps, weights_that_an_extension_drives_are_refused) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::bake_trap_test

@@ -18,7 +18,7 @@
 #include "tests/support/read_input.h"
 #include "tests/support/shaded_mesh.h"
 
-namespace chronormal {
+namespace chronormal::blend_compare_test {
 namespace {
 
 using test::GltfBuilder;
@@ -453,4 +453,4 @@ TEST(BlendCompare, face_by_other_people_is_off_by_tens_of_degrees_with_end_point
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::blend_compare_test

@@ -17,7 +17,7 @@
 #include "tests/support/reference.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::compare_test {
 namespace {
 
 const SchemeComparison& row(const Comparison& comparison, const std::string& scheme) {
@@ -322,4 +322,4 @@ TEST(BuiltinMorphs, eversion_turns_inside_out) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::compare_test

@@ -8,7 +8,7 @@
 #include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"
 
-namespace chronormal {
+namespace chronormal::inspect_gltf_test {
 namespace {
 
 using test::GltfBuilder, test::GltfFixture;
@@ -135,4 +135,4 @@ TEST(InspectGltf, broken_geometry_is_an_error) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::inspect_gltf_test

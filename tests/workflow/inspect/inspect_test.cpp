@@ -11,7 +11,7 @@
 #include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::inspect_test {
 namespace {
 
 constexpr double kDegree = 1 / kDegreesPerRadian;
@@ -209,4 +209,4 @@ TEST(Inspect, progress_reaches_its_end) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::inspect_test

@@ -15,7 +15,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal {
+namespace chronormal::sample_files_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -242,4 +242,4 @@ TEST(SampleFormat, is_found_by_name_or_extension) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::sample_files_test

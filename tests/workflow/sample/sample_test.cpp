@@ -13,7 +13,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
 
-namespace chronormal {
+namespace chronormal::sample_test {
 namespace {
 
 using reference::Real;
@@ -334,4 +334,4 @@ TEST(NormalSampler, mesh_that_stands_still_has_normals) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::sample_test

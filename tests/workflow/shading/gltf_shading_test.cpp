@@ -1,4 +1,4 @@
-#include "chronormal/workflow/gltf_shading.h"
+#include "workflow/shading/gltf_shading.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/shaded_mesh.h"
 
-namespace chronormal {
+namespace chronormal::gltf_shading_test {
 namespace {
 
 using test::GltfBuilder;
@@ -311,4 +311,4 @@ TEST(ShownDirection, is_turned_as_the_base_is_and_stays_on_the_side_that_the_aut
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::gltf_shading_test

@@ -31,8 +31,8 @@ void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, Exa
   tile.magnitude[lane] = magnitude_above(polygon.magnitude);
 }
 
-void set_without_noise(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
-                       ExactTile& tile) noexcept {
+void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
+                          ExactTile& tile) noexcept {
   const PolygonNormals triangle = polygon_control_normals(segment, {corners, 3});
   set_normals(triangle.normals, lane, tile);
   if (!std::isfinite(tile.magnitude[lane])) tile.magnitude[lane] = magnitude_above(triangle.magnitude);

@@ -16,8 +16,8 @@ struct alignas(64) ExactTile {
   float magnitude[kTile];
 };
 
-/// Of the magnitude of a triangle: noise is below half of it.
-inline constexpr double kNoiseAbove = 0x1p-47;
+/// Of the magnitude of a triangle: its rounding error is below half of it.
+inline constexpr double kErrorAbove = 0x1p-47;
 
 /// A float that is not less than a magnitude, and 0 for 0.
 [[nodiscard]] float magnitude_above(double magnitude) noexcept;
@@ -25,9 +25,9 @@ inline constexpr double kNoiseAbove = 0x1p-47;
 /// Writes one face into one lane, whatever its corners.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// Writes one triangle into one lane without noise. Keeps the magnitude where it is finite.
-void set_without_noise(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
-                       ExactTile& tile) noexcept;
+/// Writes one triangle into one lane, with zero for what is nothing but rounding. Keeps the magnitude where it is finite.
+void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
+                          ExactTile& tile) noexcept;
 
 }  // namespace chronormal
 

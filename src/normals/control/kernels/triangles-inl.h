@@ -17,7 +17,7 @@
 #include "chronormal/motion/motion.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/exact_tile.h"
-#include "simd/lanes-inl.h"
+#include "simd/intrinsics-inl.h"
 #include "simd/rows-inl.h"
 
 #if defined(CHRONORMAL_NORMALS_CONTROL_KERNELS_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -29,17 +29,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::HWY_NAMESPACE {
-
-// The larger and the smaller of two absolute values; neither may be NaN.
-#if HWY_TARGET == HWY_AVX3
-HWY_INLINE Floats LargerAbs(Floats a, Floats b) { return Floats{_mm512_range_ps(a.raw, b.raw, 0b1011)}; }
-HWY_INLINE Doubles LargerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1011)}; }
-HWY_INLINE Doubles SmallerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1010)}; }
-#else
-HWY_INLINE Floats LargerAbs(Floats a, Floats b) { return hn::Max(hn::Abs(a), hn::Abs(b)); }
-HWY_INLINE Doubles LargerAbs(Doubles a, Doubles b) { return hn::Max(hn::Abs(a), hn::Abs(b)); }
-HWY_INLINE Doubles SmallerAbs(Doubles a, Doubles b) { return hn::Min(hn::Abs(a), hn::Abs(b)); }
-#endif
 
 template <class V>
 HWY_INLINE auto MaxAbs(const V& v) {
@@ -54,42 +43,6 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
   return LargerAbs(MaxAbs(a, b), MaxAbs(c));
 }
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
-
-// The lower (0) or upper (1) half of the lanes.
-template <int kHalf>
-HWY_INLINE Doubles ToDouble(Floats v) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::PromoteTo(kDoubles, v);
-#else
-  if constexpr (kHalf == 0) return hn::PromoteTo(kDoubles, hn::LowerHalf(v));
-  if constexpr (kHalf == 1) return hn::PromoteTo(kDoubles, hn::UpperHalf(HalfFloatTag(), v));
-#endif
-}
-template <int kHalf>
-HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
-  return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
-}
-// Plain C++ in Highway rounds what is beyond the range of float to the largest float, where all others and
-// static_cast give infinity.
-#undef CHRONORMAL_DEMOTE_CLAMPS
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
-#define CHRONORMAL_DEMOTE_CLAMPS 1
-#else
-#define CHRONORMAL_DEMOTE_CLAMPS 0
-#endif
-
-// kLanes doubles in memory.
-HWY_INLINE Floats ToFloat(const double* from) {
-#if CHRONORMAL_DEMOTE_CLAMPS
-  float rounded[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) rounded[i] = static_cast<float>(from[i]);
-  return hn::LoadU(kFloats, rounded);
-#else
-  const HalfFloatTag half;
-  return hn::Combine(kFloats, hn::DemoteTo(half, hn::Load(kDoubles, from + kDoubleLanes)),
-                     hn::DemoteTo(half, hn::Load(kDoubles, from)));
-#endif
-}
 
 // How points are loaded: 16 bytes of a row whose first three floats are x y z; 12 bytes of it; or one coordinate after
 // the other, whatever the layout.
@@ -106,6 +59,18 @@ HWY_INLINE Row LoadPoint(const VectorView<const float>& points, std::uint32_t ve
   }
 }
 
+#if HWY_TARGET != HWY_SCALAR
+// A point for each 128 bits of a vector.
+template <PointAccess kAccess>
+HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::uint32_t* vertices) {
+  if constexpr (kAccess == PointAccess::kRow) {
+    return LoadBlocks([&](std::size_t i) HWY_ATTR { return points.x + vertices[i] * points.stride; });
+  } else {
+    return Blocks([&](std::size_t i) HWY_ATTR { return LoadPoint<kAccess>(points, vertices[i]); });
+  }
+}
+#endif
+
 // Where the triangles of one vector of lanes are at both ends.
 struct TriangleLanes {
   Lanes3 a0, b0, c0, a1, b1, c1;
@@ -119,39 +84,11 @@ HWY_INLINE void LoadCorners(const Segment& segment, const std::uint32_t* corners
   to = LoadPoint<kAccess>(segment.to, corners[0]).xyz();
 #else
   Floats from_rows[4], to_rows[4];
-#if HWY_TARGET == HWY_AVX3
-  if constexpr (kAccess == PointAccess::kRow) {
-    const auto put = [](Floats& into, const float* point, __mmask16 lanes)
-                         HWY_ATTR { into.raw = _mm512_mask_broadcast_f32x4(into.raw, lanes, _mm_loadu_ps(point)); };
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t block = 0; block < 4; ++block) {
-        const std::size_t vertex = corners[3 * (4 * block + k)];
-        const float* const from_point = segment.from.x + vertex * segment.from.stride;
-        const float* const to_point = segment.to.x + vertex * segment.to.stride;
-        if (block == 0) {
-          from_rows[k].raw = _mm512_castps128_ps512(_mm_loadu_ps(from_point));
-          to_rows[k].raw = _mm512_castps128_ps512(_mm_loadu_ps(to_point));
-        } else {
-          const auto lanes = static_cast<__mmask16>(0xF << 4 * block);
-          put(from_rows[k], from_point, lanes);
-          put(to_rows[k], to_point, lanes);
-        }
-      }
-    }
-    from = Transposed(from_rows).xyz();
-    to = Transposed(to_rows).xyz();
-    return;
-  }
-#endif
   for (std::size_t k = 0; k < 4; ++k) {
-    Row f[kLanes / 4], t[kLanes / 4];
-    for (std::size_t block = 0; block < kLanes / 4; ++block) {
-      const std::uint32_t vertex = corners[3 * (4 * block + k)];
-      f[block] = LoadPoint<kAccess>(segment.from, vertex);
-      t[block] = LoadPoint<kAccess>(segment.to, vertex);
-    }
-    from_rows[k] = Blocks([&f](std::size_t block) HWY_ATTR { return f[block]; });
-    to_rows[k] = Blocks([&t](std::size_t block) HWY_ATTR { return t[block]; });
+    std::uint32_t vertices[kLanes / 4];
+    for (std::size_t block = 0; block < kLanes / 4; ++block) vertices[block] = corners[3 * (4 * block + k)];
+    from_rows[k] = LoadPoints<kAccess>(segment.from, vertices);
+    to_rows[k] = LoadPoints<kAccess>(segment.to, vertices);
   }
   from = Transposed(from_rows).xyz();
   to = Transposed(to_rows).xyz();
@@ -197,7 +134,7 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
     k += 3;
   }
   const Doubles smallest = SmallerAbs(SmallerAbs(MinAbs(n0), MinAbs(m)), MinAbs(n1));
-  const Doubles noise = hn::Mul(hn::Set(kDoubles, kNoiseAbove), ToDouble<kHalf>(magnitude));
+  const Doubles noise = hn::Mul(hn::Set(kDoubles, kErrorAbove), ToDouble<kHalf>(magnitude));
   return !hn::AllTrue(kDoubles, hn::Gt(smallest, noise));
 }
 
@@ -206,7 +143,7 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
     const auto magnitude = hn::PromoteTo(kDoubles, hn::LoadU(HalfFloatTag(), tile.magnitude + lane));
-    const Doubles noise = hn::Mul(hn::Set(kDoubles, kNoiseAbove), magnitude);
+    const Doubles noise = hn::Mul(hn::Set(kDoubles, kErrorAbove), magnitude);
     auto settled = hn::Lt(noise, hn::Set(kDoubles, std::numeric_limits<double>::infinity()));
     for (auto& plane : tile.normals) {
       const Doubles v = hn::Load(kDoubles, plane + lane);
@@ -214,10 +151,9 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
       settled = hn::And(settled, hn::Or(hn::Eq(v, zero), hn::Gt(hn::Abs(v), noise)));
     }
     if (hn::AllTrue(kDoubles, settled)) continue;
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(kDoubles, settled, bits);
+    const std::uint32_t bits = BitsOf(kDoubles, settled);
     for (std::size_t i = 0; i < kDoubleLanes; ++i) {
-      if ((bits[0] >> i & 1) == 0) set_without_noise(segment, corners + 3 * (lane + i), lane + i, tile);
+      if ((bits >> i & 1) == 0) set_without_rounding(segment, corners + 3 * (lane + i), lane + i, tile);
     }
   }
 }
@@ -287,46 +223,6 @@ HWY_INLINE void FaceTile(const Segment& segment, bool rows, std::size_t first, s
   TriangleTile(segment, rows, repeated, tile);
 }
 
-#if HWY_TARGET != HWY_SCALAR
-
-#if HWY_TARGET == HWY_AVX3
-// Row i has lane i of plane(0) ... plane(7): pairs, fours, and eights of neighbours.
-template <class PlaneOf>
-HWY_INLINE void StoreEightRows(const PlaneOf& plane, double* to, std::size_t stride) {
-  __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the planes 2 i and 2 i + 1
-  for (std::size_t i = 0; i < 4; ++i) {
-    even[i] = _mm512_unpacklo_pd(plane(2 * i).raw, plane(2 * i + 1).raw);
-    odd[i] = _mm512_unpackhi_pd(plane(2 * i).raw, plane(2 * i + 1).raw);
-  }
-  std::size_t first = 0;
-  for (const __m512d* const pairs : {even, odd}) {
-    const __m512d lower02 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b10001000);  // rows 0 4, 0 4
-    const __m512d upper02 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b11011101);  // rows 2 6, 2 6
-    const __m512d lower46 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b10001000);
-    const __m512d upper46 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b11011101);
-    double* const row = to + first * stride;
-    _mm512_storeu_pd(row, _mm512_shuffle_f64x2(lower02, lower46, 0b10001000));
-    _mm512_storeu_pd(row + 2 * stride, _mm512_shuffle_f64x2(upper02, upper46, 0b10001000));
-    _mm512_storeu_pd(row + 4 * stride, _mm512_shuffle_f64x2(lower02, lower46, 0b11011101));
-    _mm512_storeu_pd(row + 6 * stride, _mm512_shuffle_f64x2(upper02, upper46, 0b11011101));
-    ++first;
-  }
-}
-#endif
-
-// Of each pair of lanes the 128 bits go to rows of their own.
-template <class V>
-HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
-  constexpr std::size_t kPairs = sizeof(V) / 16;
-  if constexpr (kPairs == 1) {
-    hn::StoreU(v, hn::FixedTag<double, 2>(), to);
-  } else {
-    StorePairs(hn::LowerHalf(v), to, stride);
-    StorePairs(hn::UpperHalf(hn::Half<hn::FixedTag<double, 2 * kPairs>>(), v), to + kPairs / 2 * stride, stride);
-  }
-}
-#endif
-
 // Sixteen rows of kRow doubles: the nine components of a face, and its magnitude where there is room for it.
 template <std::size_t kRow>
 HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
@@ -339,18 +235,10 @@ HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
     double* const to = rows + lane * kRow;
     const auto plane = [&tile, lane](std::size_t k) HWY_ATTR { return hn::Load(kDoubles, tile.normals[k] + lane); };
-#if HWY_TARGET == HWY_AVX3
-    StoreEightRows(plane, to, kRow);
-#else
-    for (std::size_t k = 0; k < 8; k += 2) {
-      StorePairs(hn::InterleaveLower(kDoubles, plane(k), plane(k + 1)), to + k, 2 * kRow);
-      StorePairs(hn::InterleaveUpper(kDoubles, plane(k), plane(k + 1)), to + kRow + k, 2 * kRow);
-    }
-#endif
+    StoreEightColumns(plane, to, kRow);
     if constexpr (kRow > 9) {
       const Doubles magnitude = hn::PromoteTo(kDoubles, hn::LoadU(HalfFloatTag(), tile.magnitude + lane));
-      StorePairs(hn::InterleaveLower(kDoubles, plane(8), magnitude), to + 8, 2 * kRow);
-      StorePairs(hn::InterleaveUpper(kDoubles, plane(8), magnitude), to + kRow + 8, 2 * kRow);
+      StoreTwoColumns(plane(8), magnitude, to + 8, kRow);
     } else {
       for (std::size_t i = 0; i < kDoubleLanes; ++i) to[i * kRow + 8] = tile.normals[8][lane + i];
     }

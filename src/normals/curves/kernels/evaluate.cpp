@@ -9,6 +9,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -188,7 +189,7 @@ struct Quadratic11 {
 
 // Where results go, kLanes vectors at a time.
 
-template <Access kAccess>
+template <MemoryAccess kAccess>
 struct Accesses {
   static constexpr bool kStream = kAccess.stream;
   // How many bytes ahead of itself a kernel asks for blocks; measured where a core has 1 MiB of its own and 32 MiB are
@@ -198,7 +199,7 @@ struct Accesses {
                                                                                           : 8192;
 };
 
-template <Access kAccess>
+template <MemoryAccess kAccess>
 struct ToPacked : Accesses<kAccess> {
   using Accesses<kAccess>::kStream;
   float* xyz;
@@ -212,7 +213,7 @@ struct ToPacked : Accesses<kAccess> {
   }
 };
 
-template <Access kAccess>
+template <MemoryAccess kAccess>
 struct ToPlanes : Accesses<kAccess> {
   using Accesses<kAccess>::kStream;
   float *x, *y, *z;
@@ -225,7 +226,7 @@ struct ToPlanes : Accesses<kAccess> {
   }
 };
 
-template <Access kAccess>
+template <MemoryAccess kAccess>
 struct ToOctahedral : Accesses<kAccess> {
   using Accesses<kAccess>::kStream;
   std::uint32_t* bits;
@@ -247,7 +248,7 @@ struct ToOctahedral : Accesses<kAccess> {
   }
 };
 
-template <Access kAccess>
+template <MemoryAccess kAccess>
 struct ToRgb10A2 : Accesses<kAccess> {
   using Accesses<kAccess>::kStream;
   std::uint32_t* bits;
@@ -301,13 +302,13 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
   }
 }
 
-template <template <Access> class To, class... Pointer>
-void ByAccess(const BlockSpan& span, const CurveWeights& w, Access access, Pointer... to) {
-  constexpr Access kShared{WorkingSet::kSharedCache, false}, kSharedStream{WorkingSet::kSharedCache, true};
-  constexpr Access kMemory{WorkingSet::kMemory, false}, kMemoryStream{WorkingSet::kMemory, true};
+template <template <MemoryAccess> class To, class... Pointer>
+void ByAccess(const BlockSpan& span, const CurveWeights& w, MemoryAccess access, Pointer... to) {
+  constexpr MemoryAccess kShared{WorkingSet::kSharedCache, false}, kSharedStream{WorkingSet::kSharedCache, true};
+  constexpr MemoryAccess kMemory{WorkingSet::kMemory, false}, kMemoryStream{WorkingSet::kMemory, true};
   switch (access.working_set) {
     case WorkingSet::kSmall:  // nobody streams these
-      return ByKind(span, w, To<Access{}>{{}, to...});
+      return ByKind(span, w, To<MemoryAccess{}>{{}, to...});
     case WorkingSet::kSharedCache:
       if (access.stream) return ByKind(span, w, To<kSharedStream>{{}, to...});
       return ByKind(span, w, To<kShared>{{}, to...});
@@ -333,7 +334,7 @@ void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult r
   ByAccess<ToPacked>(span, w, result.access, result.xyz);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPacked<Access{}>{{}, last});
+  ByKind(tail.block, w, ToPacked<MemoryAccess{}>{{}, last});
   std::copy_n(last, 3 * tail.part, result.xyz + 3 * tail.first);
 }
 
@@ -342,7 +343,7 @@ void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult r
   ByAccess<ToPlanes>(span, w, result.access, result.x, result.y, result.z);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPlanes<Access{}>{{}, last, last + kTile, last + 2 * kTile});
+  ByKind(tail.block, w, ToPlanes<MemoryAccess{}>{{}, last, last + kTile, last + 2 * kTile});
   std::copy_n(last, tail.part, result.x + tail.first);
   std::copy_n(last + kTile, tail.part, result.y + tail.first);
   std::copy_n(last + 2 * kTile, tail.part, result.z + tail.first);
@@ -353,7 +354,7 @@ void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, Octahedral
   ByAccess<ToOctahedral>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToOctahedral<Access{}>{{}, last});
+  ByKind(tail.block, w, ToOctahedral<MemoryAccess{}>{{}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
@@ -362,7 +363,7 @@ void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result
   ByAccess<ToRgb10A2>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToRgb10A2<Access{}>{{}, last});
+  ByKind(tail.block, w, ToRgb10A2<MemoryAccess{}>{{}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "normals/curves/kernels/curve_blocks.h"
 
 namespace chronormal {
@@ -22,13 +22,13 @@ enum class WorkingSet { kSmall, kSharedCache, kMemory };
 
 /// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
 /// results go past the caches, for which all their arrays must be aligned to 64 bytes.
-struct Access {
+struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
 };
 
 /// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.
-constexpr Access access_of_pass(std::size_t read, std::size_t written) noexcept {
+constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noexcept {
   constexpr std::size_t kLargestSmall = std::size_t{8} << 20, kLargestShared = std::size_t{40} << 20;
   const std::size_t all = read + written;
   const WorkingSet set = all <= kLargestSmall     ? WorkingSet::kSmall
@@ -40,19 +40,19 @@ constexpr Access access_of_pass(std::size_t read, std::size_t written) noexcept 
 /// Where the results of a span go: pointers to that of its first element.
 struct PackedResult {
   float* xyz;
-  Access access = {};
+  MemoryAccess access = {};
 };
 struct PlanesResult {
   float *x, *y, *z;
-  Access access = {};
+  MemoryAccess access = {};
 };
 struct OctahedralResult {
   std::uint32_t* bits;
-  Access access = {};
+  MemoryAccess access = {};
 };
 struct Rgb10A2Result {
   std::uint32_t* bits;
-  Access access = {};
+  MemoryAccess access = {};
 };
 
 /// Writes the unit normals of all elements of a span, at the t of the weights.

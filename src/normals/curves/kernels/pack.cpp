@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,17 +27,6 @@ HWY_INLINE Floats MaxAbs(const Lanes3& v) { return hn::Max(hn::Max(hn::Abs(v.x),
 struct LaneTests {
   std::uint32_t certain = 0, fits11 = 0, fits16 = 0, moving = 0, bending = 0;
 };
-
-template <class Mask>
-HWY_INLINE std::uint32_t BitsOf(Mask mask) {
-#if HWY_TARGET == HWY_AVX3
-  return mask.raw;
-#else
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(kFloats, mask, bits);
-  return (static_cast<std::uint32_t>(bits[1]) << 8 | bits[0]) & ((1u << kLanes) - 1);
-#endif
-}
 
 // Three control normals of a piece of each curve, and their lengths.
 struct Piece {
@@ -148,8 +138,8 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
     certain = hn::Or(certain, proven);
   }
   const Floats degree = hn::ConvertTo(kFloats, hn::Load(kInts, tile.degree + lane));
-  return {BitsOf(certain), BitsOf(fits11), BitsOf(fits16), BitsOf(hn::Gt(degree, hn::Zero(kFloats))),
-          BitsOf(hn::Gt(degree, one))};
+  return {BitsOf(kFloats, certain), BitsOf(kFloats, fits11), BitsOf(kFloats, fits16),
+          BitsOf(kFloats, hn::Gt(degree, hn::Zero(kFloats))), BitsOf(kFloats, hn::Gt(degree, one))};
 }
 
 void SummarizeTiles(const ControlTile* tiles, std::size_t count, const PrecisionLimits& limits,

@@ -6,9 +6,8 @@
 #include <cstdint>
 
 #include "core/blocks.h"
-#include "core/noise.h"
 #include "normals/control/kernels/exact_tile.h"
-#include "normals/control/polygon_normals.h"
+#include "normals/groups/group_sum.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/groups/kernels/group_tiles.cpp"
@@ -17,6 +16,9 @@
 
 #include "normals/control/kernels/tile_degrees-inl.h"
 #include "normals/control/kernels/triangles-inl.h"
+#include "simd/index_range-inl.h"
+#include "simd/intrinsics-inl.h"
+#include "simd/rows-inl.h"
 
 #ifndef CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
@@ -28,13 +30,13 @@ struct alignas(64) SumRows {
   double rows[kTile][kSumRow];
 };
 
-// Above that the noise of a sum may be more than kSumNoiseAbove of its magnitude.
+// Above that the rounding error of a sum may be more than kSumErrorAbove of its magnitude.
 inline constexpr std::size_t kMostFaces = 100;
-inline constexpr float kSumNoiseAbove = 0x1p-43f;
+inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// The same sum as group_control_normals() makes it, noise set to zero, into one lane of a tile.
-void set_sum_without_noise(const Segment& segment, std::span<const std::uint32_t> faces, std::size_t lane,
-                           SumRows& sums, ControlTile& tile) noexcept;
+// The same sum as group_control_normals() makes it, with zero for what is nothing but rounding, into one lane of a tile.
+void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
+                              SumRows& sums, ControlTile& tile) noexcept;
 
 }  // namespace chronormal
 #endif
@@ -69,26 +71,12 @@ struct RowSum {
 
 // Four columns of the sums, from column k on, of kLanes elements from `lane` on.
 HWY_INLINE Lanes4 SumColumns(const SumRows& sums, std::size_t lane, std::size_t k) {
-  return Columns([&](std::size_t i) HWY_ATTR {
-    const double* const row = sums.rows[lane + i] + k;
-#if CHRONORMAL_DEMOTE_CLAMPS
-    float rounded[4];
-    for (std::size_t c = 0; c < 4; ++c) rounded[c] = static_cast<float>(row[c]);
-    return LoadRow(rounded);
-#elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
-    return hn::DemoteTo(hn::FixedTag<float, 4>(), hn::LoadU(hn::FixedTag<double, 4>(), row));
-#else
-    const hn::FixedTag<double, 2> pair;
-    const hn::FixedTag<float, 2> two;
-    return hn::Combine(hn::FixedTag<float, 4>(), hn::DemoteTo(two, hn::LoadU(pair, row + 2)),
-                       hn::DemoteTo(two, hn::LoadU(pair, row)));
-#endif
-  });
+  return Columns([&](std::size_t i) HWY_ATTR { return RoundedRow(sums.rows[lane + i] + k); });
 }
 
-// Rounds the sums into the tile. Returns the elements with a component that may be noise, as bits.
+// Rounds the sums into the tile. Returns the elements with a component that may be nothing but rounding, as bits.
 HWY_INLINE std::uint32_t RoundSums(const SumRows& sums, ControlTile& tile) {
-  std::uint32_t noisy = 0;
+  std::uint32_t doubtful = 0;
   for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
     for (std::size_t k = 0; k < 8; k += 4) {
       const Lanes4 columns = SumColumns(sums, lane, k);
@@ -103,20 +91,18 @@ HWY_INLINE std::uint32_t RoundSums(const SumRows& sums, ControlTile& tile) {
     const Floats magnitude = hn::Mul(hn::Set(kFloats, 1 + 0x1p-20f), last.y);
     hn::Store(magnitude, kFloats, tile.magnitude + lane);
 
-    const Floats noise = hn::Mul(hn::Set(kFloats, kSumNoiseAbove), magnitude);
+    const Floats error = hn::Mul(hn::Set(kFloats, kSumErrorAbove), magnitude);
     auto some = hn::Ne(magnitude, magnitude);
     for (const auto& plane : tile.normals) {
       const Floats v = hn::Load(kFloats, plane + lane);
       const auto not_zero =
           hn::MaskFromVec(hn::BitCast(kFloats, hn::VecFromMask(kInts, hn::Ne(hn::BitCast(kInts, v), hn::Zero(kInts)))));
-      some = hn::Or(some, hn::And(not_zero, hn::Le(hn::Abs(v), noise)));
+      some = hn::Or(some, hn::And(not_zero, hn::Le(hn::Abs(v), error)));
     }
     if (hn::AllFalse(kFloats, some)) continue;
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(kFloats, some, bits);
-    noisy |= ((static_cast<std::uint32_t>(bits[1]) << 8 | bits[0]) & ((1u << kLanes) - 1)) << lane;
+    doubtful |= BitsOf(kFloats, some) << lane;
   }
-  return noisy;
+  return doubtful;
 }
 
 HWY_NOINLINE inline void SetDegreesOfSums(const SumRows& sums, ControlTile& tile) {
@@ -140,52 +126,35 @@ struct FaceSource {
   std::size_t face_count;
 };
 
-// Computes faces up to `end`, sixteen by sixteen.
-void FillWindow(const FaceSource& source, std::size_t end, FaceWindow& window) {
+// The rows of a range of faces that begins at a multiple of 16, and those up to the next one.
+void WriteRows(const FaceSource& source, IndexRange faces, double* rows) {
   ExactTile exact;
-  for (; window.end < end; window.end += kTile) {
-    FaceTile(source.segment, source.rows, window.end, source.face_count, exact);
-    StoreRows<FaceWindow::kRow>(exact, window.rows + (window.end & (window.capacity - 1)) * FaceWindow::kRow);
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile, rows += kTile * RowWindow::kRow) {
+    FaceTile(source.segment, source.rows, f, source.face_count, exact);
+    StoreRows<RowWindow::kRow>(exact, rows);
   }
-  if (window.end > window.capacity) window.begin = std::max(window.begin, window.end - window.capacity);
 }
 
-// The rows of a range of faces that begins at a multiple of 16, and those up to the next one.
-void FaceRows(const Segment& segment, IndexRange faces, double* rows) {
-  const bool in_rows = IsRows(segment.from) && IsRows(segment.to);
-  const std::size_t face_count = segment.topology->face_count();
-  ExactTile exact;
-  for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
-    FaceTile(segment, in_rows, f, face_count, exact);
-    StoreRows<FaceWindow::kRow>(exact, rows + f * FaceWindow::kRow);
-  }
+FaceSource SourceOf(const Segment& segment) {
+  return {segment, IsRows(segment.from) && IsRows(segment.to), segment.topology->face_count()};
+}
+
+void FaceRows(const Segment& segment, IndexRange faces, double* rows) { WriteRows(SourceOf(segment), faces, rows); }
+
+// Computes faces up to `end`, sixteen by sixteen.
+void FillWindow(const FaceSource& source, std::size_t end, RowWindow& window) {
+  window.extend((end + kTile - 1) / kTile * kTile, [&source, &window](IndexRange faces, std::size_t) {
+    WriteRows(source, faces, window.row(faces.first));
+  });
 }
 
 // Twice as many rows. Every face stays where it is or moves into the new half.
-void GrowWindow(FaceWindow& window) {
+void GrowWindow(RowWindow& window) {
   for (std::size_t f = window.begin; f < window.end; ++f) {
     if ((f & window.capacity) == 0) continue;
-    const double* const from = window.rows + (f & (window.capacity - 1)) * FaceWindow::kRow;
-    std::copy_n(from, FaceWindow::kRow, window.rows + (f & (2 * window.capacity - 1)) * FaceWindow::kRow);
+    std::copy_n(window.row(f), RowWindow::kRow, window.row(f) + window.capacity * RowWindow::kRow);
   }
   window.capacity *= 2;
-}
-
-HWY_INLINE void FindRange(FaceList list, std::uint32_t& lowest, std::uint32_t& highest) {
-  const hn::RebindToUnsigned<FloatTag> tag;
-  auto low = hn::Set(tag, list.faces[0]), high = low;
-  std::size_t i = 0;
-  for (; i + kLanes <= list.count; i += kLanes) {
-    const auto v = hn::LoadU(tag, list.faces + i);
-    low = hn::Min(low, v);
-    high = hn::Max(high, v);
-  }
-  lowest = hn::GetLane(hn::MinOfLanes(tag, low));
-  highest = hn::GetLane(hn::MaxOfLanes(tag, high));
-  for (; i < list.count; ++i) {
-    lowest = std::min(lowest, list.faces[i]);
-    highest = std::max(highest, list.faces[i]);
-  }
 }
 
 // Where the faces of a list are: before the window, in it, up to `step` after it, and further on. Roughly: some may be
@@ -195,12 +164,12 @@ struct Reach {
   std::size_t near_end = 0, far_end = 0;  // behind the last of those after the window
 };
 
-Reach CountFaces(FaceList list, const FaceWindow& window, std::size_t step) {
+Reach CountFaces(FaceList list, const RowWindow& window, std::size_t step) {
   Reach reach;
-  const hn::RebindToUnsigned<FloatTag> tag;
+  const IndexTag tag;
   const auto number = [&tag](std::size_t n) HWY_ATTR { return hn::Set(tag, static_cast<std::uint32_t>(n)); };
   const auto begin = number(window.begin), end = number(window.end), near_end = number(window.end + step);
-  const auto far_end = number(window.end + FaceWindow::kLargest / 2);
+  const auto far_end = number(window.end + RowWindow::kLargest / 2);
   auto last_near = hn::Zero(tag), last_far = hn::Zero(tag);
   for (std::size_t i = 0; i + kLanes <= list.count; i += kLanes) {
     // The last vector overlaps the one before.
@@ -218,14 +187,14 @@ Reach CountFaces(FaceList list, const FaceWindow& window, std::size_t step) {
 }
 
 // Brings the window to where the faces of a tile are, as far as that pays. Whether all of them are in it.
-HWY_INLINE bool MoveWindow(const FaceSource& source, FaceList list, FaceWindow& window) {
-  std::uint32_t lowest = 0, highest = 0;
-  FindRange(list, lowest, highest);
-  if (window.begin == window.end) window.begin = window.end = lowest / kTile * kTile;
+HWY_INLINE bool MoveWindow(const FaceSource& source, FaceList list, RowWindow& window) {
+  const IndexRange needed = RangeOf(list.faces, list.count);
+  const std::size_t start = needed.first / kTile * kTile;
+  if (window.is_empty()) window.start_at(start);
   const std::size_t step = 2 * list.count + 4 * kTile;  // pays for itself at once
-  if (lowest >= window.begin && highest < window.end + step) {
-    FillWindow(source, std::size_t{highest} + 1, window);
-    return lowest >= window.begin;
+  if (needed.first >= window.begin && needed.end() <= window.end + step) {
+    FillWindow(source, needed.end(), window);
+    return needed.first >= window.begin;
   }
 
   // Faces out of reach: count them, and go there once they have cost as much as the way.
@@ -246,8 +215,8 @@ HWY_INLINE bool MoveWindow(const FaceSource& source, FaceList list, FaceWindow& 
   }
   if (fill_end > window.end) {
     FillWindow(source, fill_end, window);
-  } else if (window.strange >= FaceWindow::kSmallest) {
-    window.begin = window.end = lowest / kTile * kTile;
+  } else if (window.strange >= RowWindow::kSmallest) {
+    window.start_at(start);
     window.strange = 0;
   }
   return false;
@@ -257,13 +226,13 @@ HWY_INLINE bool MoveWindow(const FaceSource& source, FaceList list, FaceWindow& 
 class MissedFaces {
  public:
   // end: of the lists of all elements, which lie one after the other.
-  MissedFaces(const FaceSource& source, const FaceWindow& window, FaceList list, const std::uint32_t* end)
+  MissedFaces(const FaceSource& source, const RowWindow& window, FaceList list, const std::uint32_t* end)
       : source_(source), window_(window), list_(list), end_(end) {}
 
   // The row of the next one.
   HWY_INLINE const double* Next() {
     if (next_ == count_) Compute();
-    return rows_ + FaceWindow::kRow * next_++;
+    return rows_ + RowWindow::kRow * next_++;
   }
 
  private:
@@ -285,7 +254,7 @@ class MissedFaces {
         for (std::size_t i = 0; i < kTile; ++i)
           set_polygon(source_.segment, missed[std::min(first + i, count_ - 1)], i, exact);
       }
-      StoreRows<FaceWindow::kRow>(exact, rows_ + first * FaceWindow::kRow);
+      StoreRows<RowWindow::kRow>(exact, rows_ + first * RowWindow::kRow);
     }
   }
 
@@ -311,11 +280,11 @@ class MissedFaces {
   }
 
   const FaceSource& source_;
-  const FaceWindow& window_;
+  const RowWindow& window_;
   FaceList list_;
   const std::uint32_t* end_;
   std::size_t at_ = 0, next_ = 0, count_ = 0;
-  alignas(64) double rows_[kMost * FaceWindow::kRow];
+  alignas(64) double rows_[kMost * RowWindow::kRow];
 };
 
 FaceList FacesOf(const NormalGroups& groups, std::size_t first, std::size_t count) {
@@ -324,12 +293,12 @@ FaceList FacesOf(const NormalGroups& groups, std::size_t first, std::size_t coun
   return {faces, static_cast<std::size_t>(last.data() + last.size() - faces)};
 }
 
-// Of the faces that the tile after the next may need.
-HWY_INLINE void PrefetchRows(FaceList list, const std::uint32_t* end, const FaceWindow& window) {
+// Prefetches the rows of the faces that the tile after next may need.
+HWY_INLINE void PrefetchRows(FaceList list, const std::uint32_t* end, const RowWindow& window) {
   if (end - list.faces < static_cast<std::ptrdiff_t>(3 * list.count)) return;
   const std::uint32_t* const ahead = list.faces + 2 * list.count;
   for (std::size_t i = 0; i < list.count; ++i) {
-    const double* const row = window.rows + (ahead[i] & (window.capacity - 1)) * FaceWindow::kRow;
+    const double* const row = window.row(ahead[i]);
     hwy::Prefetch(row);
     hwy::Prefetch(row + 8);
   }
@@ -349,9 +318,9 @@ HWY_INLINE void SumElements(const NormalGroups& groups, std::size_t first, std::
   }
 }
 
-void GroupTilesOf(const Segment& segment, const NormalGroups& groups, FaceWindow& window, IndexRange elements,
+void GroupTilesOf(const Segment& segment, const NormalGroups& groups, RowWindow& window, IndexRange elements,
                   ControlTile* tiles) {
-  const FaceSource source{segment, IsRows(segment.from) && IsRows(segment.to), segment.topology->face_count()};
+  const FaceSource source = SourceOf(segment);
   const auto last_faces = groups.faces(groups.size() - 1);
   const std::uint32_t* const all_faces_end = last_faces.data() + last_faces.size();
   SumRows sums = {};
@@ -360,31 +329,31 @@ void GroupTilesOf(const Segment& segment, const NormalGroups& groups, FaceWindow
     const std::size_t count = std::min(kTile, elements.end() - first);
     const FaceList list = FacesOf(groups, first, count);
     const double* const rows = window.rows;
-    if (window.capacity > FaceWindow::kLargest) PrefetchRows(list, all_faces_end, window);
+    if (window.capacity > RowWindow::kLargest) PrefetchRows(list, all_faces_end, window);
     if (list.count == 0 || MoveWindow(source, list, window)) {
       const std::size_t mask = window.capacity - 1;
       SumElements(groups, first, count, sums,
-                  [=](std::uint32_t f) HWY_ATTR { return rows + (f & mask) * FaceWindow::kRow; });
+                  [=](std::uint32_t f) HWY_ATTR { return rows + (f & mask) * RowWindow::kRow; });
     } else {
       MissedFaces missed(source, window, list, all_faces_end);
       const std::size_t begin = window.begin, size = window.end - begin, mask = window.capacity - 1;
       SumElements(groups, first, count, sums, [&](std::uint32_t f) HWY_ATTR {
-        return f - begin < size ? rows + (f & mask) * FaceWindow::kRow : missed.Next();
+        return f - begin < size ? rows + (f & mask) * RowWindow::kRow : missed.Next();
       });
     }
     for (std::size_t i = count; i < kTile; ++i) std::copy_n(sums.rows[count - 1], kSumRow, sums.rows[i]);
 
-    std::uint32_t noisy = RoundSums(sums, tile);
+    std::uint32_t doubtful = RoundSums(sums, tile);
     if (HWY_UNLIKELY(list.count > kMostFaces)) {
       for (std::size_t i = 0; i < kTile; ++i) {
         const bool many = groups.faces(first + std::min(i, count - 1)).size() > kMostFaces;
-        noisy |= static_cast<std::uint32_t>(many) << i;
+        doubtful |= static_cast<std::uint32_t>(many) << i;
       }
     }
-    if (HWY_UNLIKELY(noisy != 0)) {
+    if (HWY_UNLIKELY(doubtful != 0)) {
       for (std::size_t i = 0; i < kTile; ++i) {
-        if ((noisy >> i & 1) != 0)
-          set_sum_without_noise(segment, groups.faces(first + std::min(i, count - 1)), i, sums, tile);
+        if ((doubtful >> i & 1) != 0)
+          set_sum_without_rounding(segment, groups, first + std::min(i, count - 1), i, sums, tile);
       }
     }
     if (!SetDegreesByFloats(tile)) SetDegreesOfSums(sums, tile);
@@ -400,17 +369,11 @@ namespace chronormal {
 HWY_EXPORT(GroupTilesOf);
 HWY_EXPORT(FaceRows);
 
-void set_sum_without_noise(const Segment& segment, std::span<const std::uint32_t> faces, std::size_t lane,
-                           SumRows& sums, ControlTile& tile) noexcept {
-  VectorSum n0, m, n1;
-  for (const std::uint32_t f : faces) {
-    const ControlNormals face = polygon_control_normals(segment, segment.topology->face(f)).normals;
-    n0.add(face.n0);
-    m.add(face.m);
-    n1.add(face.n1);
-  }
+void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
+                              SumRows& sums, ControlTile& tile) noexcept {
+  const auto [n0, m, n1] = control_normals_of_group(segment, groups, element);
   std::size_t k = 0;
-  for (const Vec3d& v : {n0.without_noise(), m.without_noise(), n1.without_noise()}) {
+  for (const Vec3d& v : {n0, m, n1}) {
     for (const double component : {v.x, v.y, v.z}) {
       sums.rows[lane][k] = component;
       tile.normals[k++][lane] = static_cast<float>(component);
@@ -421,9 +384,9 @@ void set_sum_without_noise(const Segment& segment, std::span<const std::uint32_t
 AllFaceRows::AllFaceRows(const Segment& segment, Threads threads) {
   constexpr std::size_t kBlock = 16384;
   const std::size_t count = segment.topology->face_count();
-  rows_ = AlignedArray<double>((count + kTile - 1) / kTile * kTile * FaceWindow::kRow);
+  rows_ = AlignedArray<double>((count + kTile - 1) / kTile * kTile * RowWindow::kRow);
   blocks_on(threads, count, kBlock, [&](IndexRange faces) {
-    HWY_DYNAMIC_DISPATCH(FaceRows)(segment, faces, rows_.data());
+    HWY_DYNAMIC_DISPATCH(FaceRows)(segment, faces, rows_.data() + faces.first * RowWindow::kRow);
   });
 }
 
@@ -432,8 +395,8 @@ GroupTiles::GroupTiles(const Segment& segment, const NormalGroups& groups, const
   if (all_rows == nullptr) {
     // No more than there are faces: a small mesh should not have to ask the system for pages.
     const std::size_t all = std::bit_ceil(segment.topology->face_count());
-    window_.largest = std::clamp(all, FaceWindow::kSmallest, FaceWindow::kLargest);
-    rows_ = AlignedArray<double>(window_.largest * FaceWindow::kRow);
+    window_.largest = std::clamp(all, RowWindow::kSmallest, RowWindow::kLargest);
+    rows_ = AlignedArray<double>(window_.largest * RowWindow::kRow);
     window_.rows = rows_.data();
   } else {
     window_.rows = all_rows->data();

@@ -9,23 +9,26 @@
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "normals/control/kernels/control_tile.h"
+#include "normals/groups/face_window.h"
 
 namespace chronormal {
 
-/// Control normals of the faces begin ... end - 1, in a ring of rows: nine components and the magnitude, at the
-/// beginning of two cache lines.
-struct FaceWindow {
+/// A window of control normals, a row for each face: nine components and the magnitude, at the beginning of two cache
+/// lines. It begins and ends at multiples of 16, and grows where faces that have left it are missed.
+struct RowWindow : FaceWindow {
   static constexpr std::size_t kRow = 16;
   static constexpr std::size_t kSmallest = 1024, kLargest = 32768;  // faces; powers of two
 
-  double* rows = nullptr;            ///< of `largest` faces, or of all
-  std::size_t capacity = kSmallest;  ///< face f is in row f % capacity
-  std::size_t largest = kLargest;    ///< what capacity may grow to
-  std::size_t begin = 0, end = 0;    ///< multiples of 16
-  std::size_t late = 0, early = 0;   ///< faces that were missed, before `begin` and after `end`
-  std::size_t strange = 0;           ///< corners since an element last used the window
+  RowWindow() : FaceWindow{kSmallest} {}
+
+  [[nodiscard]] double* row(std::size_t face) const noexcept { return rows + place(face) * kRow; }
+
+  double* rows = nullptr;           ///< of `largest` faces, or of all
+  std::size_t largest = kLargest;   ///< what capacity may grow to
+  std::size_t late = 0, early = 0;  ///< faces that were missed, before `begin` and after `end`
+  std::size_t strange = 0;          ///< corners since an element last used the window
 };
 
 /// The control normals of all faces in such rows: for meshes in no order, whose neighbours are anywhere. 128 bytes a
@@ -59,7 +62,7 @@ class GroupTiles {
   Segment segment_;
   const NormalGroups* groups_;
   AlignedArray<double> rows_;  // of the window; what is not used costs no memory
-  FaceWindow window_;
+  RowWindow window_;
 };
 
 }  // namespace chronormal

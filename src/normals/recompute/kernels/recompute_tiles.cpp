@@ -11,15 +11,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "simd/index_range-inl.h"
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
 #include "simd/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::HWY_NAMESPACE {
-
-using IdTag = hn::RebindToUnsigned<FloatTag>;
-
-inline constexpr IdTag kIds;
 
 constexpr std::size_t kBlock = 16;
 
@@ -48,18 +46,7 @@ HWY_INLINE Floats Joined(Doubles lower, Doubles upper) {
 
 // Four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
 HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
-#if HWY_TARGET == HWY_AVX3
-  // A load that fills some of the lanes needs no permutation, as insertions do.
-  const auto row = [base, offsets](std::size_t i) HWY_ATTR { return _mm_loadu_ps(base + offsets[i]); };
-  __m512 rows = _mm512_broadcast_f32x4(row(0));
-  rows = _mm512_mask_broadcast_f32x4(rows, 0x00F0, row(1));
-  rows = _mm512_mask_broadcast_f32x4(rows, 0x0F00, row(2));
-  return Floats{_mm512_mask_broadcast_f32x4(rows, 0xF000, row(3))};
-#elif HWY_TARGET == HWY_AVX2
-  return hn::Combine(kFloats, LoadRow(base + offsets[1]), LoadRow(base + offsets[0]));
-#else
-  return LoadRow(base + offsets[0]);
-#endif
+  return LoadBlocks([base, offsets](std::size_t block) HWY_ATTR { return base + offsets[block]; });
 }
 
 HWY_INLINE Lanes4 LoadRows(const float* rows) {
@@ -268,11 +255,11 @@ HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, 
 
 // Whether one of the 48 corners of a block is this vertex.
 HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
-  const auto wanted = hn::Set(kIds, vertex);
-  auto found = hn::Eq(hn::LoadU(kIds, corners), wanted);
+  const auto wanted = hn::Set(kIndices, vertex);
+  auto found = hn::Eq(hn::LoadU(kIndices, corners), wanted);
   for (std::size_t i = kLanes; i < 3 * kBlock; i += kLanes)
-    found = hn::Or(found, hn::Eq(hn::LoadU(kIds, corners + i), wanted));
-  return !hn::AllFalse(kIds, found);
+    found = hn::Or(found, hn::Eq(hn::LoadU(kIndices, corners + i), wanted));
+  return !hn::AllFalse(kIndices, found);
 }
 
 // How far ahead to fetch: enough for some 50 misses under way.
@@ -308,7 +295,7 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
 // Calls body(place, normals) for every kLanes faces of a range. The next block is loaded before one is worked on, so
 // that the machine does both at once.
 template <std::size_t kStride, class Body>
-HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
+HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
   EdgeBlock blocks[2];
   LoadBlock<kStride>(triangles, faces.first, faces.count, blocks[0]);
   for (std::size_t i = 0; i < faces.count; i += kBlock) {
@@ -320,6 +307,14 @@ HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, d
   }
 }
 
+template <class Body>
+HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
+  if (triangles.is_paired)
+    ForNormalsOfStride<8>(triangles, faces, t, body);
+  else
+    ForNormalsOfStride<3>(triangles, faces, t, body);
+}
+
 std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange faces, double t, VectorView<float> result,
                                  bool stream, std::uint32_t* doubtful) {
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
@@ -328,10 +323,7 @@ std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange fa
       Write<layout()>(Normalized(normals.n), place, result);
       count = Append(normals.trusted, place, faces.count, count, doubtful);
     };
-    if (triangles.is_paired)
-      ForNormals<8>(triangles, faces, t, body);
-    else
-      ForNormals<3>(triangles, faces, t, body);
+    ForNormals(triangles, faces, t, body);
     return count;
   });
 }
@@ -353,10 +345,7 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
     }
     count = Append(normals.trusted, place, faces.count, count, doubtful);
   };
-  if (triangles.is_paired)
-    ForNormals<8>(triangles, faces, t, body);
-  else
-    ForNormals<3>(triangles, faces, t, body);
+  ForNormals(triangles, faces, t, body);
   return count;
 }
 
@@ -405,24 +394,7 @@ std::size_t RecomputeGroupNormals(const NormalGroups& groups, IndexRange element
   });
 }
 
-IndexRange RangeOf(const std::uint32_t* values, std::size_t count) {
-  std::uint32_t first = values[0], last = values[0];
-  std::size_t i = 0;
-  if (count >= kLanes) {
-    auto low = hn::LoadU(kIds, values), high = low;
-    for (; i + kLanes <= count; i += kLanes) {
-      low = hn::Min(low, hn::LoadU(kIds, values + i));
-      high = hn::Max(high, hn::LoadU(kIds, values + i));
-    }
-    first = hn::GetLane(hn::MinOfLanes(kIds, low));
-    last = hn::GetLane(hn::MaxOfLanes(kIds, high));
-  }
-  for (; i < count; ++i) {
-    first = std::min(first, values[i]);
-    last = std::max(last, values[i]);
-  }
-  return {first, std::size_t{last} - first + 1};
-}
+IndexRange RangeOfIndices(const std::uint32_t* indices, std::size_t count) { return RangeOf(indices, count); }
 
 }  // namespace chronormal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -433,7 +405,7 @@ namespace chronormal {
 HWY_EXPORT(RecomputeUnitNormals);
 HWY_EXPORT(RecomputeFaceNormals);
 HWY_EXPORT(RecomputeGroupNormals);
-HWY_EXPORT(RangeOf);
+HWY_EXPORT(RangeOfIndices);
 
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, double t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept {
@@ -455,7 +427,7 @@ std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange eleme
 
 IndexRange range_of(std::span<const std::uint32_t> values) noexcept {
   assert(!values.empty());
-  return HWY_DYNAMIC_DISPATCH(RangeOf)(values.data(), values.size());
+  return HWY_DYNAMIC_DISPATCH(RangeOfIndices)(values.data(), values.size());
 }
 
 }  // namespace chronormal

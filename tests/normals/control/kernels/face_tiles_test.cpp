@@ -19,7 +19,7 @@
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::face_tiles_test {
 namespace {
 
 using fixtures::Point;
@@ -272,4 +272,4 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::face_tiles_test

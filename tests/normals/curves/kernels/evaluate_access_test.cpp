@@ -10,12 +10,12 @@
 #include <initializer_list>
 #include <vector>
 
-#include "chronormal/core/memory.h"
+#include "core/memory.h"
 #include "normals/curves/kernels/evaluate.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::evaluate_access_test {
 namespace {
 
 constexpr std::size_t kMost = 208;  // elements, of whole blocks
@@ -43,7 +43,7 @@ AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random
 // A form of results by how it is evaluated into words, and which of these it may write.
 struct Form {
   const char* name;
-  std::function<void(const BlockSpan&, const CurveWeights&, float* words, Access)> evaluate;
+  std::function<void(const BlockSpan&, const CurveWeights&, float* words, MemoryAccess)> evaluate;
   std::function<bool(std::size_t word, std::size_t elements)> is_written;
 };
 
@@ -54,22 +54,22 @@ const std::vector<Form>& forms() {
   const auto bits = [](float* words) { return reinterpret_cast<std::uint32_t*>(words); };
   static const std::vector<Form> all = {
       {"packed",
-       [](const BlockSpan& span, const CurveWeights& w, float* words, Access access) {
+       [](const BlockSpan& span, const CurveWeights& w, float* words, MemoryAccess access) {
          evaluate_blocks(span, w, PackedResult{words, access});
        },
        in_order(3)},
       {"planes",
-       [](const BlockSpan& span, const CurveWeights& w, float* words, Access access) {
+       [](const BlockSpan& span, const CurveWeights& w, float* words, MemoryAccess access) {
          evaluate_blocks(span, w, PlanesResult{words, words + kMost, words + 2 * kMost, access});
        },
        [](std::size_t word, std::size_t elements) { return word < 3 * kMost && word % kMost < elements; }},
       {"octahedral",
-       [bits](const BlockSpan& span, const CurveWeights& w, float* words, Access access) {
+       [bits](const BlockSpan& span, const CurveWeights& w, float* words, MemoryAccess access) {
          evaluate_blocks(span, w, OctahedralResult{bits(words), access});
        },
        in_order(1)},
       {"rgb10a2",
-       [bits](const BlockSpan& span, const CurveWeights& w, float* words, Access access) {
+       [bits](const BlockSpan& span, const CurveWeights& w, float* words, MemoryAccess access) {
          evaluate_blocks(span, w, Rgb10A2Result{bits(words), access});
        },
        in_order(1)},
@@ -77,7 +77,7 @@ const std::vector<Form>& forms() {
   return all;
 }
 
-std::vector<std::uint32_t> evaluated(const Form& form, const BlockSpan& span, Access access) {
+std::vector<std::uint32_t> evaluated(const Form& form, const BlockSpan& span, MemoryAccess access) {
   AlignedArray<float> words(3 * kMost + 2 * kGuard);
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = std::bit_cast<float>(kMark);
   form.evaluate(span, CurveWeights::at(0.3, true), words.data() + kGuard, access);
@@ -114,4 +114,4 @@ TEST(EvaluateAccess, changes_no_bit_and_writes_nothing_else) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::evaluate_access_test

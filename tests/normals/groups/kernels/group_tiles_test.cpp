@@ -19,7 +19,7 @@
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::group_tiles_test {
 namespace {
 
 using fixtures::Point;
@@ -151,7 +151,7 @@ TEST(GroupTiles, agree_where_the_window_is_too_small_at_first) {
 }
 
 TEST(GroupTiles, agree_where_rows_are_longer_than_the_largest_window) {
-  ASSERT_EQ(difference_on_all_targets(grid(FaceWindow::kLargest * 2 / 3, 3)), "");
+  ASSERT_EQ(difference_on_all_targets(grid(RowWindow::kLargest * 2 / 3, 3)), "");
 }
 
 TEST(GroupTiles, agree_in_any_order_of_faces_and_vertices) {
@@ -298,4 +298,4 @@ TEST(GroupTiles, read_positions_in_planes) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::group_tiles_test

@@ -1,0 +1,83 @@
+# The product: two libraries and the program. Everything is described once, by chronormal_add_product(), and built once
+# for users and, where tests are built, once more under sanitizers for the tests alone.
+#
+#   chronormal       core, simd, motion, normals, schemes, analysis
+#   chronormal_io    io and workflow
+#   chronormal_cli   the program
+find_package(hwy REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(meshoptimizer REQUIRED)
+find_package(draco REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+if(CHRONORMAL_PARALLEL)
+  find_package(TBB QUIET)
+  if(NOT TBB_FOUND)
+    message(STATUS "oneTBB was not found (Debian: libtbb-dev): the build is serial")
+  endif()
+endif()
+
+file(GLOB_RECURSE library_sources CONFIGURE_DEPENDS src/core/*.cpp src/simd/*.cpp src/motion/*.cpp src/normals/*.cpp
+                                                    src/schemes/*.cpp src/analysis/*.cpp)
+set(kernel_sources ${library_sources})
+list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
+file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
+file(GLOB cli_sources CONFIGURE_DEPENDS cli/*.cpp)
+set_source_files_properties(src/io/gltf/glb_builder.cpp PROPERTIES COMPILE_DEFINITIONS
+                                                                   CHRONORMAL_VERSION="${PROJECT_VERSION}")
+# What the parser of the command line makes of options compiles four times as fast when it is not optimised.
+set_source_files_properties(cli/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
+
+# chronormal_add_product(SUFFIX FLAGS): the three targets with this suffix to their names, compiled with what the
+# interface library FLAGS says.
+function(chronormal_add_product suffix flags)
+  add_library(chronormal${suffix} ${library_sources})
+  target_include_directories(chronormal${suffix} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                        $<INSTALL_INTERFACE:include> PRIVATE src)
+  target_compile_features(chronormal${suffix} PUBLIC cxx_std_20)
+  target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}> hwy::hwy)
+  # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
+  # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
+  target_compile_definitions(
+    chronormal${suffix}
+    PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  if(TBB_FOUND)
+    target_link_libraries(chronormal${suffix} PRIVATE TBB::tbb)
+    target_compile_definitions(chronormal${suffix} PRIVATE CHRONORMAL_HAVE_TBB)
+  endif()
+
+  add_library(chronormal_io${suffix} ${io_sources})
+  target_include_directories(chronormal_io${suffix} PRIVATE src)
+  target_link_libraries(chronormal_io${suffix} PUBLIC chronormal${suffix}
+                                               PRIVATE $<BUILD_INTERFACE:${flags}> ZLIB::ZLIB pugixml::pugixml
+                                                       $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
+                                                       meshoptimizer::meshoptimizer draco::draco)
+
+  add_executable(chronormal_cli${suffix} ${cli_sources})
+  set_target_properties(chronormal_cli${suffix} PROPERTIES OUTPUT_NAME chronormal${suffix})
+  target_include_directories(chronormal_cli${suffix} PRIVATE . src)
+  target_compile_definitions(chronormal_cli${suffix} PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
+                                                        nlohmann_json::nlohmann_json)
+endfunction()
+
+chronormal_add_product("" chronormal_flags)
+
+if(CHRONORMAL_FUZZ)
+  # What is fuzzed are the readers, which call no kernels; those take a long time to compile under sanitizers.
+  set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
+elseif(CHRONORMAL_SANITIZED)
+  # The address and undefined behaviour sanitizers, at an optimisation that compiles fast. Left out are checks that
+  # double the time to compile: a null pointer is a crash anyway, and clang's build (./test --full fuzz) has them all.
+  set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all)
+  add_library(chronormal_sanitized_flags INTERFACE)
+  target_link_libraries(chronormal_sanitized_flags INTERFACE chronormal_flags)
+  target_compile_options(chronormal_sanitized_flags INTERFACE -O1 -g1 -fno-omit-frame-pointer ${sanitizers}
+                                                              -fno-sanitize-address-use-after-scope)
+  target_link_options(chronormal_sanitized_flags INTERFACE ${sanitizers})
+  chronormal_add_product(_sanitized chronormal_sanitized_flags)
+  # Static libraries carry no link options of their own.
+  target_link_options(chronormal_sanitized INTERFACE ${sanitizers})
+endif()

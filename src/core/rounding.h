@@ -1,0 +1,83 @@
+/// What of a computed vector is nothing but rounding error, and is set to zero.
+///
+/// Terms that cancel leave their rounding errors behind, and those have a length but no direction that means anything:
+/// three collinear corners would get a random normal. Each error is at most a multiple of the unit roundoff u times the
+/// sum of the absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to 4),
+/// so that sum is kept beside the value, and what is not above the error counts as zero.
+#ifndef CHRONORMAL_CORE_ROUNDING_H_
+#define CHRONORMAL_CORE_ROUNDING_H_
+
+#include <cmath>
+#include <cstddef>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// u: one operation of double, or of float, is within this of its exact value, relative to that.
+inline constexpr double kUnitRoundoff = 0x1p-53;
+inline constexpr double kFloatUnitRoundoff = 0x1p-24;
+
+[[nodiscard]] inline Vec3d absolute(const Vec3d& v) noexcept {
+  return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
+}
+[[nodiscard]] inline double sum_abs(const Vec3d& v) noexcept {
+  return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
+}
+
+/// v, or zero where no component is above an error that all of them share.
+[[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, double error) noexcept {
+  return max_abs(v) > error ? v : Vec3d{};
+}
+
+/// v with zero for each component that is not above its own error.
+[[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, const Vec3d& error) noexcept {
+  const auto keep = [](double value, double e) { return std::fabs(value) <= e ? 0.0 : value; };
+  return {keep(v.x, error.x), keep(v.y, error.y), keep(v.z, error.z)};
+}
+
+/// A sum of vectors. The error is 4 u of all terms for each term: the addition has one u, and the rest is for the
+/// rounding of the term itself.
+class VectorSum {
+ public:
+  void add(const Vec3d& term) noexcept {
+    value_ = value_ + term;
+    magnitude_ = magnitude_ + absolute(term);
+    ++terms_;
+  }
+
+  [[nodiscard]] Vec3d without_rounding() const noexcept {
+    return chronormal::without_rounding(value_, 4 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
+  }
+
+ private:
+  Vec3d value_, magnitude_;
+  std::size_t terms_ = 0;
+};
+
+/// A sum of cross products of rounded edges. The error of each stays below 4 u of the absolute products in it; twice
+/// that is taken for safety.
+class CrossSum {
+ public:
+  void add(const Vec3d& a, const Vec3d& b) noexcept {
+    value_ = value_ + cross(a, b);
+    const Vec3d p = absolute(a), q = absolute(b);
+    magnitude_ = magnitude_ + Vec3d{p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
+    ++terms_;
+  }
+
+  /// The sums of the absolute products in each component.
+  [[nodiscard]] const Vec3d& magnitude() const noexcept { return magnitude_; }
+
+  [[nodiscard]] Vec3d without_rounding() const noexcept {
+    return chronormal::without_rounding(value_, 8 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
+  }
+
+ private:
+  Vec3d value_, magnitude_;
+  std::size_t terms_ = 0;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_ROUNDING_H_

@@ -1,0 +1,47 @@
+/// The vector area of a polygon: its normal, whose length is twice the area.
+///
+/// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of theirs,
+///
+///     n = sum over c = 2 ... n of (p[c-1] - p0) x (p[c] - p0)
+///
+/// which is the same for every way to cut it, convex or not, flat or not. Edges from one corner, and not the products of
+/// positions as in Newell's form, since a small polygon far from the origin would lose its digits in those.
+///
+/// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t go through the same
+/// fan, and whoever bounds the error of n adds up what the bound needs beside it.
+#ifndef CHRONORMAL_CORE_VECTOR_AREA_H_
+#define CHRONORMAL_CORE_VECTOR_AREA_H_
+
+#include <cstddef>
+#include <utility>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// Calls body(e, f) for each triangle of the fan of a polygon, with its edges from the first corner, in the order of the
+/// corners. edge_to(c) makes the edge to corner c, once for each c = 1 ... corners - 1.
+template <class EdgeTo, class Body>
+constexpr void for_fan(std::size_t corners, const EdgeTo& edge_to, const Body& body) {
+  auto e = edge_to(std::size_t{1});
+  for (std::size_t c = 2; c < corners; ++c) {
+    auto f = edge_to(c);
+    body(std::as_const(e), std::as_const(f));
+    e = std::move(f);
+  }
+}
+
+/// The normal of a polygon with the positions vertex(0) ... vertex(corners - 1), without a look at rounding.
+template <class VertexAt>
+[[nodiscard]] constexpr auto twice_vector_area(std::size_t corners, const VertexAt& vertex) {
+  const auto origin = vertex(std::size_t{0});
+  auto sum = decltype(origin - origin){};
+  for_fan(
+      corners, [&](std::size_t c) { return vertex(c) - origin; },
+      [&sum](const auto& e, const auto& f) { sum = sum + cross(e, f); });
+  return sum;
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_CORE_VECTOR_AREA_H_

@@ -1,0 +1,52 @@
+/// What NormalCurves keeps: its elements in blocks of 16, in runs of neighbouring blocks of one kind, and beside them
+/// the elements that float32 cannot carry.
+///
+///     build_curves (curve_builder.h) --CurveData--> NormalCurves, NormalPlayback
+#ifndef CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
+#define CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "chronormal/core/views.h"
+#include "chronormal/normals/control_normals.h"
+#include "core/memory.h"
+#include "normals/curves/kernels/curve_blocks.h"
+
+namespace chronormal {
+
+struct CurveData {
+  /// Neighbouring blocks of one kind.
+  struct Run {
+    std::size_t first_block = 0;
+    std::size_t block_count = 0;
+    std::size_t offset = 0;  ///< of the first block, in blocks
+    BlockKind kind = BlockKind::kUnit;
+
+    /// The elements of these blocks; of them, only those below `size` exist.
+    [[nodiscard]] IndexRange elements(std::size_t size) const noexcept {
+      const std::size_t first = first_block * kTile, end = first + block_count * kTile;
+      return {first, (end < size ? end : size) - first};
+    }
+  };
+
+  std::size_t size = 0;
+  bool keeps_lengths = true;
+  std::array<std::size_t, 3> degree_counts{};
+  AlignedBytes blocks;
+  std::vector<Run> runs;
+  std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
+  std::vector<std::size_t> flagged;     ///< elements that are evaluated in double, ascending
+  std::vector<ControlNormals> exact;    ///< of these
+  AlignedArray<float> scratch;          ///< of preparing, kept for the next segment
+};
+
+/// Writes the unit normals of the flagged elements at t, and returns how many have no direction.
+/// result must have as many elements as the curves
+std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_

@@ -1,0 +1,47 @@
+/// A window that slides over the faces of a mesh, for sums over the faces around one element after the other.
+///
+/// On a well-ordered mesh the faces around neighbouring vertices are neighbours too. So what a sum needs of a face is
+/// computed once, when the first element asks for it, and kept in a ring until the window has moved on:
+///
+///     faces        ... 40 41 42 [43 44 45 46 47 48 49 50] 51 52 ...      begin = 43, end = 51, capacity = 8
+///     place in it                 3  4  5  6  7  0  1  2                 face f is at f & (capacity - 1)
+///
+/// The window only says which faces are where. It grows at its end, and the oldest faces make room; where an element
+/// needs faces that are elsewhere, it starts again there. How far it pays to follow is for its owner to decide.
+#ifndef CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_
+#define CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_
+
+#include <algorithm>
+#include <cstddef>
+
+#include "chronormal/core/views.h"
+
+namespace chronormal {
+
+struct FaceWindow {
+  std::size_t capacity = 0;        ///< a power of two
+  std::size_t begin = 0, end = 0;  ///< of the faces in it
+
+  [[nodiscard]] std::size_t place(std::size_t face) const noexcept { return face & (capacity - 1); }
+  [[nodiscard]] bool is_empty() const noexcept { return begin == end; }
+  [[nodiscard]] bool holds(const IndexRange& faces) const noexcept {
+    return begin <= faces.first && faces.end() <= end;
+  }
+
+  void start_at(std::size_t face) noexcept { begin = end = face; }
+
+  /// Adds the faces up to `new_end`. write(faces, place) computes a range of them that lies in one piece of the ring.
+  template <class Write>
+  void extend(std::size_t new_end, const Write& write) {
+    while (end < new_end) {
+      const IndexRange faces{end, std::min(new_end - end, capacity - place(end))};
+      write(faces, place(end));
+      end = faces.end();
+    }
+    if (end > capacity) begin = std::max(begin, end - capacity);
+  }
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_

@@ -1,0 +1,154 @@
+// The special cases of instruction sets: every raw intrinsic of the library stands here, beside the operations of Highway
+// that give the same bits on all other targets. Today those are of AVX-512, whose permutations and masked loads need
+// fewer instructions than what Highway makes of general shuffles.
+//
+// Included once for each instruction set, as lanes-inl.h.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/lanes-inl.h"
+#include "simd/rows-inl.h"
+
+#if defined(CHRONORMAL_SIMD_INTRINSICS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_SIMD_INTRINSICS_INL_H_
+#undef CHRONORMAL_SIMD_INTRINSICS_INL_H_
+#else
+#define CHRONORMAL_SIMD_INTRINSICS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::HWY_NAMESPACE {
+
+// The larger and the smaller of two absolute values; neither may be NaN.
+#if HWY_TARGET == HWY_AVX3
+HWY_INLINE Floats LargerAbs(Floats a, Floats b) { return Floats{_mm512_range_ps(a.raw, b.raw, 0b1011)}; }
+HWY_INLINE Doubles LargerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1011)}; }
+HWY_INLINE Doubles SmallerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1010)}; }
+#else
+template <class V>
+HWY_INLINE V LargerAbs(V a, V b) {
+  return hn::Max(hn::Abs(a), hn::Abs(b));
+}
+template <class V>
+HWY_INLINE V SmallerAbs(V a, V b) {
+  return hn::Min(hn::Abs(a), hn::Abs(b));
+}
+#endif
+
+// The lanes of a mask as bits, the lowest first.
+template <class Tag>
+HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
+#if HWY_TARGET == HWY_AVX3
+  (void)tag;
+  return mask.raw;
+#else
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(tag, mask, bits);
+  return (static_cast<std::uint32_t>(bits[1]) << 8 | bits[0]) & ((1U << hn::MaxLanes(tag)) - 1);
+#endif
+}
+
+// Writes x0 y0 z0 x1 y1 z1 ... : 3 * kLanes floats.
+template <bool kStream>
+HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
+#if HWY_TARGET == HWY_AVX3
+  // Two permutations a vector instead of the generic ones by 128-bit pieces.
+  const auto index = [](int a0, int a1, int a2, int b0, int b1, int b2, int c0, int c1, int c2, int d0, int d1, int d2,
+                        int e0, int e1, int e2, int f0) HWY_ATTR {
+    return _mm512_setr_epi32(a0, a1, a2, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1, e2, f0);
+  };
+  // The lanes of x and y first (y counts from 16), then those of z into the gaps (z counts from 16).
+  const __m512i xy0 = index(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
+  const __m512i xy1 = index(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
+  const __m512i xy2 = index(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
+  const __m512i z0 = index(0, 1, 16, 3, 4, 17, 6, 7, 18, 9, 10, 19, 12, 13, 20, 15);
+  const __m512i z1 = index(0, 21, 2, 3, 22, 5, 6, 23, 8, 9, 24, 11, 12, 25, 14, 15);
+  const __m512i z2 = index(26, 1, 2, 27, 4, 5, 28, 7, 8, 29, 10, 11, 30, 13, 14, 31);
+  const auto place = [&](__m512i xy, __m512i z) HWY_ATTR {
+    return Floats{_mm512_permutex2var_ps(_mm512_permutex2var_ps(v.x.raw, xy, v.y.raw), z, v.z.raw)};
+  };
+  StoreOne<kStream>(place(xy0, z0), to);
+  StoreOne<kStream>(place(xy1, z1), to + 16);
+  StoreOne<kStream>(place(xy2, z2), to + 32);
+#else
+  if constexpr (kStream && kLanes > 1) {
+    alignas(64) float packed[3 * kLanes];
+    hn::StoreInterleaved3(v.x, v.y, v.z, kFloats, packed);
+    for (std::size_t i = 0; i < 3; ++i) hn::Stream(hn::Load(kFloats, packed + i * kLanes), kFloats, to + i * kLanes);
+  } else {
+    hn::StoreInterleaved3(v.x, v.y, v.z, kFloats, to);
+  }
+#endif
+}
+
+#if HWY_TARGET != HWY_SCALAR
+
+// Four floats from memory for each 128 bits of a vector: address(b) is where those of block b are.
+template <class AddressOf>
+HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
+#if HWY_TARGET == HWY_AVX3
+  // A load that fills some of the lanes needs no permutation, as insertions do.
+  __m512 blocks = _mm512_castps128_ps512(_mm_loadu_ps(address(0)));
+  blocks = _mm512_mask_broadcast_f32x4(blocks, 0x00F0, _mm_loadu_ps(address(1)));
+  blocks = _mm512_mask_broadcast_f32x4(blocks, 0x0F00, _mm_loadu_ps(address(2)));
+  return Floats{_mm512_mask_broadcast_f32x4(blocks, 0xF000, _mm_loadu_ps(address(3)))};
+#else
+  return Blocks([&address](std::size_t block) HWY_ATTR { return LoadRow(address(block)); });
+#endif
+}
+
+// Of each pair of lanes the 128 bits go to rows of their own.
+template <class V>
+HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
+  constexpr std::size_t kPairs = sizeof(V) / 16;
+  if constexpr (kPairs == 1) {
+    hn::StoreU(v, hn::FixedTag<double, 2>(), to);
+  } else {
+    StorePairs(hn::LowerHalf(v), to, stride);
+    StorePairs(hn::UpperHalf(hn::Half<hn::FixedTag<double, 2 * kPairs> >(), v), to + kPairs / 2 * stride, stride);
+  }
+}
+
+// Row i, at to + i * stride, gets lane i of a and of b.
+HWY_INLINE void StoreTwoColumns(Doubles a, Doubles b, double* to, std::size_t stride) {
+  StorePairs(hn::InterleaveLower(kDoubles, a, b), to, 2 * stride);
+  StorePairs(hn::InterleaveUpper(kDoubles, a, b), to + stride, 2 * stride);
+}
+
+// Row i gets lane i of column(0) ... column(7).
+template <class ColumnOf>
+HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_t stride) {
+#if HWY_TARGET == HWY_AVX3
+  // Pairs, fours, and eights of neighbours.
+  __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the columns 2 i and 2 i + 1
+  for (std::size_t i = 0; i < 4; ++i) {
+    even[i] = _mm512_unpacklo_pd(column(2 * i).raw, column(2 * i + 1).raw);
+    odd[i] = _mm512_unpackhi_pd(column(2 * i).raw, column(2 * i + 1).raw);
+  }
+  std::size_t first = 0;
+  for (const __m512d* const pairs : {even, odd}) {
+    const __m512d lower02 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b10001000);  // rows 0 4, 0 4
+    const __m512d upper02 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b11011101);  // rows 2 6, 2 6
+    const __m512d lower46 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b10001000);
+    const __m512d upper46 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b11011101);
+    double* const row = to + first * stride;
+    _mm512_storeu_pd(row, _mm512_shuffle_f64x2(lower02, lower46, 0b10001000));
+    _mm512_storeu_pd(row + 2 * stride, _mm512_shuffle_f64x2(upper02, upper46, 0b10001000));
+    _mm512_storeu_pd(row + 4 * stride, _mm512_shuffle_f64x2(lower02, lower46, 0b11011101));
+    _mm512_storeu_pd(row + 6 * stride, _mm512_shuffle_f64x2(upper02, upper46, 0b11011101));
+    ++first;
+  }
+#else
+  for (std::size_t k = 0; k < 8; k += 2) StoreTwoColumns(column(k), column(k + 1), to + k, stride);
+#endif
+}
+
+#endif  // HWY_TARGET != HWY_SCALAR
+
+}  // namespace chronormal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // CHRONORMAL_SIMD_INTRINSICS_INL_H_

@@ -1,0 +1,150 @@
+#include "workflow/audit/blend_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "workflow/audit/measure.h"
+
+namespace chronormal {
+
+AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
+  const auto after = std::upper_bound(shading.parts.begin(), shading.parts.end(), vertex,
+                                      [](std::size_t v, const GltfPart& part) { return v < part.first_vertex; });
+  const GltfPart& part = *(after - 1);
+  return {part.mesh, part.primitive, vertex - part.first_vertex, 0, 0};
+}
+
+BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights,
+                         Moment moment)
+    : shading_(shading),
+      part_(part),
+      rule_(rule),
+      weights_at_(std::move(weights)),
+      moment_(std::move(moment)),
+      moved_(shading.set.targets.size()) {
+  std::vector<Vec3d> positions(part.vertices().size());
+  place_base(positions);
+  PartNormals normals;
+  part.normals(positions, normals);
+  base_normals_ = std::move(normals.elements);
+}
+
+bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> positions) {
+  if (rule_ != AuditRule::kGltf) {
+    start_ = weights(segment, 0);
+    end_ = weights(segment, 1);
+  }
+  std::vector<double> now = weights(segment, t);
+  const bool same = known_ && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
+  known_ = true;
+  t_ = t;
+  if (same) return false;
+  now_ = std::move(now);
+  place_base(positions);
+  for (std::size_t k = 0; k < now_.size(); ++k) {
+    if (now_[k] == 0) continue;
+    for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + now_[k] * to_double(delta);
+  }
+  return true;
+}
+
+Vec3f BlendSource::shown(const JudgedOutput& output) const {
+  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(sum(output.vertex, now_))));
+  return blend_stored(rule_, to_double(sum(output.vertex, start_)), to_double(sum(output.vertex, end_)), t_);
+}
+
+Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal) const {
+  const Vec3d stored = to_double(vector_at(shading_.normals, output.vertex));
+  return shown_direction(stored, base_normals_[output.element], normal);
+}
+
+AuditPlace BlendSource::at(std::size_t segment, double t, const JudgedOutput& output) const {
+  AuditPlace place = place_of(shading_, output.vertex);
+  place.segment = segment;
+  place.at = moment_(segment, t);
+  return place;
+}
+
+std::vector<double> BlendSource::weights(std::size_t segment, double t) const {
+  std::vector<double> result(shading_.set.targets.size());
+  weights_at_(segment, t, result);
+  return result;
+}
+
+void BlendSource::place_base(std::span<Vec3d> positions) const {
+  const auto vertices = part_.vertices();
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
+}
+
+// The deltas of a target, with vertices as the part numbers them.
+const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
+  if (moved_[k]) return *moved_[k];
+  std::vector<Delta>& result = moved_[k].emplace();
+  const BlendTarget& target = shading_.set.targets[k];
+  const auto vertices = part_.vertices();
+  result.reserve(std::min(vertices.size(), target.vertices.size()));
+  for (std::size_t i = 0, n = 0; i < vertices.size() && n < target.vertices.size();) {
+    if (vertices[i] == target.vertices[n])
+      result.emplace_back(static_cast<std::uint32_t>(i), vector_at(target.deltas, n));
+    if (vertices[i] <= target.vertices[n])
+      ++i;
+    else
+      ++n;
+  }
+  return result;
+}
+
+// N + sum w D in float32, target after target, as hosts add.
+Vec3f BlendSource::sum(std::size_t vertex, const std::vector<double>& weights) const {
+  Vec3f normal = vector_at(shading_.normals, vertex);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0 || shading_.normal_deltas[k].empty()) continue;
+    normal = normal + static_cast<float>(weights[k]) * vector_at(shading_.normal_deltas[k], vertex);
+  }
+  return normal;
+}
+
+std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
+                                         AuditRule rule) {
+  const Topology& topology = shading.set.topology;
+  std::vector<bool> moves(topology.vertex_count()), element_moves(shading.groups.size());
+  for (std::size_t k = 0; k < involved.size(); ++k) {
+    if (!involved[k]) continue;
+    for (const std::uint32_t v : shading.set.targets[k].vertices) moves[v] = true;
+  }
+  const auto corners = topology.corners();
+  const auto element_of_vertex = shading.groups.element_of_output();
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    if (!moves[corners[c]]) continue;
+    const std::size_t first = c - c % 3;
+    for (std::size_t i = first; i < first + 3; ++i) element_moves[element_of_vertex[corners[i]]] = true;
+  }
+  const auto is_judged = [&](std::uint32_t v) {
+    const std::uint32_t e = shading.element_of_vertex[v];
+    if (e == GltfShading::kNoElement) return false;
+    if (element_moves[e]) return true;
+    for (std::size_t k = 0; k < involved.size(); ++k) {
+      if (involved[k] && !shading.normal_deltas[k].empty() && vector_at(shading.normal_deltas[k], v) != Vec3f{})
+        return true;
+    }
+    return false;
+  };
+  std::vector<JudgedOutput> outputs;
+  if (rule == AuditRule::kFlat) {
+    for (std::uint32_t c = 0; c < corners.size(); ++c)
+      if (is_judged(corners[c])) outputs.push_back({corners[c], element_of_vertex[corners[c]], c / 3, c});
+    return outputs;
+  }
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) count += is_judged(v) ? 1U : 0U;
+  outputs.reserve(count);
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
+    if (!is_judged(v)) continue;
+    const std::uint32_t e = shading.element_of_vertex[v];
+    outputs.push_back({v, e, shading.groups.faces(e)[0], 0});
+  }
+  return outputs;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,72 @@
+/// What a host makes of the mesh of a glTF file and its weights: a source of measure.h. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/workflow/audit.h"
+#include "workflow/audit/judged_part.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal {
+
+[[nodiscard]] inline Vec3f vector_at(const std::vector<float>& values, std::size_t i) {
+  const float* v = values.data() + 3 * i;
+  return {v[0], v[1], v[2]};
+}
+
+/// A vertex of all parts together, as the file counts.
+[[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
+
+/// The weights of all targets at t of a segment.
+using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
+/// The weight or the time that a person finds this by.
+using Moment = std::function<double(std::size_t segment, double t)>;
+
+class BlendSource {
+ public:
+  static constexpr bool kNeedsEnds = false;
+
+  /// shading and part must outlive this.
+  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
+
+  bool place(std::size_t segment, double t, std::span<Vec3d> positions);
+  void forget() { known_ = false; }
+  [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
+  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;
+  [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const;
+
+ private:
+  using Delta = std::pair<std::uint32_t, Vec3f>;
+
+  [[nodiscard]] std::vector<double> weights(std::size_t segment, double t) const;
+  void place_base(std::span<Vec3d> positions) const;
+  const std::vector<Delta>& moved(std::size_t k);
+  [[nodiscard]] Vec3f sum(std::size_t vertex, const std::vector<double>& weights) const;
+
+  const GltfShading& shading_;
+  const JudgedPart& part_;
+  AuditRule rule_;
+  Weights weights_at_;
+  Moment moment_;
+  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
+  std::vector<Vec3d> base_normals_;                       // of elements
+  bool known_ = false;
+  double t_ = 0;
+  std::vector<double> now_, start_, end_;
+};
+
+/// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their
+/// corners. involved has one entry for each target.
+[[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
+                                                       AuditRule rule);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_

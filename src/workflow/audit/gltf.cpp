@@ -1,0 +1,232 @@
+// Audits of glTF files. Of each mesh: how far the author's normals are from the geometry, what there is to note, every
+// target from weight 0 to 1, and every track of weights.
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "chronormal/workflow/audit.h"
+#include "io/gltf/gltf_weights.h"
+#include "workflow/audit/blend_source.h"
+#include "workflow/audit/gltf_findings.h"
+#include "workflow/audit/measure.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal {
+namespace {
+
+// What an audit of one mesh needs to know.
+struct MeshAudit {
+  const GltfDocument& document;
+  const AuditOptions& options;
+  const GltfShading& shading;
+  AuditRule rule;
+  std::function<void()> progress;
+};
+
+// Tracks by animation and index.
+using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// The tracks that drive a mesh, in the animations that are asked for.
+Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<std::size_t> only) {
+  Tracks tracks;
+  for (std::size_t a = 0; a < document.animations().size(); ++a) {
+    if (only && a != *only) continue;
+    for (std::size_t t = 0; t < document.animations()[a].tracks.size(); ++t)
+      if (document.nodes()[document.animations()[a].tracks[t].node].mesh == mesh) tracks.emplace_back(a, t);
+  }
+  return tracks;
+}
+
+// How far base normals are from the geometry; nothing where there are none.
+std::optional<AuthoredOffset> offset_of(const GltfShading& shading, Weighting weighting) {
+  std::vector<JudgedOutput> outputs;
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)
+    if (shading.element_of_vertex[v] != GltfShading::kNoElement)
+      outputs.push_back({v, shading.element_of_vertex[v], 0, 0});
+  if (outputs.empty()) return std::nullopt;
+  const auto positions = VectorView<const float>::packed(shading.set.base.data(), shading.set.topology.vertex_count());
+  const auto stored = [&](const JudgedOutput& output) { return to_double(vector_at(shading.normals, output.vertex)); };
+  AuthoredOffset offset = authored_offset(shading.set.topology, positions, shading.groups, weighting, outputs, stored);
+  offset.mesh = shading.mesh;
+  offset.worst_at = place_of(shading, offset.worst_at.vertex);
+  return offset;
+}
+
+JudgedPart part_of(const MeshAudit& mesh, const std::vector<bool>& involved) {
+  return {mesh.shading.set.topology, mesh.shading.groups, mesh.options.weighting,
+          moving_outputs(mesh.shading, involved, mesh.rule), mesh.rule == AuditRule::kFlat};
+}
+
+// Measures a subject, and returns whether there is anything to judge.
+bool measure_part(const MeshAudit& mesh, const JudgedPart& part, const Weights& weights, const Moment& moment,
+                  AuditSubject& subject) {
+  if (part.outputs().empty()) {
+    for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
+    return false;
+  }
+  BlendSource source(mesh.shading, part, mesh.rule, weights, moment);
+  measure(source, part, mesh.rule, mesh.progress, subject);
+  return true;
+}
+
+// Audits a target from weight 0 to 1. Extra targets of a bake get the products that they stand for.
+void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
+  const GltfShading& shading = mesh.shading;
+  std::vector<bool> involved(shading.set.targets.size());
+  involved[k] = true;
+  if (shading.mark) {
+    for (const GltfExtraTarget& extra : shading.mark->extras) {
+      if (extra.target == k) return;
+      if (extra.i == k || extra.j == k) involved[extra.target] = true;
+    }
+  }
+  AuditSubject subject;
+  subject.kind = AuditSubject::Kind::kTarget;
+  const std::vector<std::string>& names = mesh.document.meshes()[shading.mesh].target_names;
+  if (!names.empty()) subject.name = names[k];
+  subject.mesh = shading.mesh;
+  subject.target = k;
+  subject.segments = 1;
+  subject.samples = samples_per_segment(mesh.options, 1);
+  const auto weights = [&](std::size_t, double t, std::span<double> of_targets) {
+    std::fill(of_targets.begin(), of_targets.end(), 0.0);
+    of_targets[k] = t;
+    fill_extra_weights(shading, of_targets);
+  };
+  const auto moment = [](std::size_t, double t) { return t; };
+  const JudgedPart part = part_of(mesh, involved);
+  if (!measure_part(mesh, part, weights, moment, subject)) {
+    ++result.still;
+    return;
+  }
+  for (const AuditFinding& fault : faults_of_target(mesh.document, shading, mesh.rule, subject, part, weights))
+    result.findings.push_back(fault);
+  result.subjects.push_back(std::move(subject));
+}
+
+// Audits the weights between two keys of a track, and what of the mesh they move. Nothing for a track that moves
+// nothing.
+Result<std::optional<AuditSubject>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index) {
+  const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
+  Result<GltfKeys> keys = mesh.document.keys(animation, index);
+  if (!keys) return keys.error();
+  const std::vector<double> times = keys.value().times;
+  const std::size_t width = mesh.shading.set.targets.size();
+  std::vector<bool> involved(width);
+  for (std::size_t i = 0; i < keys.value().values.size(); ++i)
+    if (keys.value().values[i] != 0) involved[i % width] = true;
+  const gltf::WeightCurve curve(std::move(keys).value(), track.interpolation, width);
+  AuditSubject subject;
+  subject.kind = AuditSubject::Kind::kTrack;
+  subject.name = mesh.document.animations()[animation].name;
+  subject.mesh = mesh.shading.mesh;
+  subject.animation = animation;
+  subject.track = index;
+  subject.node = track.node;
+  const bool moves = times.size() > 1;
+  subject.segments = moves ? times.size() - 1 : 1;
+  subject.samples = moves ? samples_per_segment(mesh.options, subject.segments) : 1;
+  const auto moment = [&](std::size_t segment, double t) {
+    if (!moves || t == 0) return times[segment];
+    return t == 1 ? times[segment + 1] : (1 - t) * times[segment] + t * times[segment + 1];
+  };
+  const auto weights = [&](std::size_t segment, double t, std::span<double> of_targets) {
+    curve.at(moment(segment, t), moves && t == 1, of_targets);
+  };
+  if (!measure_part(mesh, part_of(mesh, involved), weights, moment, subject)) return std::optional<AuditSubject>();
+  return std::optional(std::move(subject));
+}
+
+// Audits all tracks of a mesh; those with the same keys are measured once, and are subjects each.
+Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
+                    Audit& result) {
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<AuditSubject>> of_curves;  // by animation, same_keys_as
+  for (const auto& [animation, index] : tracks) {
+    const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
+    const auto [known, is_new] = of_curves.try_emplace({animation, track.same_keys_as});
+    if (is_new) {
+      Result<std::optional<AuditSubject>> measured = audit_track(mesh, animation, index);
+      if (!measured) return measured.error();
+      known->second = std::move(measured).value();
+    } else {
+      for (std::size_t s = 1; s < std::max<std::size_t>(2, track.key_count); ++s) mesh.progress();
+    }
+    if (!known->second) {
+      ++result.still;
+      continue;
+    }
+    AuditSubject subject = *known->second;
+    subject.track = index;
+    subject.node = track.node;
+    if (is_new) {
+      if (const auto fault = fault_of_track(subject, are_targets_judged, worst_target))
+        result.findings.push_back(*fault);
+    }
+    result.subjects.push_back(std::move(subject));
+  }
+  return Success{};
+}
+
+// The segments of all subjects.
+std::size_t count_segments(const GltfDocument& document, std::optional<std::size_t> only) {
+  std::size_t total = 0;
+  for (std::size_t m = 0; m < document.meshes().size(); ++m) {
+    total += only ? 0 : document.meshes()[m].target_count;
+    for (const auto& [a, t] : tracks_of(document, m, only))
+      total += std::max<std::size_t>(1, document.animations()[a].tracks[t].key_count - 1);
+  }
+  return total;
+}
+
+bool has_targets(const GltfMesh& mesh) {
+  return mesh.target_count > 0 && std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                                              [](const GltfPrimitive& p) { return p.has_faces(); });
+}
+
+}  // namespace
+
+Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
+  if (const Status status = check_samples(options); !status) return status.error();
+  std::optional<std::size_t> only;
+  if (!options.animation.empty()) {
+    const Result<std::size_t> animation = document.find_animation(options.animation);
+    if (!animation) return animation.error();
+    only = animation.value();
+  }
+  Audit result;
+  result.weighting = options.weighting;
+  result.rule = options.rule.value_or(AuditRule::kGltf);
+  const std::size_t total = count_segments(document, only);
+  std::size_t done = 0;
+  const auto progress = [&] {
+    ++done;
+    if (options.progress) options.progress(std::min(done, total), total);
+  };
+  for (std::size_t m = 0; m < document.meshes().size(); ++m) {
+    const Tracks tracks = tracks_of(document, m, only);
+    if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;
+    Result<GltfShading> read = read_gltf_shading(document, m);
+    if (!read) return read.error();
+    GltfShading& shading = read.value();
+    if (const std::optional<AuthoredOffset> offset = offset_of(shading, result.weighting))
+      result.offsets.push_back(*offset);
+    if (result.weighting == Weighting::kArea) shading.groups.forget_corners();
+    for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
+
+    const MeshAudit mesh{document, options, shading, result.rule, progress};
+    const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
+    const std::size_t first = result.subjects.size();
+    for (std::size_t k = 0; k < document.meshes()[m].target_count && are_targets_judged; ++k)
+      audit_target(mesh, k, result);
+    double worst_target = 0;
+    for (std::size_t s = first; s < result.subjects.size(); ++s)
+      worst_target = std::max(worst_target, result.subjects[s].error.worst);
+    if (Status status = audit_tracks(mesh, tracks, are_targets_judged, worst_target, result); !status)
+      return status.error();
+  }
+  finish(result);
+  return result;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,118 @@
+#include "workflow/audit/gltf_findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chronormal/analysis/quality.h"
+#include "workflow/audit/measure.h"
+
+namespace chronormal {
+namespace {
+
+using Kind = AuditFinding::Kind;
+
+AuditFinding finding_of(Kind kind, std::optional<std::size_t> mesh) {
+  AuditFinding finding{};
+  finding.kind = kind;
+  finding.mesh = mesh;
+  return finding;
+}
+
+bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& part) {
+  const std::vector<std::uint32_t>& moved = shading.set.targets[k].vertices;
+  const auto first = std::lower_bound(moved.begin(), moved.end(), part.first_vertex);
+  return first != moved.end() && *first < part.first_vertex + part.vertex_count;
+}
+
+// How far tangents are from perpendicular to the right normal at weight 1, beyond what they are in the base.
+std::optional<AuditFinding> stale_tangents(const GltfShading& shading, AuditRule rule, std::size_t k,
+                                           const JudgedPart& part, const Weights& weights) {
+  if (shading.tangents.empty() || shading.set.targets[k].vertices.empty()) return std::nullopt;
+  BlendSource source(shading, part, rule, weights, [](std::size_t, double t) { return t; });
+  std::vector<Vec3d> positions(part.vertices().size());
+  PartNormals normals;
+  source.place(0, 1, positions);
+  part.normals(positions, normals);
+  AuditFinding finding = finding_of(Kind::kStaleTangents, shading.mesh);
+  finding.target = k;
+  finding.degrees = kAuditFault;
+  for (const JudgedOutput& output : part.outputs()) {
+    const float* t = shading.tangents.data() + 4 * std::size_t{output.vertex};
+    const Vec3d before = to_double(Vec3f{t[0], t[1], t[2]});
+    Vec3d after = before;
+    if (!shading.tangent_deltas[k].empty())
+      after = after + to_double(vector_at(shading.tangent_deltas[k], output.vertex));
+    const Vec3d stored = to_double(vector_at(shading.normals, output.vertex));
+    const Vec3d right = source.right(output, normals.elements[output.element]);
+    if (before == Vec3d{} || after == Vec3d{} || stored == Vec3d{} || right == Vec3d{}) continue;
+    const auto lean = [](const Vec3d& a, const Vec3d& b) {
+      return std::fabs(angle_between(a, b) * kDegreesPerRadian - 90);
+    };
+    const double grown = lean(after, right) - lean(before, stored);
+    finding.count += grown > kAuditFault ? 1U : 0U;
+    if (grown > finding.degrees) {
+      finding.degrees = grown;
+      finding.worst_at = source.at(0, 1, output);
+    }
+  }
+  if (!finding.worst_at) return std::nullopt;
+  return finding;
+}
+
+}  // namespace
+
+std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading) {
+  std::vector<AuditFinding> notes;
+  const auto note = [&](Kind kind, std::size_t count) {
+    notes.push_back(finding_of(kind, shading.mesh));
+    notes.back().count = count;
+  };
+  const auto& primitives = document.meshes()[shading.mesh].primitives;
+  const auto flat = std::count_if(shading.parts.begin(), shading.parts.end(),
+                                  [&](const GltfPart& p) { return !primitives[p.primitive].has_normals; });
+  if (flat > 0) note(Kind::kFlat, static_cast<std::size_t>(flat));
+  if (shading.mark) note(Kind::kBaked, shading.mark->extras.size());
+  if (shading.mark && shading.mark->sequence) note(Kind::kSequenceTargets, shading.own_targets());
+  const auto skinned = std::count_if(document.nodes().begin(), document.nodes().end(), [&](const GltfNode& node) {
+    return node.mesh && *node.mesh == shading.mesh && node.has_skin;
+  });
+  if (skinned > 0) note(Kind::kSkinned, static_cast<std::size_t>(skinned));
+  return notes;
+}
+
+std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading, AuditRule rule,
+                                           const AuditSubject& subject, const JudgedPart& part,
+                                           const Weights& weights) {
+  const std::size_t k = *subject.target;
+  const auto& primitives = document.meshes()[shading.mesh].primitives;
+  const auto lacks_normals = [&](const GltfPart& p) {
+    const GltfPrimitive& primitive = primitives[p.primitive];
+    return primitive.has_normals && primitive.targets[k].positions && !primitive.targets[k].normals &&
+           moves_vertices(shading, k, p);
+  };
+  const auto lacking = std::count_if(shading.parts.begin(), shading.parts.end(), lacks_normals);
+  std::vector<AuditFinding> faults;
+  if (lacking > 0) {
+    AuditFinding& finding = faults.emplace_back(finding_of(Kind::kMissingNormals, shading.mesh));
+    finding.target = k;
+    finding.count = static_cast<std::size_t>(lacking);
+    finding.degrees = subject.error.worst;
+    if (subject.error.worst > 0) finding.worst_at = subject.error.worst_at;
+  } else if (std::optional<AuditFinding> wrong = find_wrong_normals(subject)) {
+    faults.push_back(*wrong);
+  }
+  if (std::optional<AuditFinding> stale = stale_tangents(shading, rule, k, part, weights)) faults.push_back(*stale);
+  return faults;
+}
+
+std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
+  if (are_targets_judged && worst_target > kAuditFault) return std::nullopt;  // said of the targets already
+  std::optional<AuditFinding> fault = find_wrong_normals(subject);
+  if (!fault) return std::nullopt;
+  if (are_targets_judged) fault->kind = Kind::kWrongTogether;
+  fault->degrees = subject.error.worst;
+  fault->worst_at = subject.error.worst_at;
+  return fault;
+}
+
+}  // namespace chronormal

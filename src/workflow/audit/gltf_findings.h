@@ -1,0 +1,30 @@
+/// What is wrong with the mesh of a glTF file, in the words of an audit. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "chronormal/workflow/audit.h"
+#include "workflow/audit/blend_source.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal {
+
+/// What is no fault, but good to know.
+[[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
+
+/// The faults of a target that was measured, at the weights that measured it.
+[[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
+                                                         AuditRule rule, const AuditSubject& subject,
+                                                         const JudgedPart& part, const Weights& weights);
+
+/// The fault of a track that was measured. are_targets_judged says whether targets were judged one by one before, and
+/// worst_target how far off they were.
+[[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
+                                                         double worst_target);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_

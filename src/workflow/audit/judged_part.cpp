@@ -1,0 +1,112 @@
+#include "workflow/audit/judged_part.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/blocks.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
+
+// Numbers those that are not kUnused in their order; returns them.
+std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
+  std::vector<std::uint32_t> used;
+  used.reserve(marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), kUnused)));
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (marks[i] == kUnused) continue;
+    marks[i] = static_cast<std::uint32_t>(used.size());
+    used.push_back(static_cast<std::uint32_t>(i));
+  }
+  return used;
+}
+
+}  // namespace
+
+JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
+                       std::vector<JudgedOutput> outputs, bool needs_faces)
+    : weighting_(weighting), keeps_faces_(needs_faces || weighting != Weighting::kArea), outputs_(std::move(outputs)) {
+  std::vector<std::uint32_t> element(groups.size(), kUnused), face(topology.face_count(), kUnused);
+  std::vector<std::uint32_t> vertex(topology.vertex_count(), kUnused);
+  for (const JudgedOutput& output : outputs_) element[output.element] = 0;
+  elements_ = number_used(element);
+  for (const std::uint32_t e : elements_)
+    for (const std::uint32_t f : groups.faces(e)) face[f] = 0;
+  const std::vector<std::uint32_t> faces = number_used(face);
+  for (const std::uint32_t f : faces)
+    for (const std::uint32_t v : topology.face(f)) vertex[v] = 0;
+  vertices_ = number_used(vertex);
+
+  constexpr std::size_t kSmallFace = 4;
+  std::size_t face_corners = 0, element_corners = 0;
+  for (const std::uint32_t f : faces) {
+    face_corners += topology.face(f).size();
+    keeps_faces_ = keeps_faces_ || topology.face(f).size() > kSmallFace;
+  }
+  for (const std::uint32_t e : elements_) element_corners += groups.faces(e).size();
+  const bool has_corners = weighting != Weighting::kArea;
+  face_vertices_.reserve(face_corners);
+  face_offsets_.reserve(faces.size() + 1);
+  faces_of_element_.reserve(element_corners);
+  element_offsets_.reserve(elements_.size() + 1);
+  if (has_corners) corners_of_element_.reserve(element_corners);
+  for (const std::uint32_t f : faces) {
+    for (const std::uint32_t v : topology.face(f)) face_vertices_.push_back(vertex[v]);
+    face_offsets_.push_back(static_cast<std::uint32_t>(face_vertices_.size()));
+  }
+  for (const std::uint32_t e : elements_) {
+    for (std::size_t i = 0; i < groups.faces(e).size(); ++i) {
+      const std::uint32_t f = groups.faces(e)[i];
+      const auto first_corner = topology.face(f).data() - topology.corners().data();
+      faces_of_element_.push_back(face[f]);
+      if (has_corners) corners_of_element_.push_back(groups.corners(e)[i] - static_cast<std::uint32_t>(first_corner));
+    }
+    element_offsets_.push_back(static_cast<std::uint32_t>(faces_of_element_.size()));
+  }
+  for (JudgedOutput& output : outputs_) {
+    output.element = element[output.element];
+    output.face = face[output.face];
+  }
+}
+
+void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
+  result.faces.resize(keeps_faces_ ? face_offsets_.size() - 1 : 0);
+  result.elements.resize(elements_.size());
+  parallel_each(result.faces.size(), kRange, [&](std::size_t f) { result.faces[f] = face_normal(positions, f); });
+  parallel_each(result.elements.size(), kRange, [&](std::size_t e) {
+    Vec3d sum;
+    double size = 0;  // of the terms
+    for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
+      const std::uint32_t f = faces_of_element_[i];
+      const Vec3d normal = keeps_faces_ ? result.faces[f] : face_normal(positions, f);
+      const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
+      sum = sum + added;
+      size += max_abs(added);
+    }
+    // What is left of terms that cancel is their rounding, and no direction.
+    constexpr double kRounding = 1e-13;
+    result.elements[e] = without_rounding(sum, kRounding * size);
+  });
+}
+
+Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face) const {
+  const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[face] + c]]; };
+  const std::size_t corners = face_offsets_[face + 1] - face_offsets_[face];
+  return twice_vector_area(corners, at);
+}
+
+Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
+                       const Vec3d& normal) const {
+  if (weighting_ == Weighting::kUniform || normal == Vec3d{}) return unit(normal);
+  const std::size_t first = face_offsets_[face], corners = face_offsets_[face + 1] - first;
+  const auto at = [&](std::size_t c) { return positions[face_vertices_[first + c % corners]]; };
+  const Vec3d e = at(corner + 1) - at(corner), f = at(corner + corners - 1) - at(corner);
+  if (e == Vec3d{} || f == Vec3d{}) return {};
+  if (weighting_ == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
+  return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(normal) : normal);
+}
+
+}  // namespace chronormal

@@ -1,0 +1,64 @@
+/// The part of a mesh that an audit looks at, and its right normals. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/topology.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/weighting.h"
+
+namespace chronormal {
+
+/// What one task takes.
+inline constexpr std::size_t kRange = 4096;
+
+/// Something that shows a normal: a vertex, or a corner where a vertex has several normals.
+struct JudgedOutput {
+  std::uint32_t vertex = 0, element = 0;
+  std::uint32_t face = 0, corner = 0;  ///< where a rule looks at them
+};
+
+struct PartNormals {
+  std::vector<Vec3d> faces, elements;
+};
+
+/// The elements of some outputs, and the faces and vertices that these need, numbered anew.
+class JudgedPart {
+ public:
+  /// Elements and faces of the outputs become those of this part; their vertices and corners stay those of the mesh.
+  /// Without needs_faces, normals() may leave out those of faces. groups need no corners where the weighting is area.
+  JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
+             std::vector<JudgedOutput> outputs, bool needs_faces = true);
+
+  /// Its vertices and its elements, as the mesh numbers them, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
+  [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
+  [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
+
+  /// Computes the normals of its faces and elements from positions of vertices(): cross products, and for elements
+  /// their weighted sums (normals/weighting.h), without a look at what is rounding.
+  void normals(std::span<const Vec3d> positions, PartNormals& result) const;
+
+ private:
+  [[nodiscard]] Vec3d face_normal(std::span<const Vec3d> positions, std::size_t face) const;
+  // What a corner of a face adds to the normal of its element.
+  [[nodiscard]] Vec3d term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
+                           const Vec3d& normal) const;
+
+  std::vector<std::uint32_t> vertices_, elements_;
+  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // of this part
+  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // of this part
+  std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty where faces count by area
+  Weighting weighting_;
+  bool keeps_faces_;  // or each element computes the normals of its faces: no memory, and little time for small ones
+  std::vector<JudgedOutput> outputs_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_

@@ -1,0 +1,146 @@
+/// The loop of an audit: the right normals of the part of a mesh that moves, and what is shown instead. Private to
+/// workflow.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/core/views.h"
+#include "chronormal/workflow/audit.h"
+#include "core/blocks.h"
+#include "workflow/audit/judged_part.h"
+
+namespace chronormal {
+
+/// Below this part of its largest control normal, the direction of a normal means nothing.
+inline constexpr double kVanished = 1e-4;
+
+inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
+
+/// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
+[[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
+
+/// The samples of a segment.
+[[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept;
+
+[[nodiscard]] Status check_samples(const AuditOptions& options);
+
+/// The offset of stored normals (zero: none) from the geometry of some positions by a weighting, a normal for each
+/// output.
+/// groups must be those of the topology
+[[nodiscard]] AuthoredOffset authored_offset(const Topology& topology, VectorView<const float> positions,
+                                             const NormalGroups& groups, Weighting weighting,
+                                             std::span<const JudgedOutput> outputs,
+                                             const std::function<Vec3d(const JudgedOutput&)>& stored);
+
+/// The fault of a subject whose stored normals are off by more than kAuditFault: at keys, or else between them.
+[[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
+
+/// Sums over the subjects, finds the worst of them, and puts faults before notes.
+void finish(Audit& result);
+
+// A source is a motion with what is shown on the way:
+//     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
+//     forget()                       makes the next call differ
+//     begin(segment, start, end)     gets the normals at both ends before the samples (where kNeedsEnds)
+//     shown(output)                  a normal of any length, zero for none
+//     right(output, n)               the direction for a normal of the geometry
+//     at(segment, t, output)         for people
+
+/// Positions and normals of a part, as the source has placed it.
+struct PlacedPart {
+  explicit PlacedPart(const JudgedPart& judged) : part(judged), positions(judged.vertices().size()) {}
+
+  /// Returns whether anything differs from the last call.
+  template <class Source>
+  bool place(Source& source, std::size_t segment, double t) {
+    const bool differs = source.place(segment, t, positions);
+    if (differs) part.normals(positions, normals);
+    return differs;
+  }
+
+  const JudgedPart& part;
+  std::vector<Vec3d> positions;
+  PartNormals normals;
+};
+
+/// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle.
+template <class Source>
+[[nodiscard]] std::vector<double> largest_control_normals(Source& source, std::size_t segments, PlacedPart& placed) {
+  std::vector<double> largest(placed.part.elements().size(), 0.0);
+  const auto normals_at = [&](std::size_t s, double t) {
+    placed.place(source, s, t);
+    return placed.normals.elements;
+  };
+  source.forget();
+  for (std::size_t s = 0; s < segments; ++s) {
+    const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5), end = normals_at(s, 1);
+    parallel_each(largest.size(), kRange, [&](std::size_t e) {
+      const Vec3d m = 2.0 * middle[e] - 0.5 * (start[e] + end[e]);
+      largest[e] = std::max({largest[e], length(start[e]), length(m), length(end[e])});
+    });
+  }
+  return largest;
+}
+
+/// The errors of all outputs as they are placed.
+template <class Source>
+[[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, AuditRule rule,
+                                   std::span<const double> largest, std::size_t segment, double t) {
+  const std::span<const JudgedOutput> outputs = placed.part.outputs();
+  const auto judge = [&](std::size_t i, MotionError& errors) {
+    const JudgedOutput& output = outputs[i];
+    const Vec3d& normal = placed.normals.elements[output.element];
+    if (!(length(normal) > kVanished * largest[output.element])) {
+      ++errors.no_normal;
+      return;
+    }
+    const Vec3d shown = rule == AuditRule::kFlat ? placed.normals.faces[output.face] : to_double(source.shown(output));
+    if (shown == Vec3d{}) {
+      ++errors.no_shown;
+      return;
+    }
+    const double angle = angle_between(shown, source.right(output, normal)) * kDegreesPerRadian;
+    errors.add(angle, angle > errors.worst ? source.at(segment, t, output) : AuditPlace());
+  };
+  return parallel_fold<MotionError>(outputs.size(), kRange, judge,
+                                    [](MotionError& all, const MotionError& each) { all.add(each); });
+}
+
+/// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
+/// is called after each segment.
+template <class Source>
+void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
+             AuditSubject& subject) {
+  PlacedPart placed(part);
+  const std::vector<double> largest = largest_control_normals(source, subject.segments, placed);
+  source.forget();
+  MotionError error;  // of the last sample
+  for (std::size_t s = 0; s < subject.segments; ++s) {
+    if constexpr (Source::kNeedsEnds) {
+      placed.place(source, s, 0);
+      const PartNormals start = placed.normals;
+      placed.place(source, s, 1);
+      source.begin(s, start, placed.normals);
+      source.forget();
+    }
+    for (std::size_t i = 0; i < subject.samples; ++i) {
+      const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
+      if (placed.place(source, s, t)) error = error_at(source, placed, rule, largest, s, t);
+      subject.error.add(error);
+      if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
+    }
+    progress();
+  }
+  subject.vertices = part.outputs().size();
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_

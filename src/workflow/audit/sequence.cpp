@@ -1,0 +1,233 @@
+// Audits of sequences: what a player shows that interpolates normals between keyframes.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/transform.h"
+#include "chronormal/workflow/audit.h"
+#include "core/blocks.h"
+#include "workflow/audit/measure.h"
+
+namespace chronormal {
+namespace {
+
+class SequenceSource {
+ public:
+  static constexpr bool kNeedsEnds = true;
+
+  SequenceSource(const Motion& motion, const StoredNormals& normals, bool stored, const JudgedPart& part,
+                 AuditRule rule, const PartNormals& first, std::span<const std::size_t> segments)
+      : motion_(motion),
+        normals_(normals),
+        stored_(stored),
+        part_(part),
+        rule_(rule),
+        first_(first),
+        segments_(segments) {}
+
+  bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
+    if (known_ && segment == segment_ && t == t_) return false;
+    known_ = true;
+    segment_ = segment;
+    t_ = t;
+    const Segment s = motion_.segment(segments_[segment]);
+    const auto vertices = part_.vertices();
+    parallel_each(vertices.size(), kRange, [&](std::size_t i) {
+      positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
+    });
+    return true;
+  }
+  void forget() { known_ = false; }
+
+  void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
+    start_ = start.elements;
+    end_ = end.elements;
+  }
+
+  [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
+    if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
+    // What a player computes at the keyframes, as it keeps it.
+    const auto computed = [](const Vec3d& normal) { return to_double(to_float(unit(normal))); };
+    return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
+  }
+
+  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
+    const Vec3d now = unit(normal);
+    if (!stored_) return now;
+    const Vec3d from = offset_by(keys().from, start_[output.element], output, now);
+    const Vec3d to = offset_by(keys().to, end_[output.element], output, now);
+    const Vec3d between = lerp(from, to, t_);
+    return between == Vec3d{} ? now : between;
+  }
+
+  [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
+    const Segment s = motion_.segment(segments_[segment]);
+    const double time = t == 0 ? s.start_time : t == 1 ? s.end_time : (1 - t) * s.start_time + t * s.end_time;
+    return {std::nullopt, std::nullopt, output.vertex, segment, motion_.kind == MotionKind::kTargets ? t : time};
+  }
+
+ private:
+  [[nodiscard]] const Motion::SegmentKeys& keys() const { return motion_.segments[segments_[segment_]]; }
+
+  [[nodiscard]] Vec3d stored_at(std::size_t keyframe, const JudgedOutput& output) const {
+    const float* n = normals_.of_keyframes[keyframe].data() + 3 * std::size_t{output.corner};
+    return to_double(Vec3f{n[0], n[1], n[2]});
+  }
+
+  // A direction turned as the author turned the geometry at a keyframe, by no more than in keyframe 0.
+  [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
+                                const Vec3d& direction) const {
+    const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
+    const Vec3d first = first_.elements[output.element], first_stored = stored_at(0, output);
+    if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
+    const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
+    if (offset <= allowed) return turned(from, to, direction);
+    // The point of the arc at the allowed angle.
+    const Vec3d side = to - dot(from, to) * from;
+    const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
+    return turned(from, std::cos(allowed) * from + std::sin(allowed) * across, direction);
+  }
+
+  const Motion& motion_;
+  const StoredNormals& normals_;
+  bool stored_;
+  const JudgedPart& part_;
+  AuditRule rule_;
+  const PartNormals& first_;  // of keyframe 0
+  std::span<const std::size_t> segments_;
+  bool known_ = false;
+  std::size_t segment_ = 0;
+  double t_ = 0;
+  std::vector<Vec3d> start_, end_;
+};
+
+Status check_normals(const Motion& motion, const StoredNormals& normals) {
+  const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
+  if (count > 1 && count != motion.keyframes.size())
+    return invalid_input("", "there are normals of " + std::to_string(count) + " keyframes for " +
+                                 std::to_string(motion.keyframes.size()));
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::vector<float>& values = normals.of_keyframes[k];
+    const std::string place = "keyframe " + std::to_string(k);
+    if (values.size() != 3 * corners)
+      return invalid_input(place, "there is not one normal for each of " + std::to_string(corners) + " corners");
+    if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+      return invalid_input(place, "a normal is not finite");
+  }
+  return Success{};
+}
+
+// A vertex once for each normal that it shows: corners of one element with the same stored normals show the same.
+std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
+                                       const std::vector<bool>& moves, AuditRule rule, bool stored) {
+  const auto corners = motion.topology.corners();
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    if (corners[a] != corners[b]) return false;
+    if (rule == AuditRule::kFlat) return a == b;
+    if (!stored) return true;
+    return std::all_of(normals.of_keyframes.begin(), normals.of_keyframes.end(), [&](const std::vector<float>& values) {
+      return std::equal(values.begin() + 3 * std::ptrdiff_t{a}, values.begin() + 3 * std::ptrdiff_t{a} + 3,
+                        values.begin() + 3 * std::ptrdiff_t{b});
+    });
+  };
+  std::vector<JudgedOutput> outputs;
+  for (std::uint32_t e = 0; e < groups.size(); ++e) {
+    const std::size_t first = outputs.size();
+    const auto of_element = groups.corners(e);
+    const auto faces = groups.faces(e);
+    const bool moving = std::any_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
+      const auto face = motion.topology.face(f);
+      return std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return moves[v]; });
+    });
+    for (std::size_t i = 0; i < of_element.size() && moving; ++i) {
+      const std::uint32_t c = of_element[i];
+      const bool known = std::any_of(outputs.begin() + static_cast<std::ptrdiff_t>(first), outputs.end(),
+                                     [&](const JudgedOutput& output) { return same(output.corner, c); });
+      if (!known) outputs.push_back({corners[c], e, faces[i], c});
+    }
+  }
+  return outputs;
+}
+
+std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::size_t> segments) {
+  std::vector<bool> moves(motion.topology.vertex_count());
+  for (const std::size_t s : segments) {
+    const Segment segment = motion.segment(s);
+    for (std::size_t v = 0; v < moves.size(); ++v)
+      if (segment.from[v] != segment.to[v]) moves[v] = true;
+  }
+  return moves;
+}
+
+}  // namespace
+
+Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
+  if (const Status status = check_samples(options); !status) return status.error();
+  Audit result;
+  result.weighting = options.weighting;
+  result.rule = options.rule.value_or(AuditRule::kNlerp);
+  if (result.rule == AuditRule::kGltf)
+    return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
+  if (const Status status = check_normals(motion, normals); !status) return status.error();
+  result.stored = normals.of_keyframes.size() == motion.keyframes.size();
+  const Topology& topology = motion.topology;
+  const Points points = options.weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+  Result<NormalGroups> groups = NormalGroups::of_vertices(topology, points);
+  if (!normals.of_keyframes.empty())
+    groups = NormalGroups::by_split_normals(
+        topology, points, VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count()));
+  if (!groups) return groups.error();
+  const auto outputs_of = [&](const std::vector<bool>& moves) {
+    return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
+  };
+
+  const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
+  if (!normals.of_keyframes.empty()) {
+    const std::vector<JudgedOutput> all = outputs_of(std::vector<bool>(topology.vertex_count(), true));
+    result.offsets.push_back(
+        authored_offset(topology, base, groups.value(), result.weighting, all, [&](const JudgedOutput& output) {
+          const float* n = normals.of_keyframes[0].data() + 3 * std::size_t{output.corner};
+          return to_double(Vec3f{n[0], n[1], n[2]});
+        }));
+  }
+
+  // A sequence is one subject; each target is one.
+  const bool is_targets = motion.kind == MotionKind::kTargets;
+  std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) subjects[is_targets ? s : 0].push_back(s);
+  std::size_t done = 0;
+  const auto progress = [&] {
+    if (options.progress) options.progress(++done, motion.segments.size());
+  };
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    AuditSubject subject;
+    subject.kind = is_targets ? AuditSubject::Kind::kTarget : AuditSubject::Kind::kSequence;
+    if (is_targets) {
+      subject.target = i;
+      subject.name = motion.keyframes[motion.segments[i].to].name;
+    }
+    subject.segments = subjects[i].size();
+    subject.samples = options.samples.value_or(kAuditSamples);
+    const JudgedPart part(topology, groups.value(), result.weighting, outputs_of(moving_vertices(motion, subjects[i])));
+    if (part.outputs().empty()) {
+      ++result.still;
+      for (std::size_t s = 0; s < subject.segments; ++s) progress();
+      continue;
+    }
+    std::vector<Vec3d> positions;
+    for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
+    PartNormals first;
+    part.normals(positions, first);
+    SequenceSource source(motion, normals, result.stored, part, result.rule, first, subjects[i]);
+    measure(source, part, result.rule, progress, subject);
+    if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
+    result.subjects.push_back(std::move(subject));
+  }
+  finish(result);
+  return result;
+}
+
+}  // namespace chronormal

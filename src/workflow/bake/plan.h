@@ -1,0 +1,45 @@
+/// What the bake of one mesh needs: which pairs of targets get an extra one, and what is left out. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
+#define CHRONORMAL_WORKFLOW_BAKE_PLAN_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake/fitted_lines.h"
+#include "workflow/bake/terms.h"
+#include "workflow/bake/tracks.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal {
+
+/// 0 and 1, and what lies beyond them of the weights of a file.
+struct WeightRange {
+  double low = 0, high = 1;
+};
+
+struct MeshPlan {
+  BakeEncoding encoding = BakeEncoding::kExact;
+  bool is_driven = false;             ///< an animation gives some moving target a weight
+  std::vector<bool> is_line;          ///< of each target: it gets the best single delta
+  std::vector<WeightRange> ranges;    ///< of each target: what its error is stated for
+  FittedLines lines;                  ///< those of targets that are active together, of endpoint
+  std::vector<WeightProduct> extras;  ///< ascending (i, j)
+  std::vector<bool> is_shown;         ///< of each element: some vertex shows it
+  std::vector<double> largest;        ///< of each element: the length of its largest term
+  double left_out = 0;                ///< degrees: how far the pairs that were left out turn a normal
+};
+
+/// Decides. use has the weights of the file; is_driven, whether animations give some. Errors: kUsage where a fitted
+/// weighting is asked for targets that are active together; kInvalidInput where there would be too many pairs.
+[[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
+                                         const NormalTerms& terms, const WeightUse& use, bool is_driven,
+                                         const BakeOptions& options);
+
+[[nodiscard]] inline bool moves(const GltfShading& shading, std::size_t target) noexcept {
+  return !shading.set.targets[target].vertices.empty();
+}
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_PLAN_H_

@@ -1,0 +1,150 @@
+// Bakes a sequence. A host shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
+// target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
+//
+//     SequenceNormals     normals at keys, and their bends between                            sequence_normals
+//     sequence_vertices   who shows them: vertices, and their copies at hard edges            sequence_vertices
+//     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
+//     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
+//     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake/sequence_deltas.h"
+#include "workflow/bake/sequence_file.h"
+#include "workflow/bake/sequence_normals.h"
+#include "workflow/bake/sequence_vertices.h"
+
+namespace chronormal {
+namespace {
+
+using Step = std::function<void(std::size_t done, std::size_t total)>;
+
+Result<NormalGroups> groups_of(const Motion& motion, const BakeOptions& options) {
+  const Points points = weld_coincident(motion);
+  if (options.normal_of_corner.count > 0)
+    return NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner);
+  if (options.crease_angle == 180) return NormalGroups::of_vertices(motion.topology, points);
+  return NormalGroups::by_crease_angle(motion, points, options.crease_angle);
+}
+
+// Times as the file has them: float32, and none before 0.
+Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
+  const double shift = std::max(-motion.keyframes[0].time, 0.0);
+  if (shift > 0) warnings.push_back("time starts at 0 in the file, and not before it");
+  std::vector<float> times;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    const auto time = static_cast<float>(keyframe.time + shift);
+    if ((!times.empty() && !(times.back() < time)) || !std::isfinite(time))
+      return invalid_input("keyframe " + std::to_string(times.size()),
+                           "its time is not after that of the one before in float32");
+    times.push_back(time);
+  }
+  return times;
+}
+
+// The largest bound of the fits of a weighting, in degrees; 0 for areas.
+double largest_bound(const SequenceNormals& normals) {
+  double largest = 0;
+  for (const std::vector<double>& bounds : normals.bounds()) {
+    for (const double bound : bounds) largest = std::max(largest, kDegreesPerRadian * bound);
+  }
+  return largest;
+}
+
+void report_elements(const std::vector<SequenceElement>& elements, bool exact, SequenceBake& report) {
+  const auto freed =
+      std::count_if(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
+  const auto without =
+      std::count_if(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.has_none; });
+  report.without_normals = static_cast<std::size_t>(without);
+  if (exact && freed > 0)
+    report.warnings.push_back(std::to_string(freed) +
+                              " normals cannot start from those of keyframe 0 (no area there, or much less later), so "
+                              "that keyframe 0 has a target too, whose weight is 1 at rest");
+}
+
+// Adds the targets of exact to the file, and notes which segments bend.
+Status write_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, const Step& step,
+                   SequenceTargets& targets, SequenceFile& file) {
+  const std::size_t total = 2 * normals.keys() - 1;
+  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < normals.keys(); ++k) {
+    file.add_key(k, k == 0 ? std::vector<float>() : normals.deltas(k), key_deltas(elements, normals.at_key(k)));
+    step(k + 1, total);
+    if (Status status = file.check_size(); !status) return status;
+  }
+  return each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
+    if (const std::vector<Vec3d> deltas = bend_deltas(elements, form); !deltas.empty()) {
+      targets.bent_segments.push_back(s);
+      file.add_bend(s, deltas);
+    }
+    step(normals.keys() + s + 1, total);
+    return file.check_size();
+  });
+}
+
+// Adds the targets of endpoint to the file. Returns the largest angle that is left, in degrees.
+Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                              const Step& step, SequenceFile& file) {
+  EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
+  double largest = 0;
+  const Status status = each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
+    const auto bounds = normals.bounds().empty() ? std::span<const double>() : std::span(normals.bounds()[s]);
+    end = end_deltas(elements, form, bounds, end.deltas);
+    largest = std::max(largest, kDegreesPerRadian * std::min(end.error, std::numbers::pi));
+    file.add_key(s + 1, normals.deltas(s + 1), end.deltas);
+    step(s + 1, normals.keys() - 1);
+    return file.check_size();
+  });
+  if (!status) return status.error();
+  return largest;
+}
+
+}  // namespace
+
+Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
+  const bool exact = options.encoding.value_or(BakeEncoding::kExact) == BakeEncoding::kExact;
+  const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
+  const Result<NormalGroups> groups = groups_of(motion, options);
+  if (!groups) return groups.error();
+  const Result<SequenceNormals> made = SequenceNormals::make(motion, groups.value(), options.weighting);
+  if (!made) return made.error();
+  const SequenceNormals& normals = made.value();
+  SequenceBake report;
+  const Result<std::vector<float>> times = file_times(motion, report.warnings);
+  if (!times) return times.error();
+
+  const SequenceVertices vertices = sequence_vertices(motion.topology, groups.value());
+  const std::vector<SequenceElement> elements = sequence_elements(normals);
+  report_elements(elements, exact, report);
+  report.largest_error = largest_bound(normals);
+  const bool any_freed =
+      std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
+  SequenceTargets targets{exact, exact && any_freed, normals.keys(), {}};
+  if (const std::size_t bent = count_not_convex(motion.topology, motion.keyframes[0].positions); bent > 0)
+    report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
+
+  SequenceFile file(motion, vertices, elements, exact, options);
+  if (exact) {
+    if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
+  } else {
+    const Result<double> error = write_endpoint(normals, elements, step, file);
+    if (!error) return error.error();
+    report.largest_error = std::max(report.largest_error, error.value());
+  }
+  Result<std::string> bytes = file.finish(targets, times.value());
+  if (!bytes) return bytes.error();
+  glb = std::move(bytes).value();
+  report.keyframes = normals.keys();
+  report.vertices = vertices.size();
+  report.targets = targets.of_keys();
+  report.extra_targets = targets.bent_segments.size();
+  report.bytes = glb.size();
+  return report;
+}
+
+}  // namespace chronormal

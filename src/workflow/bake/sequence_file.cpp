@@ -1,0 +1,114 @@
+#include "workflow/bake/sequence_file.h"
+
+#include <utility>
+
+#include "io/gltf/gltf_bake_mark.h"
+
+namespace chronormal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
+  std::vector<Vec3d> normals;
+  normals.reserve(elements.size());
+  for (const SequenceElement& element : elements) normals.push_back(element.normal);
+  return normals;
+}
+
+}  // namespace
+
+std::vector<float> weight_track(const SequenceTargets& targets, std::span<const float> times) {
+  const std::size_t keys = targets.keys, n = targets.count(), rows = targets.exact ? 3 : 1;
+  std::vector<float> values(keys * rows * n, 0.0F);
+  enum Row : std::size_t { kIn, kValue, kOut };
+  const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
+    return values[(key * rows + (targets.exact ? std::size_t{row} : 0U)) * n + target];
+  };
+  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < keys; ++k) at(k, kValue, targets.of_key(k)) = 1;
+  if (!targets.exact) return values;
+  // Per second, with the length of the segment as a reader computes it from the times in the file.
+  const auto slope = [&](std::size_t s) { return static_cast<float>(1 / (double{times[s + 1]} - double{times[s]})); };
+  for (std::size_t s = 0; s + 1 < keys; ++s) {
+    for (const auto& [key, sign] : {std::pair{s, -1.0F}, std::pair{s + 1, 1.0F}}) {
+      if (key == 0 && !targets.has_key_0) continue;
+      at(s, kOut, targets.of_key(key)) = sign * slope(s);
+      at(s + 1, kIn, targets.of_key(key)) = sign * slope(s);
+    }
+  }
+  for (std::size_t b = 0; b < targets.bent_segments.size(); ++b) {
+    const std::size_t s = targets.bent_segments[b], target = targets.of_keys() + b;
+    at(s, kOut, target) = slope(s);
+    at(s + 1, kIn, target) = -slope(s);
+  }
+  return values;
+}
+
+GltfBakeMark mark_of(const SequenceTargets& targets) {
+  const auto factor = [&](std::size_t key) {
+    return key == 0 && !targets.has_key_0 ? GltfExtraTarget::kBase : targets.of_key(key);
+  };
+  GltfBakeMark mark{targets.exact ? "exact" : "endpoint", true, {}};
+  for (const std::size_t s : targets.bent_segments)
+    mark.extras.push_back({targets.of_keys() + mark.extras.size(), factor(s), factor(s + 1)});
+  return mark;
+}
+
+SequenceFile::SequenceFile(const Motion& motion, const SequenceVertices& vertices,
+                           std::span<const SequenceElement> elements, bool exact, const BakeOptions& options)
+    : vertices_(vertices), dense_zeros_(options.dense_zeros), builder_(options.most_bytes) {
+  triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices.of_corner), vertices.size());
+  base_ = {
+      {"POSITION", builder_.add_vectors(vertices.positions(motion.keyframes[0].positions), {true, true})},
+      {"NORMAL", builder_.add_vectors(vertices.vectors(normals_of(elements), kAnyNormal), {false, true})},
+  };
+  if (exact)
+    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices.size()), {true, options.dense_zeros});
+}
+
+void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals) {
+  add_target(
+      "key " + std::to_string(key),
+      positions.empty() ? zero_positions_ : builder_.add_vectors(vertices_.positions(positions), {true, dense_zeros_}),
+      normals);
+}
+
+void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals) {
+  add_target("bend " + std::to_string(segment), zero_positions_, normals);
+}
+
+void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {
+  names_.push_back(std::move(name));
+  targets_.push_back({{"POSITION", positions},
+                      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
+}
+
+Status SequenceFile::check_size() const {
+  if (builder_.fits()) return Success{};
+  return invalid_input("", "the file would have more than " + std::to_string(builder_.most_bytes()) +
+                               " bytes, which is all that it may have");
+}
+
+Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::size_t input = builder_.add_scalars(times, {true, true}),
+                    output = builder_.add_scalars(weight_track(targets, times), {false, true});
+  std::vector<int> rest(targets_.size(), 0);
+  if (targets.has_key_0) rest[0] = 1;
+  Json& document = builder_.document();
+  document["scene"] = 0;
+  document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  document["nodes"] = Json::array({{{"mesh", 0}}});
+  const Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", targets_}};
+  const Json mesh = {{"primitives", Json::array({primitive})},
+                     {"weights", rest},
+                     {"extras", {{"targetNames", names_}, {"chronormal", gltf::bake_mark_json(mark_of(targets))}}}};
+  document["meshes"] = Json::array({mesh});
+  const Json sampler = {
+      {"input", input}, {"interpolation", targets.exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};
+  const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
+  document["animations"] =
+      Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});
+  return builder_.finish();
+}
+
+}  // namespace chronormal

@@ -1,0 +1,213 @@
+#include "workflow/bake/tracks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "chronormal/core/polynomial.h"
+
+namespace chronormal {
+namespace {
+
+constexpr int kMostHalvings = 10;  // of a piece between two keys of the file
+
+using Cubic = std::array<double, 4>;
+using Sextic = std::array<double, 7>;
+
+// A weight at a key: its value, and its slopes before and after.
+struct Knot {
+  double in = 0, value = 0, out = 0;
+};
+
+constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+
+// The slope of a piece shorter than any frame may be beyond float32: nobody sees it.
+float to_slope(double slope) { return std::fabs(slope) <= kMost ? static_cast<float>(slope) : 0.0F; }
+float to_weight(double weight) { return static_cast<float>(std::clamp(weight, -kMost, kMost)); }
+
+// What had to be clamped is no product any more: nothing is known of the normal.
+double error_of_clamping(const std::vector<float>& values) {
+  for (const float value : values)
+    if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
+  return 0;
+}
+
+// The slopes of a cubic at its ends, per second.
+double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
+double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
+
+// How far the cubic through the ends of p, value and slope, is from p: a bound.
+double cubic_error(const Sextic& p) {
+  const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
+  const Sextic raised = multiply(cubic, Cubic{1, 1, 1, 1});
+  double error = 0;
+  for (std::size_t k = 0; k < p.size(); ++k) error = std::fmax(error, std::fabs(p[k] - raised[k]));
+  return error;
+}
+
+// Whether every product is linear in time between all keys: where one factor holds still.
+bool products_are_linear(const WeightTrack& track, std::span<const WeightProduct> products) {
+  for (std::size_t key = 0; key + 1 < track.size(); ++key) {
+    const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
+    for (const WeightProduct& product : products) {
+      if (moves(product.i) && moves(product.j)) return false;
+    }
+  }
+  return true;
+}
+
+// Writes values only: for LINEAR, STEP, and single keys.
+void append_values(const WeightTrack& track, std::span<const WeightProduct> products, std::vector<float>& values) {
+  for (std::size_t key = 0; key < track.size(); ++key) {
+    for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
+    for (const WeightProduct& product : products)
+      values.push_back(to_weight(track.value(key, product.i) * track.value(key, product.j)));
+  }
+}
+
+// A cubic spline while it is built, key by key: a row of knots for each.
+class Spline {
+ public:
+  explicit Spline(std::size_t columns) : columns_(columns) {}
+
+  // Adds a key; slopes are 0 until a piece sets them.
+  void add_key(double time) {
+    times_.push_back(static_cast<float>(time));
+    knots_.resize(knots_.size() + columns_);
+  }
+  Knot& last(std::size_t column) { return knots_[knots_.size() - columns_ + column]; }
+  Knot& before(std::size_t column) { return knots_[knots_.size() - 2 * columns_ + column]; }
+
+  void write(ExtendedTrack& result) && {
+    result.values.reserve(3 * knots_.size());
+    for (std::size_t key = 0; key < times_.size(); ++key) {
+      const Knot* row = knots_.data() + key * columns_;
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].in));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_weight(row[c].value));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].out));
+    }
+    result.times = std::move(times_);
+  }
+
+ private:
+  std::size_t columns_;
+  std::vector<float> times_;
+  std::vector<Knot> knots_;  // (keys, columns)
+};
+
+class TrackExtender {
+ public:
+  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance)
+      : track_(track), products_(products), tolerance_(tolerance), spline_(track.targets + products.size()) {}
+
+  ExtendedTrack run() {
+    ExtendedTrack result;
+    result.interpolation = GltfInterpolation::kCubicSpline;
+    add_first_key();
+    for (std::size_t key = 0; key + 1 < track_.size(); ++key) {
+      pieces_.clear();
+      for (std::size_t i = 0; i < track_.targets; ++i) pieces_.push_back(track_.piece(key, i));
+      add_pieces(track_.keys.times[key], track_.keys.times[key + 1], pieces_, kMostHalvings);
+    }
+    // The outermost slopes shape nothing; those of the file stay.
+    if (track_.interpolation == GltfInterpolation::kCubicSpline) {
+      for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
+    }
+    std::move(spline_).write(result);
+    if (result.times.size() == track_.size()) result.times.clear();
+    result.error = std::fmax(error_, error_of_clamping(result.values));
+    return result;
+  }
+
+ private:
+  void add_first_key() {
+    spline_.add_key(track_.keys.times[0]);
+    for (std::size_t i = 0; i < track_.targets; ++i) {
+      spline_.last(i).value = track_.value(0, i);
+      if (track_.interpolation == GltfInterpolation::kCubicSpline) spline_.last(i).in = track_.tangent(0, false, i);
+    }
+    for (std::size_t p = 0; p < products_.size(); ++p)
+      spline_.last(track_.targets + p).value = track_.value(0, products_[p].i) * track_.value(0, products_[p].j);
+  }
+
+  // Adds the key at `to`, and those that are needed before it.
+  void add_pieces(double from, double to, const std::vector<Cubic>& weights, int halvings) {
+    double error = 0, rounding = 0;
+    for (const WeightProduct& product : products_) {
+      const Sextic exact = multiply(weights[product.i], weights[product.j]);
+      error += product.gain * cubic_error(exact);
+      for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * product.gain * std::fabs(b));
+    }
+    // Times are float32: the new key is where the file can say it is.
+    const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
+    if (track_.interpolation == GltfInterpolation::kCubicSpline && error > std::fmax(tolerance_, rounding) &&
+        halvings > 0 && from < middle && middle < to) {
+      const double t = (middle - from) / (to - from);
+      std::vector<Cubic> before(weights.size()), after(weights.size());
+      for (std::size_t i = 0; i < weights.size(); ++i) {
+        const auto halves = split(weights[i], t);
+        before[i] = halves.before;
+        after[i] = halves.after;
+      }
+      add_pieces(from, middle, before, halvings - 1);
+      add_pieces(middle, to, after, halvings - 1);
+      return;
+    }
+    if (track_.interpolation == GltfInterpolation::kCubicSpline) error_ = std::fmax(error_, error);
+    add_piece(to - from, to, weights);
+  }
+
+  void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
+    spline_.add_key(to);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      spline_.before(i).out = slope_at_start(weights[i], duration);
+      spline_.last(i).in = slope_at_end(weights[i], duration);
+      spline_.last(i).value = weights[i][3];
+    }
+    for (std::size_t p = 0; p < products_.size(); ++p) {
+      const std::size_t column = weights.size() + p;
+      const Cubic &a = weights[products_[p].i], &b = weights[products_[p].j];
+      spline_.before(column).out = slope_at_start(a, duration) * b[0] + a[0] * slope_at_start(b, duration);
+      spline_.last(column).in = slope_at_end(a, duration) * b[3] + a[3] * slope_at_end(b, duration);
+      spline_.last(column).value = a[3] * b[3];
+    }
+  }
+
+  const WeightTrack& track_;
+  std::span<const WeightProduct> products_;
+  double tolerance_;
+  Spline spline_;
+  std::vector<Cubic> pieces_;
+  double error_ = 0;
+};
+
+}  // namespace
+
+ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance) {
+  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1;
+  const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !products_are_linear(track, products);
+  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance).run();
+  ExtendedTrack result;
+  result.interpolation = track.interpolation;
+  if (track.interpolation != GltfInterpolation::kCubicSpline) {
+    append_values(track, products, result.values);
+    result.error = error_of_clamping(result.values);
+    return result;
+  }
+  // A spline of one key: only its value counts.
+  const std::size_t columns = track.targets + products.size();
+  result.values.assign(3 * columns, 0.0F);
+  for (std::size_t i = 0; i < track.targets; ++i) {
+    result.values[i] = static_cast<float>(track.tangent(0, false, i));
+    result.values[columns + i] = static_cast<float>(track.value(0, i));
+    result.values[2 * columns + i] = static_cast<float>(track.tangent(0, true, i));
+  }
+  for (std::size_t p = 0; p < products.size(); ++p)
+    result.values[columns + track.targets + p] =
+        to_weight(track.value(0, products[p].i) * track.value(0, products[p].j));
+  return result;
+}
+
+}  // namespace chronormal

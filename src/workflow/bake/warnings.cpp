@@ -1,0 +1,61 @@
+#include "workflow/bake/warnings.h"
+
+namespace chronormal {
+namespace {
+
+// Hosts that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
+// specification asks for).
+constexpr std::size_t kMorphedAttributes = 8;
+// More extra targets than these make a file large.
+constexpr std::size_t kManyExtras = 64;
+
+std::string start_of(const GltfMesh& mesh, const BakedMesh& baked) {
+  return (mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name) + ": ";
+}
+
+}  // namespace
+
+void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std::string>& warnings) {
+  if (baked.left_flat == 0) return;
+  warnings.push_back(start_of(mesh, baked) + std::to_string(baked.left_flat) +
+                     (baked.left_flat == 1 ? " primitive has" : " primitives have") +
+                     " no normals and stays flat, as hosts shade it by the specification "
+                     "(--smooth gives it normals)");
+}
+
+void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
+                   const BakedMesh& baked, std::vector<std::string>& warnings) {
+  const auto warn = [&](const std::string& sentence) { warnings.push_back(start_of(mesh, baked) + sentence); };
+  const std::size_t targets = mesh.target_count + baked.extras.size();
+  if (!plan.is_driven && !options.encoding) {
+    warn(
+        "no animation drives its targets, so that nothing could drive extra ones: each got the best single delta "
+        "(--encode exact writes them all the same)");
+  }
+  if (baked.undriven > 0) {
+    warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
+         " driven by no animation and got the best single delta");
+  }
+  if (baked.without_stored > 0) {
+    warn(std::to_string(baked.without_stored) +
+         " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
+  }
+  if (baked.extras.size() > kManyExtras) {
+    warn(std::to_string(baked.extras.size()) +
+         " extra targets, for so many are active at once: --encode endpoint needs none");
+  }
+  if (baked.without_base > 0) {
+    warn(std::to_string(baked.without_base) +
+         " vertices have no area around them in the base: their normals are right but for weights near 0");
+  }
+  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes) {
+    warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
+         " morphed attributes; hosts that have room for 8 leave out those of the smallest weights");
+  }
+  if (shading.split_by_crease > 0) {
+    warn(std::to_string(shading.split_by_crease) +
+         " vertices lie on edges sharper than the crease angle and got one normal all the same");
+  }
+}
+
+}  // namespace chronormal

@@ -1,0 +1,14 @@
+/// What the translation unit of every header (every_header.cpp.in) tells of itself.
+#ifndef CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
+#define CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
+
+#include <cstddef>
+
+namespace chronormal {
+
+/// How many headers it includes.
+extern const std::size_t kEveryHeaderCount;
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_

@@ -1,0 +1,76 @@
+# Sourced by ./test: parts that are timed, how they build and run tests, and the table at the end.
+
+part_names=() part_seconds=() part_budgets=()
+
+
+# part NAME BUDGET COMMAND...: runs a part and notes how long it took; BUDGET is in minutes. The first part that fails
+# ends everything, with the table of what there was.
+part() {
+  local name=$1 budget=$2 begin=$SECONDS status=0
+  shift 2
+  say "== $name"
+  # In a subshell, so that the first error ends the part as it would end the script.
+  set +e
+  (set -e; "$@")
+  status=$?
+  set -e
+  part_names+=("$name") part_seconds+=($((SECONDS - begin))) part_budgets+=("$budget")
+  if [ "$status" -ne 0 ]; then
+    say "the part $name failed (exit code $status); the first error above says why"
+    print_parts
+    exit 1
+  fi
+}
+
+# configure_and_build PRESET [TARGET...]
+configure_and_build() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset" ${1+--target "$@"}
+}
+
+# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, and keeps what ctest says in build/PRESET/NAME.log.
+run_ctest() {
+  local preset=$1 name=$2
+  shift 2
+  ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$(nproc)" "$@" |
+    tee "build/$preset/$name.log"
+  # "99% tests passed, 2 tests failed out of 1320"
+  sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" \
+    >>build/counts.txt
+}
+
+show_clients() {
+  say "what Node's test runner counted:"
+  grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' build/release/clients.tap
+}
+
+print_parts() {
+  local i minutes over=false factor=${CHRONORMAL_TIME_FACTOR:-1}
+  printf '\n%-12s %8s %8s\n' part minutes budget
+  for i in "${!part_names[@]}"; do
+    minutes=$(awk -v s="${part_seconds[i]}" 'BEGIN { printf "%.1f", s / 60 }')
+    printf '%-12s %8s %8s' "${part_names[i]}" "$minutes" "${part_budgets[i]}"
+    if awk -v s="${part_seconds[i]}" -v b="${part_budgets[i]}" -v f="$factor" 'BEGIN { exit !(s > 60 * b * f) }'; then
+      printf '  over'
+      over=true
+    fi
+    printf '\n'
+  done
+  printf '%-12s %8s\n' all "$(awk -v s="$SECONDS" 'BEGIN { printf "%.1f", s / 60 }')"
+  ! $over
+}
+
+# finish_parts: the table, whether all parts kept their budgets, and the sum of all tests.
+finish_parts() {
+  local status=0
+  if ! print_parts; then
+    say "a part took longer than its budget (times ${CHRONORMAL_TIME_FACTOR:-1}): find out why, or set CHRONORMAL_TIME_FACTOR for a slow machine"
+    status=1
+  fi
+  if [ -s build/counts.txt ]; then
+    awk '{ failed += $1; all += $2 } END { printf "tests: %d passed, %d failed\n", all - failed, failed }' build/counts.txt
+  fi
+  return $status
+}
