@@ -1,19 +1,15 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/motion_files.h"
+#include "chronormal/io/output.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/sample.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
-#include "cli/inputs.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -53,43 +49,26 @@ std::string words_of(const InputOptions& input) {
   return words;
 }
 
-Result<Audited> audit_gltf(FileBytes file, const InputOptions& input, const AuditOptions& options) {
-  const std::string& path = input.files[0];
-  std::optional<std::string> folder;
-  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
-  Result<GltfDocument> document = GltfDocument::read(std::move(file), path == "-" ? "<stdin>" : short_name(path),
-                                                     folder, {.allow_external = input.allow_external});
-  if (!document) return document.error();
-  Result<Audit> found = audit(document.value(), options);
-  if (!found) return found.error();
-  Audited result;
-  result.name = path == "-" ? "<stdin>" : path;
-  result.audit = std::move(found).value();
-  result.document = std::move(document).value();
-  return result;
+Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  const Result<const StoredNormals*> normals = input.normals();
+  if (!normals) return normals.error();
+  return audit(*motion.value(), *normals.value(), how);
 }
 
 Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
-  if (is_one_file(options.input)) {
-    const std::string& path = options.input.files[0];
-    Result<FileBytes> opened = FileBytes::open(path);
-    if (!opened) return opened.error();
-    if (is_gltf(path, opened.value().bytes())) return audit_gltf(std::move(opened).value(), options.input, how);
-    if (!options.input.animation.empty())
-      return misuse("--animation", "it chooses among those of a glTF file: name one");
-  }
-  const Result<NamedMotion> input = read_input(options.input, progress);
-  if (!input) return input.error();
-  const Motion& motion = input.value().motion;
-  const Result<StoredNormals> normals = read_stored_normals(options.input, motion.topology);
-  if (!normals) return normals.error();
-  const bool is_targets = !options.input.base.empty() || (motion.segments.size() > 1 && is_blend_shapes(motion));
-  Result<Audit> found = audit(motion, normals.value(), is_targets, how);
+  InputOptions wanted = options.input;
+  wanted.shading = KeepShading::kAll;
+  Result<Input> opened = open_input(std::move(wanted), progress);
+  if (!opened) return opened.error();
+  Input& input = opened.value();
+  const GltfDocument* const document = input.document();
+  Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
-  Audited result;
-  result.name = input.value().name;
-  result.audit = std::move(found).value();
-  return result;
+  const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
+  return Audited{std::move(input), std::move(found).value(), options.tolerance,
+                 can_be_baked ? words_of(options.input) : ""};
 }
 
 Result<AuditOptions> understand(const Options& options, Progress& progress) {
@@ -123,8 +102,6 @@ Result<int> run(const Options& options) {
   Result<Audited> audited = audit_input(options, how.value(), progress);
   progress.clear();
   if (!audited) return audited.error();
-  audited.value().tolerance = options.tolerance;
-  if (options.input.base.empty()) audited.value().bake = words_of(options.input);
   const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
@@ -141,7 +118,7 @@ Command audit_command() {
   return {
       "audit",
       "How wrong are the normals that a file makes hosts show",
-      {options->input.table(),
+      {input_table(options->input),
        {{"--rule NAME", &options->rule,
          "what a host makes of stored normals between keyframes: gltf (default for\n"
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},

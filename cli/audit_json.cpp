@@ -23,7 +23,7 @@ Json place_json(const AuditPlace& place, const char* moment) {
 }
 
 const char* moment_of(const AuditSubject& subject) {
-  return subject.kind == AuditSubject::Kind::kTarget && subject.mesh ? "weight" : "time";
+  return subject.kind == AuditSubject::Kind::kTarget ? "weight" : "time";
 }
 
 void add_error(const MotionError& error, Json& json) {
@@ -74,7 +74,6 @@ Json offset_json(const AuthoredOffset& offset) {
 }
 
 Json finding_json(const AuditFinding& finding) {
-  const bool is_weight = finding.mesh && finding.target;
   return {{"kind", kKinds[static_cast<std::size_t>(finding.kind)]},
           {"fault", finding.is_fault()},
           {"mesh", or_null(finding.mesh)},
@@ -83,7 +82,7 @@ Json finding_json(const AuditFinding& finding) {
           {"node", or_null(finding.node)},
           {"count", finding.count},
           {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
-          {"worst_at", finding.worst_at ? place_json(*finding.worst_at, is_weight ? "weight" : "time") : Json()}};
+          {"worst_at", finding.worst_at ? place_json(*finding.worst_at, finding.target ? "weight" : "time") : Json()}};
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ Json finding_json(const AuditFinding& finding) {
 std::string audit_json(const Audited& input) {
   const Audit& audit = input.audit;
   Json json = json_of_command("audit");
-  json["input"] = {{"name", input.name}};
+  json["input"] = {{"name", input.name()}};
   json["rule"] = audit_rule_name(audit.rule);
   json["weighting"] = weighting_name(audit.weighting);
   json["stored_normals"] = audit.stored;

@@ -31,19 +31,19 @@ std::string named(std::string what, const std::string& name) {
 }
 
 std::string vertex_words(const Audited& input, const AuditPlace& place) {
-  if (!place.mesh || !input.document) return fmt::format("vertex {}", place.vertex);
-  return fmt::format("vertex {} of {}, primitive {}", place.vertex, mesh_label(*input.document, *place.mesh),
+  if (!place.mesh || input.document() == nullptr) return fmt::format("vertex {}", place.vertex);
+  return fmt::format("vertex {} of {}, primitive {}", place.vertex, mesh_label(*input.document(), *place.mesh),
                      place.primitive.value_or(0));
 }
 
 std::string node_words(const Audited& input, std::size_t node) {
-  return named(fmt::format("node {}", node), input.document->nodes()[node].name);
+  return named(fmt::format("node {}", node), input.document()->nodes()[node].name);
 }
 
 std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target) {
   std::string name;
-  if (mesh && input.document) {
-    const std::vector<std::string>& names = input.document->meshes()[*mesh].target_names;
+  if (mesh && input.document() != nullptr) {
+    const std::vector<std::string>& names = input.document()->meshes()[*mesh].target_names;
     if (!names.empty()) name = names[target];
   } else {
     for (const AuditSubject& subject : input.audit.subjects)
@@ -53,7 +53,7 @@ std::string target_words(const Audited& input, std::optional<std::size_t> mesh, 
 }
 
 std::string animation_words(const Audited& input, std::size_t animation) {
-  return named(fmt::format("animation {}", animation), input.document->animations()[animation].name);
+  return named(fmt::format("animation {}", animation), input.document()->animations()[animation].name);
 }
 
 std::string subject_words(const Audited& input, const AuditSubject& subject) {
@@ -61,19 +61,18 @@ std::string subject_words(const Audited& input, const AuditSubject& subject) {
   if (subject.kind == AuditSubject::Kind::kTrack)
     return animation_words(input, *subject.animation) + ", " + node_words(input, *subject.node);
   const std::string target = target_words(input, subject.mesh, *subject.target);
-  return subject.mesh ? target + " of " + mesh_label(*input.document, *subject.mesh) : target;
+  return subject.mesh ? target + " of " + mesh_label(*input.document(), *subject.mesh) : target;
 }
 
 std::string moment_words(const AuditSubject& subject, double at) {
-  return subject.kind == AuditSubject::Kind::kTarget && subject.mesh ? fmt::format("weight {:.4g}", at)
-                                                                     : fmt::format("{:.6g} s", at);
+  return subject.kind == AuditSubject::Kind::kTarget ? fmt::format("weight {:.4g}", at) : fmt::format("{:.6g} s", at);
 }
 
 std::string pairs(std::size_t count) { return counted(count, "pair", "pairs"); }
 
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
-  std::string text = printable(input.name) + ": ";
+  std::string text = printable(input.name()) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
   text += fmt::format("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
                       degrees(audit.error.rms()));
@@ -159,8 +158,8 @@ std::string offset_lines(const Audited& input) {
       continue;
     }
     text += fmt::format("  {}: mean {}, worst {} degrees from {}-weighted normals",
-                        offset.mesh ? mesh_label(*input.document, *offset.mesh) : "keyframe 0", degrees(offset.mean()),
-                        degrees(offset.worst), weighting_name(input.audit.weighting));
+                        offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0",
+                        degrees(offset.mean()), degrees(offset.worst), weighting_name(input.audit.weighting));
     if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
     if (offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
       text += fmt::format("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
@@ -172,7 +171,7 @@ std::string offset_lines(const Audited& input) {
 }
 
 std::string finding_words(const Audited& input, const AuditFinding& found) {
-  const std::string mesh = found.mesh ? mesh_label(*input.document, *found.mesh) : "";
+  const std::string mesh = found.mesh ? mesh_label(*input.document(), *found.mesh) : "";
   std::string who = mesh;
   if (found.target) {
     who = target_words(input, found.mesh, *found.target);
@@ -194,7 +193,7 @@ std::string finding_words(const Audited& input, const AuditFinding& found) {
                          found.target ? "weight 1" : "keyframes", worst);
     case Kind::kWrongBetween:
       return fmt::format("{}: right at {}, and off by up to {} degrees on the way", who,
-                         found.target && found.mesh ? "weights 0 and 1" : "keyframes", worst);
+                         found.target ? "weights 0 and 1" : "keyframes", worst);
     case Kind::kWrongTogether:
       return fmt::format("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
     case Kind::kStaleTangents:

@@ -5,19 +5,21 @@
 #include <optional>
 #include <string>
 
-#include "chronormal/io/gltf_document.h"
+#include "chronormal/io/input.h"
 #include "chronormal/workflow/audit.h"
 
 namespace chronormal::cli {
 
 /// One input and what was found in it.
 struct Audited {
-  std::string name;
+  Input opened;
   Audit audit;
-  std::optional<GltfDocument> document;  ///< of a glTF file
-  std::optional<double> tolerance;       ///< degrees; nothing: none was asked for
-  std::string bake;                      ///< the inputs as words of a command line; empty: bake takes none such
+  std::optional<double> tolerance;  ///< degrees; nothing: none was asked for
+  std::string bake;                 ///< the inputs as words of a command line; empty: bake takes none such
 
+  [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
+  /// The glTF file, or nullptr.
+  [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed() const { return !tolerance || audit.error.worst <= *tolerance; }
 };
 

@@ -11,12 +11,10 @@
 #include <malloc.h>
 #endif
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/motion_files.h"
+#include "chronormal/io/output.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/bake_report.h"
 #include "cli/command.h"
-#include "cli/inputs.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -96,8 +94,9 @@ std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& 
   return BeforeAndAfter{first.value().error, second.value().error};
 }
 
-Result<int> run_gltf(const Options& options, BakeOptions how, FileBytes file, Progress& progress) {
-  const std::string &input = options.input.files[0], &output = options.common.output;
+int run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
+  const std::string& output = options.common.output;
+  const GltfDocument& document = *input.document();
   if (!options.input.animation.empty())
     return misuse("--animation", "all animations of a glTF file are baked: leave it out");
   if (options.input.world) return misuse("--world", "meshes are baked where they are: leave it out");
@@ -105,22 +104,15 @@ Result<int> run_gltf(const Options& options, BakeOptions how, FileBytes file, Pr
     return misuse("--fps", "the animations of a glTF file have times of their own");
   if (options.crease_angle != 180 && !options.smooth)
     return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
-  std::optional<std::string> folder;
-  if (input != "-") folder = std::filesystem::path(input).parent_path().string();
-  const std::size_t size = file.bytes().size();
-  const Result<GltfDocument> document =
-      GltfDocument::read(std::move(file), input == "-" ? "<stdin>" : short_name(input), folder,
-                         {.allow_external = options.input.allow_external});
-  if (!document) return document.error();
   how.progress = progress.callback("baking");
-  GltfEdit edit(document.value());
-  const Result<GltfBake> baked = bake(document.value(), how, edit);
+  GltfEdit edit(document);
+  const Result<GltfBake> baked = bake(document, how, edit);
   progress.clear();
   if (!baked) return baked.error();
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
-  BakeReport told{input == "-" ? "<stdin>" : input, output, std::nullopt, std::nullopt};
+  BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
   if (has_drivers) {
     told.drivers_file = drivers_path(output);
@@ -136,59 +128,44 @@ Result<int> run_gltf(const Options& options, BakeOptions how, FileBytes file, Pr
       return written.error();
   }
   warn(warnings);
-  if (baked.value().changed && size <= kMostAudited) {
-    told.audit =
-        audit_both(how, options, [&](const AuditOptions& audited) { return audit(document.value(), audited); });
+  if (baked.value().changed && input.file_size() <= kMostAudited) {
+    told.audit = audit_both(how, options, [&](const AuditOptions& audited) { return audit(document, audited); });
   }
   say(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
   return kExitDone;
 }
 
-bool is_sequence(const Motion& motion) {
-  for (std::size_t k = 0; k < motion.segments.size(); ++k) {
-    if (motion.segments[k].from != k || motion.segments[k].to != k + 1) return false;
-  }
-  return !motion.segments.empty();
-}
-
-Result<int> run_sequence(const Options& options, BakeOptions how, Progress& progress) {
+int run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
-  if (!options.input.base.empty())
-    return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence is written as .glb");
-  const Result<NamedMotion> read = read_input(options.input, progress);
-  if (!read) return read.error();
-  if (!is_sequence(read.value().motion)) {
-    return invalid_input(read.value().name, "it is no sequence of keyframes that follow each other");
-  }
+  const Motion& motion = *input.motion().value();
+  if (motion.kind == MotionKind::kTargets)
+    return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+  if (motion.segments.size() + 1 != motion.keyframes.size())
+    return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
   // Hard edges are those that the file shows, where nothing else is asked for.
-  StoredNormals stored;
-  if (options.crease_angle == 180) {
-    Result<StoredNormals> normals = read_stored_normals(options.input, read.value().motion.topology);
-    if (!normals) return normals.error();
-    stored = std::move(normals).value();
-    if (!stored.of_keyframes.empty()) {
-      const std::vector<float>& first = stored.of_keyframes.front();
-      how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
-    }
+  const StoredNormals& stored = *input.normals().value();
+  if (!stored.of_keyframes.empty()) {
+    const std::vector<float>& first = stored.of_keyframes.front();
+    how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
   }
   how.progress = progress.callback("baking");
   std::string glb;
-  const Result<SequenceBake> baked = bake_sequence(read.value().motion, how, glb);
+  const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
   progress.clear();
   if (!baked) return baked.error();
   if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
   warn(baked.value().warnings);
-  BakeReport told{read.value().name, output, std::nullopt, std::nullopt};
+  BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
-  if (glb.size() <= kMostAudited && read.value().motion.topology.all_triangles()) {
+  if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
     told.audit = audit_both(how, options, [&](AuditOptions audited) {
       audited.rule = AuditRule::kNlerp;
-      return audit(read.value().motion, stored, false, audited);
+      return audit(motion, stored, audited);
     });
   }
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
@@ -201,15 +178,14 @@ Result<int> run(const Options& options) {
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
-  if (is_one_file(options.input)) {
-    Result<FileBytes> file = FileBytes::open(options.input.files.front());
-    if (!file) return file.error();
-    if (is_gltf(options.input.files.front(), file.value().bytes()))
-      return run_gltf(options, how.value(), std::move(file).value(), progress);
-    if (options.input.files.front() == "-")
-      return invalid_input("<stdin>", "one keyframe does not move: give a glTF file");
-  }
-  return run_sequence(options, how.value(), progress);
+  InputOptions wanted = options.input;
+  if (!wanted.base.empty())
+    return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
+  if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
+  Result<Input> input = open_input(std::move(wanted), progress);
+  if (!input) return input.error();
+  return input.value().document() != nullptr ? run_gltf(options, how.value(), input.value(), progress)
+                                             : run_sequence(options, how.value(), input.value(), progress);
 }
 
 }  // namespace
@@ -218,7 +194,7 @@ Command bake_command() {
   auto options = std::make_shared<Options>();
   return {"bake",
           "Write right normals into a glTF file, or make one of a sequence",
-          {options->input.table(),
+          {input_table(options->input),
            {{"--encode HOW", &options->encode,
              "exact: extra targets for the quadratic terms, driven by the animations;\n"
              "endpoint: the best single delta per target, by least squares where several are\n"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "chronormal/workflow/blend_compare.h"
+#include "chronormal/workflow/compare.h"
 
 namespace chronormal::cli {
 

@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/motion_files.h"
-#include "chronormal/motion/motion.h"
-#include "chronormal/workflow/elements.h"
+#include "chronormal/io/input.h"
+#include "chronormal/workflow/sample.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 
@@ -29,20 +28,11 @@ struct CommonOptions {
   [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
-/// The options that choose what to read.
-struct InputOptions {
-  std::vector<std::string> files;    ///< files, patterns, folders or "-": one sequence, or the targets of a base
-  std::vector<std::string> samples;  ///< built-in morphs
-  double frames_per_second = 1;
-  std::string base;       ///< the mesh of which files are morph targets; empty where there is none
-  std::string animation;  ///< of a glTF file; empty: its morph targets
-  bool allow_external = false;
-  bool world = false;  ///< vertices of a glTF file are where its nodes put them
+/// The options that choose what to read, as io/input.h has them. The table refers to input.
+[[nodiscard]] std::vector<Option> input_table(InputOptions& input);
 
-  [[nodiscard]] MotionOptions motion_options() const { return {frames_per_second, animation, allow_external, world}; }
-
-  [[nodiscard]] std::vector<Option> table();
-};
+/// Opens the input that the options name, with a progress bar.
+[[nodiscard]] Result<Input> open_input(InputOptions options, Progress& progress);
 
 /// The options that choose which normals: --elements, --crease, --no-weld.
 struct ElementArguments {
@@ -57,26 +47,8 @@ struct ElementArguments {
   [[nodiscard]] Result<ElementOptions> options() const;
 };
 
-struct NamedMotion {
-  std::string name;
-  Motion motion;
-};
-
 /// The last part of a path: what a person calls it.
 [[nodiscard]] std::string short_name(std::string path);
-
-/// What to call the files: the name of the only one, or "first ... last".
-[[nodiscard]] std::string name_of_files(const std::vector<std::string>& files);
-
-/// Whether the options go together, before anything is opened. Errors: kUsage.
-[[nodiscard]] Status check_input(const InputOptions& options);
-
-/// Reads what the options name, which must be one input: files or one built-in morph. Checks them first.
-/// A base with its targets has the name of the base.
-[[nodiscard]] Result<NamedMotion> read_input(const InputOptions& options, Progress& progress);
-
-/// The same, but a mesh that does not move is taken as well: a keyframe without segments.
-[[nodiscard]] Result<NamedMotion> read_input_or_mesh(const InputOptions& options, Progress& progress);
 
 /// An error of kUsage.
 [[nodiscard]] Error misuse(std::string place, std::string message);

@@ -1,14 +1,9 @@
 #include "cli/compare_blend.h"
 
-#include "chronormal/io/gltf_document.h"
-#include "chronormal/workflow/sample.h"
+#include <utility>
 
 namespace chronormal::cli {
 namespace {
-
-bool is_one_gltf_file(const InputOptions& input) {
-  return input.base.empty() && input.files.size() == 1 && is_gltf_file(input.files.front());
-}
 
 // Whether the options say by themselves that it cannot be.
 Status check(const InputOptions& input, bool elements_given, const BlendArguments& arguments) {
@@ -19,8 +14,6 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
     return misuse("--active", "an animation says itself which targets are active");
   if (!input.animation.empty() && elements_given)
     return misuse("--animation", "with --blend it goes with the normals that the file stores: leave out --elements");
-  if (is_one_gltf_file(input) && input.world && !elements_given)
-    return misuse("--world", "the normals that a file stores are in the space of its meshes: say which --elements");
   return Success{};
 }
 
@@ -53,36 +46,34 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   options.animation = input.animation;
   const std::string option = arguments.active ? "--active" : "--blend";
 
-  if (is_one_gltf_file(input) && !elements_given) {
+  Result<Input> opened = open_input(input, progress);
+  if (!opened) return opened.error();
+  if (opened.value().document() != nullptr && !elements_given) {
+    if (input.world)
+      return misuse("--world", "the normals that a file stores are in the space of its meshes: say which --elements");
     if (elements.crease_angle != 180 || elements.no_weld)
       return misuse("--elements", "the file says which normals there are, unless this does");
-    const Result<GltfDocument> document = GltfDocument::open(input.files.front(), {input.allow_external});
-    if (!document) return document.error();
     options.progress = progress.callback("comparing");
-    Result<BlendComparison> compared = compare_blends(document.value(), options);
+    Result<BlendComparison> compared = compare_blends(*opened.value().document(), options);
     progress.clear();
     if (!compared) return blamed(compared.error(), input.animation.empty() ? option : "--animation");
-    return NamedBlendComparison{input.files.front(), input.animation, std::move(compared).value()};
+    return NamedBlendComparison{opened.value().name(), input.animation, std::move(compared).value()};
   }
 
+  const Result<const Motion*> motion = opened.value().motion();
+  if (!motion) return motion.error();
+  if (motion.value()->kind != MotionKind::kTargets)
+    return misuse("--blend", "the input is a sequence: it goes with blend shapes, as of --base FILE or a glTF file");
   ElementArguments wanted = elements;
   wanted.usual = "vertices";
   const Result<ElementOptions> understood = wanted.options();
   if (!understood) return understood.error();
   options.elements = understood.value();
-  if (!input.animation.empty())
-    return misuse("--animation", "with --blend it goes with the normals that one glTF file stores");
-  Result<NamedMotion> motion = read_input(input, progress);
-  if (!motion) return motion.error();
-  // Two keyframes are a target only where they come as one.
-  const bool is_target = !input.base.empty() || is_one_gltf_file(input);
-  if (!is_target && !(motion.value().motion.segments.size() > 1 && is_blend_shapes(motion.value().motion)))
-    return misuse("--blend", "the input is a sequence: it goes with blend shapes, as of --base FILE or a glTF file");
   options.progress = progress.callback("comparing");
-  Result<BlendComparison> compared = compare_blends(motion.value().motion, options);
+  Result<BlendComparison> compared = compare_blends(*motion.value(), options);
   progress.clear();
   if (!compared) return blamed(compared.error(), option);
-  return NamedBlendComparison{std::move(motion.value().name), {}, std::move(compared).value()};
+  return NamedBlendComparison{opened.value().name(), {}, std::move(compared).value()};
 }
 
 }  // namespace chronormal::cli

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/io/file.h"
+#include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
 #include "cli/command.h"
 #include "cli/compare_blend.h"
@@ -72,14 +72,15 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
-Result<NamedComparison> compare_one(NamedMotion input, const Options& options, Progress& progress) {
+Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
   const CompareOptions compare_options{scheme_names(options), options.sample_count(),
                                        options.access == "sequential" ? Access::kSequential : Access::kRandom,
                                        progress.callback("comparing"), options.elements.options().value()};
-  auto comparison = compare(input.motion, compare_options);
+  Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
-  if (!comparison) return comparison.error();
-  return NamedComparison{std::move(input.name), std::move(comparison).value()};
+  return comparison;
 }
 
 // One motion at a time is in memory.
@@ -106,20 +107,20 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
     if (const Status status = check_input(input); options.each && !status) return status.error();
   }
   std::vector<NamedComparison> comparisons;
-  for (const InputOptions& input : inputs) {
-    auto motion = read_input(input, progress);
-    if (!motion) {
-      Error error = motion.error();
-      const bool several = input.samples.size() + (input.files.empty() ? 0 : 1) > 1;
-      if (options.each && !input.files.empty() && input.base.empty())
-        error.place = input.files.front() + ": " + error.place;
+  for (const InputOptions& wanted : inputs) {
+    Result<Input> input = open_input(wanted, progress);
+    Result<Comparison> comparison =
+        input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());
+    if (!comparison) {
+      Error error = comparison.error();
+      const bool several = wanted.samples.size() + (wanted.files.empty() ? 0 : 1) > 1;
+      if (options.each && !wanted.files.empty() && wanted.base.empty())
+        error.place = wanted.files.front() + ": " + error.place;
       if (several) error.message += ", or --each to compare them side by side";
       return error;
     }
-    if (options.each && !input.base.empty()) motion.value().name = input.files.front();  // the base is that of all
-    auto comparison = compare_one(std::move(motion).value(), options, progress);
-    if (!comparison) return comparison.error();
-    comparisons.push_back(std::move(comparison).value());
+    const bool has_own_name = !options.each || wanted.base.empty();  // else the base is that of all
+    comparisons.push_back({has_own_name ? input.value().name() : wanted.files.front(), std::move(comparison).value()});
   }
   return comparisons;
 }
@@ -178,7 +179,7 @@ Command compare_command() {
   auto options = std::make_shared<Options>();
   return {"compare",
           "Hold ways to interpolate normals against the exact ones, on your mesh",
-          {options->input.table(),
+          {input_table(options->input),
            {{"--each", &options->each, "every INPUT and --sample is a motion of its own, side by side"},
             {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
             {"--samples N",

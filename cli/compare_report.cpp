@@ -14,10 +14,15 @@ using Align = Table::Align;
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
 
+bool is_of_targets(const Comparison& comparison) { return comparison.motion == MotionKind::kTargets; }
+
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
-  return fmt::format("{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
-                     counted(c.faces, "face", "faces"), counted(c.segments, "segment", "segments"), c.samples) +
+  return fmt::format(
+             "{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
+             counted(c.faces, "face", "faces"),
+             counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
+             c.samples) +
          (c.kind == ElementKind::kFaces
               ? std::string()
               : fmt::format("{} of {}\n", counted(c.elements, "different normal", "different normals"),
@@ -74,9 +79,10 @@ std::string sample_pairs(std::size_t count, const std::string& word) {
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
   const std::string word = one_element(comparison.kind);
-  const std::string of = comparison.segments > 1 ? "(" + word + ", segment) pairs"
-                         : pairs == 1            ? word
-                                                 : std::string(element_kind_name(comparison.kind));
+  const std::string of = comparison.segments > 1
+                             ? "(" + word + (is_of_targets(comparison) ? ", target) pairs" : ", segment) pairs")
+                         : pairs == 1 ? word
+                                      : std::string(element_kind_name(comparison.kind));
   const auto share = [pairs, &of](std::size_t count) {
     return fmt::format("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
                        100 * static_cast<double>(count) / static_cast<double>(pairs));
@@ -127,10 +133,11 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   table.add_column("rms", "degrees", Align::kRight);
   table.add_column("max", "degrees", Align::kRight);
   const bool several_segments = input.comparison.segments > 1;
-  if (several_segments) table.add_column("worst at", "segment", Align::kRight);
+  if (several_segments)
+    table.add_column("worst at", is_of_targets(input.comparison) ? "target" : "segment", Align::kRight);
   const std::string element = one_element(input.comparison.kind);
   table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
-  table.add_column("", "t", Align::kRight);
+  table.add_column("", is_of_targets(input.comparison) ? "weight" : "t", Align::kRight);
   table.add_column("memory", "B/" + element, Align::kRight);
   if (with_times) {
     table.add_column("prepare", "ns/" + element, Align::kRight);

@@ -1,6 +1,7 @@
 #include <memory>
+#include <utility>
 
-#include "chronormal/io/motion_files.h"
+#include "chronormal/io/output.h"
 #include "cli/command.h"
 
 namespace chronormal::cli {
@@ -13,9 +14,13 @@ struct Options {
 
 Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
-  const auto input = read_input_or_mesh(options.input, progress);
+  InputOptions wanted = options.input;
+  wanted.allow_mesh = true;
+  Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  if (const Status written = write_motion(input.value().motion, options.common.output, options.common.force); !written)
+  const Result<const Motion*> motion = input.value().motion();
+  if (!motion) return motion.error();
+  if (const Status written = write_motion(*motion.value(), options.common.output, options.common.force); !written)
     return written.error();
   return kExitDone;
 }
@@ -26,7 +31,7 @@ Command convert_command() {
   auto options = std::make_shared<Options>();
   return {"convert",
           "Write a motion, or a built-in morph, in another format",
-          {options->input.table(), options->common.table(true)},
+          {input_table(options->input), options->common.table(true)},
           "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
           "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
           "\nExamples:\n"

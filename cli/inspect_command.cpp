@@ -1,23 +1,14 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <system_error>
+#include <utility>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/motion_files.h"
+#include "chronormal/io/output.h"
 #include "cli/command.h"
-#include "cli/inputs.h"
 #include "cli/inspect_report.h"
-#include "io/cache/motion_readers.h"
-#include "io/mesh/mesh_readers.h"
 
 namespace chronormal::cli {
 namespace {
-
-constexpr const char* kStdin = "<stdin>";  // as errors have it
 
 struct Options {
   InputOptions input;
@@ -25,76 +16,50 @@ struct Options {
   bool json = false;
 };
 
-void take_motion(const Motion& motion, Inspected& result, Progress& progress) {
+// The motion or the mesh, which both are keyframes.
+Status inspect_motion(Input& input, Inspected& result, Progress& progress) {
+  const Result<const Motion*> read = input.motion();
+  if (!read) return read.error();
+  const Motion& motion = *read.value();
   result.inspection = inspect(motion, progress.callback("inspecting"));
   progress.clear();
   for (const Motion::Keyframe& keyframe : motion.keyframes) result.keyframe_names.push_back(keyframe.name);
   result.segments = motion.segments;
+  result.kind = motion.kind;
+  return Success{};
 }
 
-Result<Inspected> inspect_gltf(std::unique_ptr<FileBytes> file, const InputOptions& options, Progress& progress) {
-  const std::string& path = options.files.front();
-  const std::string name = path == "-" ? kStdin : path;
-  std::optional<std::string> folder;
-  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
-  auto opened = GltfDocument::read(file->bytes(), path == "-" ? name : short_name(path), folder,
-                                   {.allow_external = options.allow_external});
-  if (!opened) return opened.error();
-  GltfDocument document = std::move(opened).value();
-  auto inspection = inspect(document);
+// What a glTF file holds beside, and what moves in it.
+Status inspect_document(Input& input, const std::string& animation, Inspected& result, Progress& progress) {
+  const GltfDocument& document = *input.document();
+  Result<GltfInspection> inspection = inspect(document);
   if (!inspection) return inspection.error();
-  const auto& primitives = inspection.value().primitives;
-  const bool moves = std::any_of(primitives.begin(), primitives.end(), [](const auto& p) { return p.moving > 0; });
-  Inspected result;
-  result.name = name;
-  std::vector<GltfPart> parts;
-  double curve_error = 0;
-  std::size_t split = 0;
-  std::optional<std::size_t> animation;
-  if (!primitives.empty() || !options.animation.empty()) {
-    GltfMotionOptions motion_options;
-    motion_options.animation = options.animation;
-    motion_options.world = options.world;
-    const bool is_mesh = !moves && options.animation.empty();
-    auto read = is_mesh ? read_gltf_mesh(document, motion_options) : read_gltf_motion(document, motion_options);
-    if (!read) return read.error();
-    if (!options.animation.empty()) animation = document.find_animation(options.animation).value();
-    const auto counted_split = count_split_normals(document, read.value());
-    if (!counted_split) return counted_split.error();
-    split = counted_split.value();
-    take_motion(read.value().motion, result, progress);
-    result.is_star = moves && options.animation.empty();
-    parts = std::move(read.value().parts);
-    curve_error = read.value().curve_error;
+  InspectedGltf gltf;
+  gltf.document = &document;
+  gltf.inspection = std::move(inspection).value();
+  if (!gltf.inspection.primitives.empty() || !animation.empty()) {
+    if (Status status = inspect_motion(input, result, progress); !status) return status;
+    if (!animation.empty()) gltf.animation = document.find_animation(animation).value();
+    const Result<std::size_t> split = count_split_normals(document, *input.motion().value(), input.parts());
+    if (!split) return split.error();
+    gltf.split = split.value();
+    gltf.parts = input.parts();
+    gltf.curve_error = input.curve_error();
   }
-  result.gltf = InspectedGltf{std::move(file),  std::move(document), std::move(inspection).value(),
-                              std::move(parts), curve_error,         split,
-                              animation};
-  return result;
+  result.gltf = std::move(gltf);
+  return Success{};
 }
 
 Result<Inspected> inspect_input(const InputOptions& options, Progress& progress) {
-  if (const Status status = check_input(options); !status) return status.error();
-  Inspected result;
-  if (is_one_file(options)) {
-    const std::string& path = options.files.front();
-    auto opened = FileBytes::open(path);
-    if (!opened) return opened.error();
-    auto file = std::make_unique<FileBytes>(std::move(opened).value());
-    if (is_gltf(path, file->bytes())) return inspect_gltf(std::move(file), options, progress);
-    if (path == "-") {
-      const auto motion = read_motion_or_mesh(file->bytes(), path, options.motion_options());
-      if (!motion) return motion.error();
-      result.name = kStdin;
-      take_motion(motion.value(), result, progress);
-      return result;
-    }
-  }
-  const auto input = read_input_or_mesh(options, progress);
+  InputOptions wanted = options;
+  wanted.allow_mesh = true;
+  Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  result.name = input.value().name;
-  take_motion(input.value().motion, result, progress);
-  result.is_star = !options.base.empty();
+  Inspected result{std::move(input).value(), {}, {}, {}, {}, {}};
+  const Status status = result.opened.document() != nullptr
+                            ? inspect_document(result.opened, options.animation, result, progress)
+                            : inspect_motion(result.opened, result, progress);
+  if (!status) return status.error();
   return result;
 }
 
@@ -115,7 +80,7 @@ Command inspect_command() {
   auto options = std::make_shared<Options>();
   return {"inspect",
           "What is in a file, and what in it will trouble you",
-          {options->input.table(), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
+          {input_table(options->input), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
           "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
           "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
           "It does not change the exit code.\n"

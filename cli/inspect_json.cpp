@@ -51,8 +51,8 @@ Json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 void add_inspection(const Inspected& input, Json& json) {
   const Inspection& found = *input.inspection;
   const Surface& surface = found.surface;
-  json["kind"] = found.segments.empty() ? "mesh" : input.is_star ? "targets" : "sequence";
-  json["time"] = {{"first", found.first_time}, {"last", found.last_time}};
+  json["kind"] = found.segments.empty() ? "mesh" : input.has_targets() ? "targets" : "sequence";
+  json["time"] = input.has_targets() ? Json() : Json({{"first", found.first_time}, {"last", found.last_time}});
   json["box"] = {{"low", vector_json(found.low)}, {"high", vector_json(found.high)}, {"diagonal", found.diagonal}};
   json["largest_motion"] = motion_json(found.motion);
   json["largest_turn"] = turn_json(found.turn);
@@ -91,7 +91,7 @@ Json primitive_json(const GltfPrimitive& primitive) {
 }
 
 Json meshes_json(const InspectedGltf& gltf) {
-  const GltfDocument& document = gltf.document;
+  const GltfDocument& document = *gltf.document;
   Json meshes = Json::array();
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const GltfMesh& mesh = document.meshes()[m];
@@ -115,7 +115,7 @@ Json meshes_json(const InspectedGltf& gltf) {
 }
 
 Json animations_json(const InspectedGltf& gltf) {
-  const GltfDocument& document = gltf.document;
+  const GltfDocument& document = *gltf.document;
   Json animations = Json::array();
   for (const GltfAnimation& animation : document.animations())
     animations.push_back(
@@ -144,8 +144,8 @@ Json gltf_json(const InspectedGltf& gltf) {
                      {"vertices", part.vertex_count},
                      {"first_face", part.first_face},
                      {"faces", part.face_count}});
-  return {{"extensions", gltf.document.extensions()},
-          {"nodes", gltf.document.nodes().size()},
+  return {{"extensions", gltf.document->extensions()},
+          {"nodes", gltf.document->nodes().size()},
           {"skinned_nodes", gltf.inspection.skinned_nodes},
           {"meshes", meshes_json(gltf)},
           {"animations", animations_json(gltf)},
@@ -160,7 +160,7 @@ Json gltf_json(const InspectedGltf& gltf) {
 std::string inspect_json(const Inspected& input) {
   Json json = json_of_command("inspect");
   const bool has_faces = input.inspection.has_value();
-  json["input"] = {{"name", input.name},
+  json["input"] = {{"name", input.name()},
                    {"vertices", has_faces ? input.inspection->vertices : 0},
                    {"faces", has_faces ? input.inspection->faces : 0},
                    {"keyframes", has_faces ? input.inspection->keyframes : 0},

@@ -46,14 +46,14 @@ std::string rows_left_out(std::size_t rows, const char* what) {
 }
 
 std::string headline(const Inspected& input) {
-  std::string text = printable(input.name) + ": ";
+  std::string text = printable(input.name()) + ": ";
   if (!input.inspection) return text + "no faces\n";
   const Inspection& found = *input.inspection;
   text += counted(found.vertices, "vertex", "vertices") + ", " +
           counted(found.faces, found.surface.triangles == found.faces ? "triangle" : "face",
                   found.surface.triangles == found.faces ? "triangles" : "faces");
   if (found.segments.empty()) return text + ", no motion\n";
-  if (input.is_star) return text + ", " + counted(found.segments.size(), "target", "targets") + '\n';
+  if (input.has_targets()) return text + ", " + counted(found.segments.size(), "target", "targets") + '\n';
   return text + ", " + counted(found.keyframes, "keyframe", "keyframes") + ", " +
          counted(found.segments.size(), "segment", "segments") + '\n';
 }
@@ -72,7 +72,7 @@ std::string facts_of(const Inspected& input) {
   add("size", fmt::format("{:.5g}, the diagonal of the box {:.4g} x {:.4g} x {:.4g}", found.diagonal,
                           found.high.x - found.low.x, found.high.y - found.low.y, found.high.z - found.low.z));
   if (!found.segments.empty()) {
-    if (!input.is_star) add("time", fmt::format("{:.6g} s to {:.6g} s", found.first_time, found.last_time));
+    if (!input.has_targets()) add("time", fmt::format("{:.6g} s to {:.6g} s", found.first_time, found.last_time));
     if (input.gltf && input.gltf->curve_error > 0)
       add("splines",
           fmt::format("cut into straight pieces, within {:.2g} of the true curves", input.gltf->curve_error));
@@ -151,7 +151,7 @@ std::string primitive_table(const InspectedGltf& gltf) {
     std::stable_partition(primitives.begin(), primitives.end(), [](const auto& each) { return each.moving > 0; });
   for (std::size_t i = 0; i < std::min(primitives.size(), kMostRows); ++i) {
     const GltfPrimitiveInspection& found = primitives[i];
-    const GltfMesh& mesh = gltf.document.meshes()[found.mesh];
+    const GltfMesh& mesh = gltf.document->meshes()[found.mesh];
     const GltfPrimitive& primitive = mesh.primitives[found.primitive];
     const std::string name =
         mesh.name.empty() ? fmt::format("mesh {}", found.mesh) : printable(mesh.name, kLongestCell);
@@ -178,7 +178,7 @@ std::string weight_cell(double weight) {
 }
 
 std::string track_table(const InspectedGltf& gltf) {
-  const GltfDocument& document = gltf.document;
+  const GltfDocument& document = *gltf.document;
   const auto& tracks = gltf.inspection.tracks;
   if (document.animations().empty()) return "";
   const std::size_t silent =
@@ -227,7 +227,7 @@ std::string track_table(const InspectedGltf& gltf) {
 }
 
 std::string gltf_contents(const InspectedGltf& gltf) {
-  const GltfDocument& document = gltf.document;
+  const GltfDocument& document = *gltf.document;
   std::size_t primitives = 0, carriers = 0;
   for (const GltfMesh& mesh : document.meshes()) primitives += mesh.primitives.size();
   for (const std::size_t instances : gltf.inspection.instances) carriers += instances;
@@ -256,14 +256,14 @@ std::string inspect_text(const Inspected& input) {
   std::string text = headline(input) + '\n';
   if (input.gltf) {
     text += fact("file", gltf_contents(*input.gltf));
-    if (const std::string list = extension_list(input.gltf->document); !list.empty()) text += fact("extensions", list);
+    if (const std::string list = extension_list(*input.gltf->document); !list.empty()) text += fact("extensions", list);
     if (const std::size_t still = count_left_out(*input.gltf); still > 0)
       text +=
           fact("still", counted(still, "primitive", "primitives") + " that do not move here: not part of what follows");
   }
   if (input.inspection) text += facts_of(input);
   if (input.gltf && !input.gltf->inspection.primitives.empty()) text += primitive_table(*input.gltf);
-  if (input.is_star && input.inspection) text += target_table(input);
+  if (input.has_targets() && input.inspection) text += target_table(input);
   if (input.gltf) text += track_table(*input.gltf);
 
   const std::vector<Trouble> troubles = find_trouble(input);

@@ -52,7 +52,7 @@ class Troubles {
                    std::string meaning) {
     if (places.pairs == 0) return;
     const std::string when =
-        has_instant ? fmt::format(" at {} = {:.4f}", input_.is_star ? "w" : "t", places.first_t) : "";
+        has_instant ? fmt::format(" at {} = {:.4f}", input_.has_targets() ? "w" : "t", places.first_t) : "";
     add(std::move(kind), places.faces, faces(places.faces) + what + in_all(places),
         face_label(input_, places.first_face) + " in " + segment_label(input_, places.first_at) + when,
         std::move(meaning));
@@ -130,15 +130,15 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
 
 // "Head, primitive 1", and the node where several have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
-  std::string label = fmt::format("{}, primitive {}", mesh_label(gltf.document, part.mesh), part.primitive);
+  std::string label = fmt::format("{}, primitive {}", mesh_label(*gltf.document, part.mesh), part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)
-    label += ", " + with_name(fmt::format("node {}", *part.node), gltf.document.nodes()[*part.node].name);
+    label += ", " + with_name(fmt::format("node {}", *part.node), gltf.document->nodes()[*part.node].name);
   return label;
 }
 
 void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
   const InspectedGltf& gltf = *input.gltf;
-  const GltfDocument& document = gltf.document;
+  const GltfDocument& document = *gltf.document;
   const auto first_label = [&document](const GltfPrimitiveInspection& primitive) {
     return fmt::format("{}, primitive {}", mesh_label(document, primitive.mesh), primitive.primitive);
   };
@@ -177,7 +177,7 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
     lowest = std::min(lowest, track.lowest);
     highest = std::max(highest, track.highest);
   }
-  troubles.add("weights_beyond", input.is_star ? beyond : 0,
+  troubles.add("weights_beyond", input.has_targets() ? beyond : 0,
                fmt::format("{} with weights beyond 0 to 1: {:.4g} to {:.4g}", counted(beyond, "track", "tracks"),
                            lowest, highest),
                "", "targets go farther than what is looked at here, w from 0 to 1");
@@ -219,7 +219,7 @@ std::string keyframe_label(const Inspected& input, std::size_t keyframe) {
 }
 
 std::string segment_label(const Inspected& input, std::size_t segment) {
-  if (!input.is_star) return fmt::format("segment {}", segment);
+  if (!input.has_targets()) return fmt::format("segment {}", segment);
   return with_name(fmt::format("target {}", segment), input.keyframe_names[input.segments[segment].to]);
 }
 

@@ -3,38 +3,38 @@
 #define CLI_INSPECT_TROUBLE_H_
 
 #include <cstddef>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
-#include "chronormal/motion/motion.h"
+#include "chronormal/io/input.h"
 #include "chronormal/workflow/inspect.h"
-#include "chronormal/workflow/inspect_gltf.h"
 
 namespace chronormal::cli {
 
+/// What is known of a glTF file beside.
 struct InspectedGltf {
-  std::unique_ptr<FileBytes> file;  ///< that the document lies in
-  GltfDocument document;
+  const GltfDocument* document = nullptr;  ///< of the input
   GltfInspection inspection;
-  std::vector<GltfPart> parts;  ///< where the vertices and faces of the motion came from; of a mesh that is still too
-  double curve_error = 0;       ///< as in GltfMotion
-  std::size_t split = 0;        ///< of count_split_normals()
+  std::span<const GltfPart> parts;       ///< of the input: where vertices and faces came from
+  double curve_error = 0;                ///< as Input has it
+  std::size_t split = 0;                 ///< of count_split_normals()
   std::optional<std::size_t> animation;  ///< the one that is looked at; nothing: the targets, or what stands still
 };
 
 /// One input, and what is known of it.
 struct Inspected {
-  std::string name;
+  Input opened;
   std::optional<Inspection> inspection;  ///< nothing for a glTF file without faces
   std::vector<std::string> keyframe_names;
   std::vector<Motion::SegmentKeys> segments;
-  bool is_star = false;  ///< morph targets: segment k goes from keyframe 0 to target k
+  MotionKind kind = MotionKind::kSequence;
   std::optional<InspectedGltf> gltf;
+
+  [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
+  /// Whether it has morph targets: segment k goes from keyframe 0 to target k, from weight 0 to 1.
+  [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
 };
 
 struct Trouble {

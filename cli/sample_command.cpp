@@ -7,15 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/gltf_motion.h"
-#include "chronormal/io/sequence.h"
-#include "chronormal/workflow/sample_files.h"
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/sample.h"
 #include "cli/command.h"
-#include "cli/inputs.h"
-#include "io/cache/motion_readers.h"
-#include "io/mesh/mesh_readers.h"
-#include "io/mesh/obj.h"
 
 namespace chronormal::cli {
 namespace {
@@ -147,6 +141,8 @@ Result<SampleOptions> sample_options(const Options& options) {
     if (kind != ElementKind::kCorners) return misuse("--hard-edges", "only --elements corners can have hard edges");
     if (options.elements.crease_angle != 180)
       return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
+    if (!options.input.samples.empty())
+      return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
   }
   return SampleOptions{elements.value(), weighting.value(),
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
@@ -161,12 +157,6 @@ Result<SampleFormat> format_of(const Options& options) {
   if (options.common.output == "-") return SampleFormat::kNpy;
   if (const auto format = find_sample_format(options.common.output)) return *format;
   return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
-}
-
-// Whether the input is read as targets that have weights.
-bool are_targets(const InputOptions& input) {
-  if (!input.base.empty()) return true;
-  return input.files.size() == 1 && is_gltf_file(input.files.front()) && input.animation.empty();
 }
 
 Result<Request> understand(const Options& options) {
@@ -203,7 +193,7 @@ std::string range_of(const Motion& motion) {
 }
 
 // Whether the moments go with the motion. Those of a mesh that stands still become none.
-Status fit_moments(const Motion& motion, bool targets, Moments& moments) {
+Status fit_moments(const Motion& motion, Moments& moments) {
   if (motion.segments.empty()) {
     if (!moments.weights.empty()) return misuse("--weights", "the mesh has no targets");
     for (const double time : moments.times) {
@@ -213,7 +203,7 @@ Status fit_moments(const Motion& motion, bool targets, Moments& moments) {
     moments.times.clear();
     return Success{};
   }
-  if (targets) {
+  if (motion.kind == MotionKind::kTargets) {
     const std::size_t count = motion.segments.size();
     const std::string how = fmt::format("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
     if (!moments.times.empty()) return misuse("--times", "blend shapes have no times: " + how);
@@ -226,66 +216,27 @@ Status fit_moments(const Motion& motion, bool targets, Moments& moments) {
   return Success{};
 }
 
-// The file of the first keyframe or of the base: the mesh that says which edges are hard.
-Result<std::string> shading_file(const InputOptions& input) {
-  if (!input.base.empty()) return input.base;
-  for (const std::string& file : input.files) {
-    const std::string path = file.substr(0, file.rfind('#'));
-    const bool is_cache = find_cache_reader(file) != nullptr || find_cache_reader(path) != nullptr ||
-                          path.ends_with(".xml") || path.ends_with(".XML");
-    if (input.files.size() == 2 && is_cache) continue;
-    if (is_gltf_file(file)) return file;
-    if (find_motion_reader(file) != nullptr) return misuse("--hard-edges", file + " is no OBJ or glTF file");
-    const auto frames = find_frames({&file, 1});
-    if (!frames) return frames.error();
-    return frames.value().front();
+// Takes the hard edges from where the input stores them: its smoothing groups, or its normals.
+Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
+  const std::string& file = input.shaded_by();
+  if (file.empty())
+    return misuse("--hard-edges",
+                  input.name() + " stores neither normals nor smoothing groups: give an OBJ or glTF file");
+  if (what == "groups") {
+    if (input.document() != nullptr) return misuse("--hard-edges", "a glTF file has no smoothing groups: give normals");
+    if (input.group_of_face().empty())
+      return invalid_input(file, "the file has no smoothing groups (lines that begin with s)");
+    elements.group_of_face = input.group_of_face();
+    return Success{};
   }
-  return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
-}
-
-// A glTF file as it was read before, with the normals that it stores.
-Result<ObjShading> read_gltf_shading(const InputOptions& input, const std::string& path) {
-  const Result<GltfDocument> document = GltfDocument::open(path, {input.allow_external});
-  if (!document) return document.error();
-  GltfMotionOptions options;
-  options.animation = input.animation;
-  options.world = input.world;
-  const bool is_mesh = input.animation.empty() && !has_moving_targets(document.value());
-  Result<GltfMotion> motion =
-      is_mesh ? read_gltf_mesh(document.value(), options) : read_gltf_motion(document.value(), options);
-  if (!motion) return motion.error();
-  Result<std::vector<float>> normals = read_gltf_corner_normals(document.value(), motion.value());
+  const Result<const StoredNormals*> normals = input.normals();
   if (!normals) return normals.error();
-  return ObjShading{std::move(motion.value().motion.topology), {}, std::move(normals).value()};
-}
-
-Result<ObjShading> read_obj_file_shading(const std::string& path) {
-  const Result<FileBytes> file = FileBytes::open(path);
-  if (!file) return file.error();
-  const std::string name = short_name(path);
-  const auto reader = choose_mesh_reader(file.value().bytes(), name);
-  if (!reader) return reader.error();
-  if (reader.value()->name != "obj") return misuse("--hard-edges", path + " is no OBJ or glTF file");
-  return read_obj_shading(file.value().bytes(), name);
-}
-
-Result<ObjShading> read_shading(const InputOptions& input, const std::string& what, const Topology& topology) {
-  const Result<std::string> path = shading_file(input);
-  if (!path) return path.error();
-  if (path.value() == "-")
-    return misuse("--hard-edges", "the standard input can not be read twice: give the mesh as a file");
-  const bool is_gltf = is_gltf_file(path.value());
-  Result<ObjShading> shading = is_gltf ? read_gltf_shading(input, path.value()) : read_obj_file_shading(path.value());
-  if (!shading) return shading;
-  if (shading.value().topology != topology)
-    return invalid_input(path.value(), "the faces are not those of the motion: the file has changed meanwhile");
-  if (what == "groups" && shading.value().group_of_face.empty())
-    return is_gltf ? misuse("--hard-edges", "a glTF file has no smoothing groups: give normals")
-                   : invalid_input(path.value(), "the file has no smoothing groups (lines that begin with s)");
-  if (what == "normals" && shading.value().normal_of_corner.empty())
-    return invalid_input(path.value(), is_gltf ? "no primitive of the motion has normals"
-                                               : "the file has no normals (faces of the form v//vn)");
-  return shading;
+  if (normals.value()->of_keyframes.empty())
+    return invalid_input(file, input.document() != nullptr ? "no primitive of the motion has normals"
+                                                           : "the file has no normals (faces of the form v//vn)");
+  const std::vector<float>& first = normals.value()->of_keyframes.front();
+  elements.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+  return Success{};
 }
 
 Result<int> run(const Options& options) {
@@ -293,22 +244,18 @@ Result<int> run(const Options& options) {
   if (!understood) return understood.error();
   Request& request = understood.value();
   Progress progress(options.common.quiet);
-  const auto input = read_input_or_mesh(options.input, progress);
+  InputOptions wanted = options.input;
+  wanted.allow_mesh = true;
+  if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
+  Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  const Motion& motion = input.value().motion;
-  const bool targets = are_targets(options.input) || (motion.segments.size() > 1 && is_blend_shapes(motion));
-  if (const Status status = fit_moments(motion, targets, request.moments); !status) return status.error();
-
-  ObjShading shading;  // outlives the sampling
+  const Result<const Motion*> read = input.value().motion();
+  if (!read) return read.error();
+  const Motion& motion = *read.value();
+  if (const Status status = fit_moments(motion, request.moments); !status) return status.error();
   if (!options.hard_edges.empty()) {
-    Result<ObjShading> read = read_shading(options.input, options.hard_edges, motion.topology);
-    if (!read) return read.error();
-    shading = std::move(read).value();
-    if (options.hard_edges == "groups")
-      request.sample.elements.group_of_face = shading.group_of_face;
-    else
-      request.sample.elements.normal_of_corner =
-          VectorView<const float>::packed(shading.normal_of_corner.data(), shading.normal_of_corner.size() / 3);
+    const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
+    if (!status) return status.error();
   }
   const auto written =
       write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
@@ -326,7 +273,7 @@ Command sample_command() {
   auto options = std::make_shared<Options>();
   return {"sample",
           "Write the normals of a motion at chosen times",
-          {options->input.table(),
+          {input_table(options->input),
            {{"--times LIST", &options->times,
              "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
              "a mesh does not move"},

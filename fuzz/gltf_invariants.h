@@ -12,8 +12,8 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
 #include "chronormal/motion/motion.h"
+#include "io/gltf/gltf_motion.h"
 
 namespace chronormal::fuzz {
 

@@ -12,8 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     chronormal::fuzz::require(!shading.error().place.empty(), "an error has a place");
     return 0;
   }
-  const auto& [topology, groups, normals] = shading.value();
-  chronormal::fuzz::require(mesh.ok() && topology == mesh.value().topology, "the shading is that of the mesh");
+  const auto& [topology, positions, groups, normals] = shading.value();
+  chronormal::fuzz::require(mesh.ok() && topology == mesh.value().topology && positions == mesh.value().positions,
+                            "the shading is that of the mesh");
   chronormal::fuzz::require(groups.empty() || groups.size() == topology.face_count(), "each face has a group");
   chronormal::fuzz::require(normals.empty() || normals.size() == 3 * topology.corner_count(),
                             "each corner has a normal");

@@ -31,21 +31,15 @@
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
-#include "chronormal/io/file.h"            // whole files in, and out without ever half a one
 #include "chronormal/io/gltf_document.h"   // glTF 2.0 files: what is in them, and their meshes as arrays
 #include "chronormal/io/gltf_edit.h"       // changes to a glTF file that keep every other byte
-#include "chronormal/io/gltf_motion.h"     // their morph targets and animations as motions
-#include "chronormal/io/motion_files.h"    // motions from files of every format, and back
-#include "chronormal/io/sequence.h"        // files, patterns and folders as one motion
+#include "chronormal/io/input.h"           // the one door: motions, meshes and documents from files of every format
+#include "chronormal/io/output.h"          // files that nobody ever sees half of, motions among them
 
-#include "chronormal/workflow/audit.h"          // what a host shows against what it should
-#include "chronormal/workflow/bake.h"           // right normals written into glTF files
-#include "chronormal/workflow/blend_compare.h"  // normal deltas of blend shapes against exact normals
-#include "chronormal/workflow/compare.h"        // the paper's Table 1 for any motion
-#include "chronormal/workflow/elements.h"       // faces, vertices or corners, and their hard edges
-#include "chronormal/workflow/inspect.h"        // what a motion holds, and what in it is trouble for normals
-#include "chronormal/workflow/inspect_gltf.h"   // the same of a glTF file: stored normals, targets, tracks
-#include "chronormal/workflow/sample.h"         // normals at chosen times, or at weights of blend shapes
-#include "chronormal/workflow/sample_files.h"   // and files of them
+#include "chronormal/workflow/audit.h"    // what a host shows against what it should
+#include "chronormal/workflow/bake.h"     // right normals written into glTF files
+#include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion; deltas of targets against the truth
+#include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
+#include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

@@ -21,6 +21,11 @@ std::string text_of(double number) {
 
 }  // namespace
 
+std::string_view motion_kind_name(MotionKind kind) noexcept {
+  if (kind == MotionKind::kTargets) return "targets";
+  return kind == MotionKind::kAnimation ? "animation" : "sequence";
+}
+
 Segment Motion::segment(std::size_t i) const noexcept {
   assert(i < segments.size());
   const Keyframe& from = keyframes[segments[i].from];
@@ -34,22 +39,18 @@ Segment Motion::segment(std::size_t i) const noexcept {
           i};
 }
 
-void Motion::connect_as_sequence() {
+void Motion::connect(MotionKind as) {
+  kind = as;
   segments.clear();
-  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) segments.push_back({k, k + 1});
-}
-
-bool is_blend_shapes(const Motion& motion) noexcept {
-  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    if (motion.segments[s].from != 0 || motion.segments[s].to != s + 1) return false;
+  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
+    const bool is_jump = kind == MotionKind::kAnimation && keyframes[k].time == keyframes[k + 1].time;
+    if (!is_jump) segments.push_back({kind == MotionKind::kTargets ? 0 : k, k + 1});
   }
-  return !motion.segments.empty() && motion.keyframes.size() == motion.segments.size() + 1;
 }
 
 Result<Instant> find_instant(const Motion& motion, double time) {
   if (motion.segments.empty()) return misuse("the mesh stands still: it has no times");
-  if (motion.segments.size() > 1 && is_blend_shapes(motion))
-    return misuse("blend shapes have no times, but a weight for each target");
+  if (motion.kind == MotionKind::kTargets) return misuse("blend shapes have no times, but a weight for each target");
   const auto start_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].from].time; };
   const auto end_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].to].time; };
   double first = std::numeric_limits<double>::infinity(), last = -first;

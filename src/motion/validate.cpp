@@ -12,6 +12,21 @@ std::string keyframe_place(const Motion& motion, std::size_t k) {
   return place;
 }
 
+// What is wrong with a segment of a motion of this kind; nullptr if nothing is.
+const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::SegmentKeys& keys) {
+  switch (kind) {
+    case MotionKind::kSequence:
+      return keys.from == segment && keys.to == segment + 1 ? nullptr
+                                                            : "a segment of a sequence joins the next two keyframes";
+    case MotionKind::kTargets:
+      return keys.from == 0 && keys.to == segment + 1 ? nullptr
+                                                      : "a target starts at keyframe 0, and each has a keyframe";
+    case MotionKind::kAnimation:
+      return keys.to == keys.from + 1 ? nullptr : "a segment of an animation joins neighbouring keyframes";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Status validate(const Motion& motion) {
@@ -44,7 +59,11 @@ Status validate(const Motion& motion) {
       return invalid_input(place, "the segment names a keyframe that does not exist");
     if (!(motion.keyframes[from].time < motion.keyframes[to].time))
       return invalid_input(place, "the time of its end is not after the time of its start");
+    if (const char* const fault = fault_of_kind(motion.kind, s, motion.segments[s])) return invalid_input(place, fault);
   }
+  if (motion.kind != MotionKind::kAnimation && motion.segments.size() + 1 != motion.keyframes.size())
+    return invalid_input("", "there are " + std::to_string(motion.segments.size()) + " segments for " +
+                                 std::to_string(motion.keyframes.size()) + " keyframes");
   return Success{};
 }
 

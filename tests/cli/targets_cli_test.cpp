@@ -108,12 +108,36 @@ TEST_F(TargetsCli, convert_writes_the_base_and_the_targets_but_no_cache_of_them)
   EXPECT_EQ(test::read_whole(folder_ / "out_1.obj"),
             "v 0 0 0\nv 0.75 0.125 0.1\nv 1 1 0\nv 0 1 0.5\nf 1 2 3\nf 1 3 4\n");
   EXPECT_EQ(test::read_whole(folder_ / "out_2.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
-  for (const char* const name : {"out.npz", "out.pc2", "out.mdd"}) {
+  for (const char* const name : {"out.pc2", "out.mdd"}) {
     expect_error(std::string("convert --base base.obj targets -o ") + name, 2, {name, "sequence"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / name));
   }
-  // One target is a sequence of two keyframes.
+  // One target stays a target, and no sequence of two keyframes.
   EXPECT_EQ(run("convert --base base.obj smile.obj -o out.npz").exit_code, 0);
+  EXPECT_EQ(Json::parse(run("inspect out.npz --json").out)["kind"], "targets");
+  expect_error("sample out.npz --times 0.5 -o n.npy", 2, {"--times", "blend shapes have no times", "--weights"});
+  expect_error("bake out.npz -o out.glb", 3, {"out.npz", "targets"});
+  expect_error("convert out.npz -o out.mdd", 2, {"out.mdd", "targets"});
+}
+
+TEST_F(TargetsCli, targets_have_weights_and_sequences_have_times) {
+  const ProcessResult targets = run("audit --base base.obj smile.obj --samples 3");
+  EXPECT_EQ(targets.exit_code, 0) << targets.err;
+  EXPECT_NE(targets.out.find("target 0 (smile) at weight "), std::string::npos) << targets.out;
+  EXPECT_EQ(targets.out.find(" s  "), std::string::npos) << targets.out;
+  const Json worst = Json::parse(run("audit --base base.obj smile.obj --json").out)["worst_at"];
+  EXPECT_TRUE(worst.contains("weight")) << worst;
+  EXPECT_FALSE(worst.contains("time")) << worst;
+  const ProcessResult sequence = run("audit base.obj smile.obj --samples 3");
+  EXPECT_NE(sequence.out.find("sequence at "), std::string::npos) << sequence.out;
+  EXPECT_EQ(sequence.out.find("weight "), std::string::npos) << sequence.out;
+  EXPECT_TRUE(Json::parse(run("audit base.obj smile.obj --json").out)["worst_at"].contains("time"));
+  for (const char* const input : {"--base base.obj smile.obj", "--sample bumps"}) {
+    const std::string text = run(std::string("inspect ") + input).out;
+    EXPECT_EQ(text.find(" 0 s to 1 s"), std::string::npos) << text;
+    EXPECT_NE(text.find(" target"), std::string::npos) << text;
+    EXPECT_EQ(Json::parse(run(std::string("inspect --json ") + input).out)["kind"], "targets");
+  }
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(BlendSet, a_star_of_segments_gives_a_target_for_each) {
   star.topology = small_set().topology;
   star.keyframes = {{small_set().base, 0, "base"}, {small_set().base, 1, "lift"}, {small_set().base, 1, "still"}};
   star.keyframes[1].positions[7] = 2;
-  star.segments = {{0, 1}, {0, 2}};
+  star.connect_as_targets();
   const Result<BlendSet> set = blend_set_of(star);
   ASSERT_TRUE(set.ok());
   EXPECT_TRUE(validate(set.value()).ok());

@@ -145,14 +145,44 @@ TEST(FindInstant, time_without_motion_is_a_usage_error_with_the_range) {
 
 TEST(FindInstant, blend_shapes_and_still_meshes_have_no_times) {
   Motion star = three_keyframes();
-  star.segments = {{0, 1}, {0, 2}};
+  star.connect_as_targets();
   EXPECT_EQ(find_instant(star, 2.5).error().code, ErrorCode::kUsage);
   Motion still = three_keyframes();
   still.segments.clear();
   EXPECT_EQ(find_instant(still, 2).error().code, ErrorCode::kUsage);
-  EXPECT_TRUE(is_blend_shapes(star));
-  EXPECT_FALSE(is_blend_shapes(three_keyframes()));
-  EXPECT_FALSE(is_blend_shapes(still));
+}
+
+TEST(Motion, kinds_make_segments_of_keyframes) {
+  Motion motion = three_keyframes();
+  EXPECT_EQ(motion.kind, MotionKind::kSequence);
+  motion.connect_as_targets();
+  EXPECT_EQ(motion.kind, MotionKind::kTargets);
+  ASSERT_EQ(motion.segments.size(), 2U);
+  EXPECT_EQ(motion.segments[1].from, 0U);
+  EXPECT_EQ(motion.segments[1].to, 2U);
+  // Two keyframes at one time are a jump.
+  motion.keyframes.push_back(motion.keyframes.back());
+  motion.keyframes[1].time = motion.keyframes[2].time = 3;
+  motion.connect(MotionKind::kAnimation);
+  ASSERT_EQ(motion.segments.size(), 2U);
+  EXPECT_EQ(motion.segments[1].from, 2U);
+  EXPECT_TRUE(validate(motion).ok());
+}
+
+TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
+  Motion motion = three_keyframes();
+  motion.segments = {{0, 1}, {0, 2}};
+  expect_invalid(motion, "segment 1", "joins the next two keyframes");
+  motion.kind = MotionKind::kTargets;
+  EXPECT_TRUE(validate(motion).ok());
+  motion.connect_as_sequence();
+  motion.kind = MotionKind::kTargets;
+  expect_invalid(motion, "segment 1", "starts at keyframe 0");
+  motion.segments = {{0, 1}};
+  expect_invalid(motion, "", "1 segments for 3 keyframes");
+  motion.kind = MotionKind::kAnimation;
+  motion.segments = {{0, 2}};
+  expect_invalid(motion, "segment 0", "neighbouring");
 }
 
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }

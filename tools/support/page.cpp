@@ -12,7 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "chronormal/io/file.h"
+#include "chronormal/io/output.h"
 
 namespace chronormal::pages {
 namespace {

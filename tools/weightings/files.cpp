@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/bytes/file.h"
 #include "io/mesh/obj.h"
 #include "weightings/sections.h"
 
@@ -62,16 +63,13 @@ StoredNormals read_stored(const std::filesystem::path& path) {
   StoredNormals stored;
   const auto file = FileBytes::open(path.string());
   if (!file) throw std::runtime_error(file.error().text());
-  const auto mesh = read_obj(file.value().bytes(), path.filename().string());
+  auto mesh = read_obj_shading(file.value().bytes(), path.filename().string());
   if (!mesh) throw std::runtime_error(mesh.error().text());
-  stored.motion.topology = mesh.value().topology;
+  stored.motion.topology = std::move(mesh.value().topology);
   for (const double time : {0.0, 1.0}) stored.motion.keyframes.push_back({mesh.value().positions, time, {}});
   stored.motion.connect_as_sequence();
-
-  auto shading = read_obj_shading(file.value().bytes(), path.filename().string());
-  if (!shading) throw std::runtime_error(shading.error().text());
-  stored.of_corner = std::move(shading.value().normal_of_corner);
-  stored.group_of_face = std::move(shading.value().group_of_face);
+  stored.of_corner = std::move(mesh.value().normal_of_corner);
+  stored.group_of_face = std::move(mesh.value().group_of_face);
   stored.group_of_face.resize(stored.motion.topology.face_count(), 0);  // in no group where the file has none
   return stored;
 }

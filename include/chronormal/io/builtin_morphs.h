@@ -18,7 +18,7 @@ struct BuiltinMorph {
 /// The morphs there are that are sequences, from mild to dramatic.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_morphs() noexcept;
 
-/// Blend shapes, which have targets in place of keyframes in a sequence (is_blend_shapes() in workflow/sample.h).
+/// Blend shapes, whose keyframes are targets over a base.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_blend_shapes() noexcept;
 
 /// Makes one of either by name: the same positions on every call. Errors: kUsage with the names that there are.

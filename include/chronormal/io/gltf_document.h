@@ -19,6 +19,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,10 +28,15 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/file.h"
 #include "chronormal/normals/transform.h"
 
 namespace chronormal {
+
+class FileBytes;
+
+/// Finds the bytes of a file by its name, in place of the file system. They must stay as long as what was opened with
+/// it. Errors: what the caller is to be told.
+using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
 /// How weights go from one key to the next.
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
@@ -121,22 +127,33 @@ struct GltfGeometry {
   std::vector<Target> targets;
 };
 
+/// One primitive of a motion or a mesh that was made of a file: where its vertices and faces came from.
+struct GltfPart {
+  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing where nodes do not matter
+  std::size_t mesh = 0, primitive = 0;
+  std::size_t first_vertex = 0, vertex_count = 0;
+  std::size_t first_face = 0, face_count = 0;
+};
+
 struct GltfOptions {
   bool allow_external = false;  ///< read buffers from files outside the folder of the asset
   /// The most memory that the arrays of one primitive may take: a small file can ask for much.
   std::size_t most_bytes = std::size_t{4} << 30;
+  /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
+  FileResolver resolve = {};
 };
 
 class GltfDocument {
  public:
-  /// Opens a file; "-" is the standard input. Errors: those of FileBytes::open, and of the format.
+  /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place where it can not be read; of
+  /// the format.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
   /// Reads a document from bytes that outlive it. name is for messages; folder is where its files are, if it has any.
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
-  /// The same of an open file, which the document keeps.
+  /// The same of an open file (io/bytes/file.h), which the document keeps.
   [[nodiscard]] static Result<GltfDocument> read(FileBytes file, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});

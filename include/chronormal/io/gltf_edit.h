@@ -79,7 +79,7 @@ class GltfEdit {
 
   /// The whole new file in memory, as write() would write it to path.
   [[nodiscard]] Result<std::string> bytes(const std::string& path) const;
-  /// Writes the new file, by write_output() (io/file.h).
+  /// Writes the new file, by write_output() (io/output.h).
   /// Errors: of write_output(); kUsage for another extension; kInvalidInput with the pointer as the place where the
   /// source is such that a change is not possible (a parent that is no object, an array that is none), for JSON that is
   /// none, for buffers that can not be read, images that are of no known kind, and for a GLB of 4 GiB or more.

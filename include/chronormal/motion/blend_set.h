@@ -39,7 +39,7 @@ struct BlendSet {
   std::vector<BlendTarget> targets;
 };
 
-/// The blend shapes of a star of segments (io/input/targets.h, io/gltf_motion.h): its base, and a target for each segment
+/// The blend shapes of a star of segments (targets in io/input.h): its base, and a target for each segment
 /// from keyframe 0, named as the keyframe at its end. Deltas are differences of positions, rounded to float32. The
 /// motion must be valid. Errors, with the place "target K": kUsage for a segment that does not begin at keyframe 0,
 /// kInvalidInput for a delta beyond the range of float32.

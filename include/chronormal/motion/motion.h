@@ -2,18 +2,20 @@
 ///
 /// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A
 /// sequence of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have
-/// 0 -> 1 and 0 -> 2. Both are a Motion, and nothing after this file asks which it was.
+/// 0 -> 1 and 0 -> 2. Both are a Motion, whose kind says which it is: what computes normals need not ask, but what
+/// speaks to people says times of the one and weights of the other.
 ///
 /// find_instant() says which segment, and which t in it, belong to a time.
 ///
 /// Shapes     V = vertices; a keyframe has V positions, packed as (V, 3) float32.
-/// Units      positions: any length; times: seconds, double.
+/// Units      positions: any length; times: seconds, double; of targets, weights: 0 for the base, 1 for a target.
 #ifndef CHRONORMAL_MOTION_MOTION_H_
 #define CHRONORMAL_MOTION_MOTION_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -28,15 +30,25 @@ struct Segment {
   const Topology* topology = nullptr;
   VectorView<const float> from;  ///< positions at t = 0, one per vertex
   VectorView<const float> to;    ///< positions at t = 1
-  double start_time = 0;         ///< seconds, at t = 0
-  double end_time = 1;           ///< seconds, at t = 1
+  double start_time = 0;         ///< seconds, at t = 0; of a target, its weight
+  double end_time = 1;           ///< the same at t = 1
   std::size_t index = 0;         ///< which segment of its motion it is
 };
+
+/// What the segments of a motion are.
+enum class MotionKind {
+  kSequence,   ///< keyframes that follow each other: one segment between every two neighbours
+  kTargets,    ///< morph targets over a base: segment k leads from keyframe 0, the base, to keyframe k + 1
+  kAnimation,  ///< weights of targets over time: as a sequence, but without a segment where weights jump
+};
+
+/// "sequence", "targets" or "animation".
+[[nodiscard]] std::string_view motion_kind_name(MotionKind kind) noexcept;
 
 struct Motion {
   struct Keyframe {
     std::vector<float> positions;  ///< (V, 3)
-    double time = 0;               ///< seconds
+    double time = 0;               ///< seconds; of targets, the weight
     std::string name;              ///< for messages: the file that it came from, or empty
   };
   struct SegmentKeys {
@@ -50,24 +62,24 @@ struct Motion {
   /// (V), which of several separate objects each vertex belongs to: those of two are never one point, wherever they
   /// are. Empty: all are one.
   std::vector<std::uint32_t> body_of_vertex = {};
+  MotionKind kind = MotionKind::kSequence;
 
   /// Returns a view of one segment. Precondition: the motion is valid (validate()) and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;
 
-  /// Makes one segment between every two neighbouring keyframes.
-  void connect_as_sequence();
+  /// Sets the kind and makes the segments that a motion of this kind has, from its keyframes. (In an animation, two
+  /// neighbours at one time are a jump, and no segment joins them.)
+  void connect(MotionKind as);
+  void connect_as_sequence() { connect(MotionKind::kSequence); }
+  void connect_as_targets() { connect(MotionKind::kTargets); }
 };
 
 /// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
 /// granted: at least one face and one segment, every keyframe with 3 x vertex_count finite coordinates, a body for each
-/// vertex or none, segments between keyframes that exist, and finite times that ascend along every segment. (A Topology
-/// checks its own indices when it is built.)
+/// vertex or none, segments between keyframes that exist, finite times that ascend along every segment, and segments as
+/// the kind of the motion has them. (A Topology checks its own indices when it is built.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
-
-/// Tells from its segments whether a motion is blend shapes: they lead from keyframe 0 to every other. A motion of two
-/// keyframes is both blend shapes and a sequence.
-[[nodiscard]] bool is_blend_shapes(const Motion& motion) noexcept;
 
 /// Where a time lies in a motion.
 struct Instant {
@@ -77,8 +89,7 @@ struct Instant {
 
 /// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
 /// later one, and the end of the motion that of the last one. The motion must be valid, or stand still. O(segments).
-/// Errors: kUsage for a time at which there is no motion, with the range; for blend shapes of two targets or more, and
-/// for a mesh that stands still.
+/// Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that stands still.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 
 }  // namespace chronormal

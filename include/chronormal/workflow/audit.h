@@ -32,6 +32,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
+#include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
 
@@ -73,7 +74,7 @@ struct AuditPlace {
   std::optional<std::size_t> mesh, primitive;  ///< of a glTF file
   std::size_t vertex = 0;                      ///< of the primitive, or of the motion
   std::size_t segment = 0;                     ///< of the subject
-  double at = 0;                               ///< weight of the target, or time
+  double at = 0;                               ///< weight of the target, or time in seconds
 };
 
 struct MotionError {
@@ -162,18 +163,12 @@ struct Audit {
 /// animation that is not there, and fewer than 2 samples.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Normals that files store beside a motion, (corners, 3) each, of any length.
-struct StoredNormals {
-  /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
-  std::vector<std::vector<float>> of_keyframes;
-};
-
-/// Audits a sequence, or targets over a base (motion/motion.h), each segment of which is a subject then. Without stored
+/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
+/// then. Without stored
 /// normals, a player computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
 /// between. Errors: kUsage for the rule gltf, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
-[[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets,
-                                  const AuditOptions& options);
+[[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal
 

@@ -1,18 +1,37 @@
-/// The paper's Table 1 for any motion: every scheme held against the exact normals.
+/// The paper's Table 1 for any motion, every scheme held against the exact normals; and the same for the deltas of
+/// blend shapes.
+///
+/// A host that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
+/// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
+/// each target alone at weight 1), those that are best by least squares (analysis/blend_quality.h), and the exact
+/// normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended positions
+/// in double.
+///
+/// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or those of an animation. Least
+///            squares are over as many other random weights of the same kind, or 16 for each target where that is
+///            more, so that they cannot know those they are judged by; for an animation over the very ones.
+/// Compared   normals that a target of weight other than 0 moves: those with a face that it moves, and those that a
+///            file moves by a delta. One for each different normal; of a glTF file, for each vertex.
+/// glTF       Each mesh on its own, with elements by its stored normals. Where an author gave base normals of his own,
+///            the truth is turned as these are, as in an audit (workflow/gltf_shading.h). Flat primitives are right in
+///            hosts and are left out. Targets that a bake added get products of weights.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/workflow/elements.h"
+#include "chronormal/workflow/sample.h"
 
 namespace chronormal {
 
@@ -58,6 +77,7 @@ struct Comparison {
   std::size_t segments = 0;
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
+  MotionKind motion = MotionKind::kSequence;  ///< what the segments are
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
@@ -69,6 +89,70 @@ struct Comparison {
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
+
+inline constexpr std::size_t kMostBlendRows = 10000;
+
+struct BlendCompareOptions {
+  std::size_t rows = 100;  ///< weight vectors for each number of active targets; 1 to kMostBlendRows
+  std::size_t active = 0;  ///< how many targets at once; 0: 1, 2, 4, 8, 16 and all, as far as there are
+  std::uint64_t seed = 1;  ///< of random weights: the same ones on every system
+  ElementOptions elements = {ElementKind::kVertices};  ///< of a motion; those of a glTF file are as it stores them
+  std::string animation = {};  ///< of a glTF file, by name or index: up to `rows` of its weight vectors, evenly
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+
+enum class BlendDeltas { kFile, kEndPoint, kLeastSquares, kExact };
+
+/// "file", "end point", "least squares" or "exact".
+[[nodiscard]] std::string_view name_of(BlendDeltas deltas) noexcept;
+
+struct BlendError {
+  struct Weight {
+    std::size_t target = 0;
+    double weight = 0;
+  };
+  BlendDeltas deltas = BlendDeltas::kFile;
+  Quality quality;                             ///< max_at: the weight vector as segment, the output as element
+  std::vector<Weight> worst_weights;           ///< where the largest error is: the active targets
+  std::optional<std::size_t> worst_primitive;  ///< of a glTF mesh
+  std::size_t worst_output = 0;                ///< the vertex (of the primitive), face or corner that shows it
+};
+
+/// The errors at one number of active targets.
+struct BlendErrors {
+  std::size_t active = 0;  ///< of targets at once; of an animation, at most
+  std::size_t rows = 0;    ///< weight vectors
+  std::vector<BlendError> deltas;
+};
+
+/// One motion, or one mesh of a glTF file.
+struct BlendSubject {
+  std::optional<std::size_t> mesh;  ///< of a glTF file
+  std::string name;                 ///< of the mesh; may be empty
+  ElementKind kind = ElementKind::kVertices;
+  std::size_t vertices = 0, faces = 0;
+  std::size_t outputs = 0;           ///< normals that can be compared
+  std::vector<std::string> targets;  ///< names
+  std::vector<BlendErrors> errors;
+};
+
+struct BlendComparison {
+  std::vector<BlendSubject> subjects;
+  std::size_t flat = 0;   ///< glTF meshes with targets, but without a stored normal
+  std::size_t still = 0;  ///< glTF meshes of which no target moves a normal
+};
+
+/// Blend shapes as a star of segments, valid. Cost: for each row an evaluation, a recomputation of the mesh, and the
+/// angles. Errors: kUsage for options beyond their range, more active targets than there are, and a motion that is no
+/// star; those of make_groups() and blend_set_of(); kInvalidInput where there are more targets than memory for rows of
+/// their weights.
+[[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
+
+/// All meshes of a file that have targets and normals; with options.animation, those that it drives. Errors: the same;
+/// of GltfDocument; kUsage where an animation is not there or drives none of them, and for random weights of a mesh
+/// whose targets are the keyframes of a baked sequence; kInvalidInput where no mesh can be compared.
+[[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
+                                                     const BlendCompareOptions& options = {});
 
 }  // namespace chronormal
 

@@ -1,4 +1,5 @@
-/// What a motion holds, and what in it will trouble whoever needs its normals.
+/// What a motion holds, and what in it will trouble whoever needs its normals; and what a glTF file holds beside its
+/// motion: the normals that it stores, which of them follow the targets, and tracks of weights.
 ///
 /// Counts of faces over keyframes or segments come as Places: how many (face, keyframe) pairs there are, how many
 /// different faces take part, and the first pair, by keyframe or segment and then by face.
@@ -9,10 +10,13 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "chronormal/analysis/surface.h"
+#include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
+#include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
@@ -80,6 +84,44 @@ struct Inspection {
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// One primitive that has faces; what is not here is in GltfPrimitive.
+struct GltfPrimitiveInspection {
+  std::size_t mesh = 0, primitive = 0;
+  std::size_t triangles = 0;
+  std::size_t off_length = 0;  ///< stored normals that are not of length 1, to the rounding of 8-bit integers
+  /// Vertices at the place of a lower one in the base, and those of them with another normal than the lowest one there
+  /// (by more than kSplitNormalTolerance of normals/normal_groups.h).
+  std::size_t doubled = 0, split = 0;
+  /// Targets that move positions, and those of them that move normals and tangents too.
+  std::size_t moving = 0, moving_normals = 0, moving_tangents = 0;
+};
+
+/// One track of weights.
+struct GltfTrackInspection {
+  std::size_t animation = 0, track = 0;
+  double first_time = 0, last_time = 0;
+  double lowest = 0, highest = 0;  ///< of the weights, between the keys too
+};
+
+struct GltfInspection {
+  std::vector<GltfPrimitiveInspection> primitives;
+  std::vector<GltfTrackInspection> tracks;
+  std::vector<std::size_t> instances;  ///< per mesh: how many nodes have it
+  std::size_t skinned_nodes = 0;       ///< that have a mesh
+  std::size_t without_faces = 0;       ///< primitives of points or lines, or without positions
+};
+
+/// Reads all geometry and all weight tracks, one after the other. Memory: that of the largest primitive, and what the
+/// document keeps. Errors: of GltfDocument.
+[[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
+
+/// Counts the vertices of a motion that are at the place of a lower one in all keyframes and have another normal stored
+/// than the lowest one there that has any: some of Inspection::doubled, across primitives too. (Vertices at one place
+/// are of one mesh and one node, so that their normals need no transform.) Memory and errors as of inspect(). The
+/// motion must be one of this document, and of these parts.
+[[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
+                                                      std::span<const GltfPart> parts);
 
 }  // namespace chronormal
 

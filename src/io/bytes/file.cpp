@@ -1,4 +1,4 @@
-#include "chronormal/io/file.h"
+#include "io/bytes/file.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -14,6 +14,8 @@
 #include <span>
 #include <system_error>
 #include <utility>
+
+#include "chronormal/io/output.h"
 
 namespace chronormal {
 namespace {
@@ -214,8 +216,8 @@ Result<FileBytes> FileBytes::open(const std::string& path) {
     void* const mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapping != MAP_FAILED) {
       (void)::madvise(mapping, size, MADV_SEQUENTIAL);
-      file.mapping_ = mapping;
-      file.mapping_size_ = size;
+      file.view_ = {static_cast<const char*>(mapping), size};
+      file.is_mapped_ = true;
       return file;
     }
   }
@@ -223,24 +225,35 @@ Result<FileBytes> FileBytes::open(const std::string& path) {
   return file;
 }
 
+Result<FileBytes> FileBytes::open(const std::string& path,
+                                  const std::function<Result<std::string_view>(const std::string& name)>& resolve) {
+  if (!resolve) return open(path);
+  const Result<std::string_view> bytes = resolve(path);
+  if (!bytes) return bytes.error();
+  FileBytes file;
+  file.view_ = bytes.value();
+  return file;
+}
+
 FileBytes::FileBytes(FileBytes&& other) noexcept
-    : mapping_(std::exchange(other.mapping_, nullptr)),
-      mapping_size_(std::exchange(other.mapping_size_, 0)),
+    : view_(std::exchange(other.view_, {})),
+      is_mapped_(std::exchange(other.is_mapped_, false)),
       owned_(std::exchange(other.owned_, {})) {}
 
 FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
-  std::swap(mapping_, other.mapping_);
-  std::swap(mapping_size_, other.mapping_size_);
+  std::swap(view_, other.view_);
+  std::swap(is_mapped_, other.is_mapped_);
   std::swap(owned_, other.owned_);
   return *this;
 }
 
+// What is mapped is mapped by us, so that it may be written to as far as the system calls want it.
 void FileBytes::release() const noexcept {
-  if (mapping_ != nullptr) (void)::madvise(mapping_, mapping_size_, MADV_DONTNEED);
+  if (is_mapped_) (void)::madvise(const_cast<char*>(view_.data()), view_.size(), MADV_DONTNEED);
 }
 
 FileBytes::~FileBytes() {
-  if (mapping_ != nullptr) ::munmap(mapping_, mapping_size_);
+  if (is_mapped_) ::munmap(const_cast<char*>(view_.data()), view_.size());
 }
 
 Status check_output(const std::string& path, bool force) {

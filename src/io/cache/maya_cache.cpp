@@ -1,4 +1,5 @@
 #include "io/cache/maya_cache.h"
+#include "io/bytes/file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/file.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_chunks.h"
@@ -169,12 +169,13 @@ Result<PositionCache> read_maya_points(std::string_view bytes, const std::string
   return cache;
 }
 
-Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOptions& options) {
+Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOptions& options,
+                                      const std::function<Result<std::string_view>(const std::string& name)>& resolve) {
   const std::filesystem::path path(xml_path);
   const std::string name = path.filename().string(), stem = path.stem().string();
   Result<MayaCacheDescription> description = Error{};
   {
-    const Result<FileBytes> xml = FileBytes::open(xml_path);
+    const Result<FileBytes> xml = FileBytes::open(xml_path, resolve);
     if (!xml) return xml.error();
     description = read_maya_description(xml.value().bytes(), name);
   }
@@ -183,6 +184,8 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
 
   std::vector<std::string> files = {stem + described.extension};
   if (described.has_file_per_frame) {
+    if (resolve)
+      return Error{ErrorCode::kUsage, name, "its files, one for each frame, can only be listed in a folder on disk"};
     Result<std::vector<std::string>> found = list_frame_files(path.parent_path(), stem, described.extension);
     if (!found) return found.error();
     files = std::move(found).value();
@@ -194,7 +197,7 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   PositionCache cache;
   CacheOptions choice = options;
   for (const std::string& file : files) {
-    const Result<FileBytes> opened = FileBytes::open((path.parent_path() / file).string());
+    const Result<FileBytes> opened = FileBytes::open((path.parent_path() / file).string(), resolve);
     if (!opened) return opened.error();
     const std::string_view bytes = opened.value().bytes();
     const Result<std::vector<maya::Points>> list = maya::list_points(bytes, file);

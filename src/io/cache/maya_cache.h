@@ -21,6 +21,7 @@
 #define CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,7 +67,11 @@ struct MayaCacheDescription {
 /// Errors: those of both, with the file name in the place; kFailed for files that can not be opened; kInvalidInput with
 /// the missing time and the file where a regularly sampled channel has not all the samples that the description
 /// declares.
-[[nodiscard]] Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOptions& options = {});
+/// With a resolver, files are found by it, by their paths; kUsage for a cache of a file per frame, whose files only a
+/// folder can list.
+[[nodiscard]] Result<PositionCache> read_maya_cache(
+    const std::string& xml_path, const CacheOptions& options = {},
+    const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});
 
 }  // namespace chronormal
 

@@ -76,8 +76,16 @@ class Python {
   std::string_view text_;
 };
 
-// Reads "<f4". False for a type that is none of ours.
-bool read_type(std::string_view type, Array& array) {
+// Reads "<f4", or where text is allowed "<U7". False for a type that is none of ours.
+bool read_type(std::string_view type, bool allow_text, Array& array) {
+  if (allow_text && type.size() > 2 && (type[1] == 'U' || type[1] == 'S')) {
+    std::uint32_t length = 0;
+    const auto [end, code] = std::from_chars(type.data() + 2, type.data() + type.size(), length);
+    array.order = type[0] == '>' ? std::endian::big : std::endian::little;
+    array.kind = static_cast<Kind>(type[1]);
+    array.item_size = std::size_t{length} * (array.kind == Kind::kText ? 4 : 1);
+    return code == std::errc{} && end == type.data() + type.size() && length > 0;
+  }
   if (type.size() != 3 || std::string_view("<>|=").find(type[0]) == std::string_view::npos) return false;
   if (type[0] != '=') array.order = type[0] == '>' ? std::endian::big : std::endian::little;
   if (type[0] == '=') array.order = std::endian::native;
@@ -86,6 +94,71 @@ bool read_type(std::string_view type, Array& array) {
   if (array.kind == Kind::kFloat) return array.item_size == 4 || array.item_size == 8;
   if (array.kind != Kind::kInteger && array.kind != Kind::kUnsigned) return false;
   return array.item_size == 1 || array.item_size == 2 || array.item_size == 4 || array.item_size == 8;
+}
+
+// The header of an array of numbers, or where it is allowed of text.
+Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text,
+                              const std::string& place) {
+  const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
+  if (!start.starts_with(kFirstWord)) return error("this is not a NumPy array: it does not begin with \\x93NUMPY");
+  if (start.size() < 12) return error("the array ends inside its header");
+  const auto version = static_cast<unsigned char>(start[6]);
+  if (version < 1 || version > 3 || start[7] != '\0')
+    return error("version " + std::to_string(version) + "." + std::to_string(static_cast<unsigned char>(start[7])) +
+                 " of the array header is unknown; there are 1.0, 2.0 and 3.0");
+  const std::size_t text_begin = version == 1 ? 10 : 12;
+  const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
+                                             : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);
+  if (text_size > kLongestHeader) return error("the array header is longer than 65,536 bytes");
+  if (text_size > start.size() - text_begin) return error("the array ends inside its header");
+
+  Array array;
+  array.data_begin = text_begin + text_size;
+  bool has_type = false, has_order = false, has_shape = false;
+  Python header(start.substr(text_begin, text_size));
+  const auto broken = [&] { return error("the array header does not follow the form of NumPy"); };
+  if (!header.sign('{')) return broken();
+  while (!header.sign('}')) {
+    const std::optional<std::string_view> key = header.string();
+    if (!key || !header.sign(':')) return broken();
+    if (*key == "descr" && !has_type) {
+      const std::optional<std::string_view> type = header.string();
+      if (!type) return error("the elements of the array are records; they must be numbers");
+      if (!read_type(*type, allow_text, array))
+        return error("elements of the type " + scan::quoted(*type) +
+                     " are not supported; float32, float64 and integers of up to 64 bits are");
+      has_type = true;
+    } else if (*key == "fortran_order" && !has_order) {
+      const std::optional<bool> is_fortran = header.boolean();
+      if (!is_fortran) return broken();
+      array.is_fortran = *is_fortran;
+      has_order = true;
+    } else if (*key == "shape" && !has_shape) {
+      std::optional<std::vector<std::uint64_t>> shape = header.tuple();
+      if (!shape) return broken();
+      array.shape = *std::move(shape);
+      has_shape = true;
+    } else {
+      return broken();
+    }
+    if (!header.sign(',')) {
+      if (!header.sign('}')) return broken();
+      break;
+    }
+  }
+  if (!header.at_end() || !has_type || !has_order || !has_shape) return broken();
+
+  const std::uint64_t left = total_size - array.data_begin;
+  std::uint64_t size = array.item_size;
+  bool fits = true;
+  if (std::find(array.shape.begin(), array.shape.end(), 0U) != array.shape.end()) size = 0;
+  for (const std::uint64_t length : array.shape) {
+    fits = fits && binary::fits(length, size, left);
+    if (fits) size *= length;
+  }
+  if (!fits || size != left)
+    return error("its header says " + array.text() + ", but it has " + std::to_string(left) + " bytes of elements");
+  return array;
 }
 
 }  // namespace
@@ -137,72 +210,37 @@ std::string Array::text() const {
 }
 
 Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place) {
-  const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
-  if (!start.starts_with(kFirstWord)) return error("this is not a NumPy array: it does not begin with \\x93NUMPY");
-  if (start.size() < 12) return error("the array ends inside its header");
-  const auto version = static_cast<unsigned char>(start[6]);
-  if (version < 1 || version > 3 || start[7] != '\0')
-    return error("version " + std::to_string(version) + "." + std::to_string(static_cast<unsigned char>(start[7])) +
-                 " of the array header is unknown; there are 1.0, 2.0 and 3.0");
-  const std::size_t text_begin = version == 1 ? 10 : 12;
-  const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
-                                             : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);
-  if (text_size > kLongestHeader) return error("the array header is longer than 65,536 bytes");
-  if (text_size > start.size() - text_begin) return error("the array ends inside its header");
+  return read_any_header(start, total_size, false, place);
+}
 
-  Array array;
-  array.data_begin = text_begin + text_size;
-  bool has_type = false, has_order = false, has_shape = false;
-  Python header(start.substr(text_begin, text_size));
-  const auto broken = [&] { return error("the array header does not follow the form of NumPy"); };
-  if (!header.sign('{')) return broken();
-  while (!header.sign('}')) {
-    const std::optional<std::string_view> key = header.string();
-    if (!key || !header.sign(':')) return broken();
-    if (*key == "descr" && !has_type) {
-      const std::optional<std::string_view> type = header.string();
-      if (!type) return error("the elements of the array are records; they must be numbers");
-      if (!read_type(*type, array))
-        return error("elements of the type " + scan::quoted(*type) +
-                     " are not supported; float32, float64 and integers of up to 64 bits are");
-      has_type = true;
-    } else if (*key == "fortran_order" && !has_order) {
-      const std::optional<bool> is_fortran = header.boolean();
-      if (!is_fortran) return broken();
-      array.is_fortran = *is_fortran;
-      has_order = true;
-    } else if (*key == "shape" && !has_shape) {
-      std::optional<std::vector<std::uint64_t>> shape = header.tuple();
-      if (!shape) return broken();
-      array.shape = *std::move(shape);
-      has_shape = true;
-    } else {
-      return broken();
-    }
-    if (!header.sign(',')) {
-      if (!header.sign('}')) return broken();
-      break;
-    }
+Result<std::string> read_text(std::string_view bytes, const std::string& place) {
+  const Result<Array> array = read_any_header(bytes, bytes.size(), true, place);
+  if (!array) return array.error();
+  const Array& found = array.value();
+  const std::size_t step = found.kind == Kind::kText ? 4 : 1;
+  if ((found.kind != Kind::kText && found.kind != Kind::kBytes) || found.element_count() != 1)
+    return invalid_input(place, "this must be one text, but it is " + found.text());
+  std::string text;
+  for (std::size_t at = found.data_begin; at < bytes.size(); at += step) {
+    const std::uint32_t c =
+        step == 4 ? binary::load<std::uint32_t>(bytes.data() + at, found.order) : static_cast<unsigned char>(bytes[at]);
+    if (c > 127) return invalid_input(place, "the text is not ASCII");
+    text += static_cast<char>(c);
   }
-  if (!header.at_end() || !has_type || !has_order || !has_shape) return broken();
+  while (text.ends_with('\0')) text.pop_back();  // NumPy fills up with them
+  return text;
+}
 
-  const std::uint64_t left = total_size - array.data_begin;
-  std::uint64_t size = array.item_size;
-  bool fits = true;
-  if (std::find(array.shape.begin(), array.shape.end(), 0U) != array.shape.end()) size = 0;
-  for (const std::uint64_t length : array.shape) {
-    fits = fits && binary::fits(length, size, left);
-    if (fits) size *= length;
-  }
-  if (!fits || size != left)
-    return error("its header says " + array.text() + ", but it has " + std::to_string(left) + " bytes of elements");
-  return array;
+std::string write_text(std::string_view text) {
+  std::string bytes = write_header("<U" + std::to_string(text.size()), {});
+  for (const char c : text) binary::append(bytes, static_cast<std::uint32_t>(c), std::endian::little);
+  return bytes;
 }
 
 std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape) {
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
   for (const std::uint64_t length : shape) text += std::to_string(length) + ", ";
-  text.pop_back();
+  if (!shape.empty()) text.pop_back();
   if (shape.size() > 1) text.pop_back();  // (5,) keeps its comma
   text += "), }";
   while ((10 + text.size() + 1) % 64 != 0) text += ' ';

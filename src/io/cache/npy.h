@@ -16,14 +16,14 @@
 
 namespace chronormal::npy {
 
-enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u' };
+enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 'U', kBytes = 'S' };
 
 /// Longest header that is read; NumPy itself stops at 10,000 bytes unless it is told otherwise.
 constexpr std::size_t kLongestHeader = 65536;
 
 struct Array {
   Kind kind{};
-  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; floats 4 or 8
+  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; floats 4 or 8; of text 4 for each character, or 1
   std::endian order = std::endian::little;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
@@ -43,6 +43,13 @@ struct Array {
   /// "(2, 3, 3) of '<f4'": for messages.
   [[nodiscard]] std::string text() const;
 };
+
+/// Reads the text of an array that is a single string of ASCII ("<U7", "|S7"), as NumPy keeps one; bytes are all of the
+/// array. Errors: kInvalidInput with place.
+[[nodiscard]] Result<std::string> read_text(std::string_view bytes, const std::string& place);
+
+/// The bytes of such an array.
+[[nodiscard]] std::string write_text(std::string_view text);
 
 /// Reads the header of an array of total_size bytes, of which start are the first (all, or kLongestHeader + 12).
 /// Afterwards the elements of shape, none of whose products overflow, are exactly what follows data_begin. Errors:

@@ -1,6 +1,5 @@
 #include "io/cache/npz.h"
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "io/bytes/binary.h"
+#include "io/bytes/scan.h"
 #include "io/bytes/zip.h"
 #include "io/cache/npy.h"
 
@@ -102,6 +102,14 @@ void set_regular_times(PositionCache& cache, double frames_per_second) {
     cache.samples[k].time = static_cast<double>(k) / frames_per_second;
 }
 
+Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
+  const Result<std::string> text = npy::read_text(bytes, place);
+  if (!text) return text.error();
+  for (const MotionKind kind : {MotionKind::kSequence, MotionKind::kTargets, MotionKind::kAnimation})
+    if (text.value() == motion_kind_name(kind)) return kind;
+  return invalid_input(place, "it must be sequence, targets or animation, but is " + scan::quoted(text.value()));
+}
+
 // The arrays of an archive, one at a time.
 class Archive {
  public:
@@ -110,6 +118,13 @@ class Archive {
 
   [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
   [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
+
+  // The bytes of the file of that small array; good until the next call.
+  [[nodiscard]] Result<std::string_view> bytes(std::string_view array) {
+    const zip::Member* const member = find(array);
+    if (member == nullptr) return invalid_input(place(array), "the file has no array of this name");
+    return zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
+  }
 
   // Reads the array of that name into storage_, or finds it in the file; good until the next call.
   [[nodiscard]] Result<Array> read(std::string_view array) {
@@ -175,7 +190,21 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
     if (Status status = read_times(times.value(), cache.value(), archive.place("times")); !status)
       return status.error();
   }
-  return motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name);
+  MotionKind kind = MotionKind::kSequence;
+  if (archive.has("kind")) {
+    const Result<std::string_view> text = archive.bytes("kind");
+    if (!text) return text.error();
+    const Result<MotionKind> read = read_kind(text.value(), archive.place("kind"));
+    if (!read) return read.error();
+    kind = read.value();
+  }
+  // Targets have no times, but each has all of its weight at the end of its segment.
+  for (std::size_t k = 0; k < cache.value().samples.size() && kind == MotionKind::kTargets; ++k)
+    cache.value().samples[k].time = k == 0 ? 0 : 1;
+  Result<Motion> motion = motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name, kind);
+  for (std::size_t k = 0; motion && kind == MotionKind::kTargets && k < motion.value().keyframes.size(); ++k)
+    motion.value().keyframes[k].name = k == 0 ? "base" : "target " + std::to_string(k - 1);
+  return motion;
 }
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_header("<f4", shape)) {
@@ -217,7 +246,7 @@ std::string write_npz(std::span<const NpzMember> members) {
 }
 
 Result<std::string> write_npz(const Motion& motion) {
-  if (Status status = check_is_sequence(motion); !status) return status.error();
+  if (Status status = check_keyframes(motion); !status) return status.error();
   const Result<std::string> faces = write_npy_faces(motion.topology);
   if (!faces) return faces.error();
   NpyBytes positions({motion.keyframes.size(), motion.topology.vertex_count(), 3});
@@ -227,8 +256,10 @@ Result<std::string> write_npz(const Motion& motion) {
     times.push_back(keyframe.time);
   }
   const NpyBytes time_array({times.size()}, times);
-  const std::array<NpzMember, 3> members = {
-      {{"positions", positions.bytes()}, {"faces", faces.value()}, {"times", time_array.bytes()}}};
+  const std::string kind = npy::write_text(motion_kind_name(motion.kind));
+  std::vector<NpzMember> members = {{"positions", positions.bytes()}, {"faces", faces.value()}};
+  if (motion.kind != MotionKind::kTargets) members.push_back({"times", time_array.bytes()});
+  if (motion.kind != MotionKind::kSequence) members.push_back({"kind", kind});
   return write_npz(members);
 }
 

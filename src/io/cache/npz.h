@@ -4,8 +4,11 @@
 ///
 ///     positions   (T, V, 3)   float32 or float64         T keyframes of V vertices
 ///     faces       (F, 3)      any integer type           vertices counted from 0; (F, 4) are quads, and so on
-///     times       (T,)        any float or integer type  seconds; optional, else keyframe k is at k /
-///     frames_per_second
+///     times       (T,)        any float or integer type  seconds; optional, else k / frames_per_second
+///     kind        ()          a string                   sequence (where it is missing), targets or animation
+///
+/// Targets are a base, keyframe 0, and a keyframe for each target; they have no times. In an animation, two keyframes
+/// that follow each other at one time are a jump.
 ///
 /// C and Fortran order, both byte orders, versions 1 to 3 of the array header; zip members stored or deflated
 /// (savez_compressed), zip64. Other arrays in the file are passed over. float64 positions are rounded to float32.
@@ -32,7 +35,8 @@ namespace chronormal {
 /// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
 /// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, times that
-/// do not ascend. Sizes that disagree between directory, member and array header are refused before memory is taken.
+/// do not ascend, an unknown kind. Sizes that disagree between directory, member and array header are refused before
+/// memory is taken.
 /// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1);
 
@@ -41,9 +45,10 @@ namespace chronormal {
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Writes positions (float32), faces (int32, or uint32 for more than 2^31 vertices) and times (float64), stored, so
-/// that the arrays can be mapped. The same motion gives the same bytes. Errors: kUsage without a place: blend shapes,
-/// and faces of different numbers of corners, which no (F, k) array holds.
+/// Writes positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what has any,
+/// and the kind of what is no sequence, stored, so that the arrays can be mapped. The same motion gives the same bytes.
+/// Errors: kUsage without a place: a mesh that does not move, and faces of different numbers of corners, which no (F,
+/// k) array holds.
 [[nodiscard]] Result<std::string> write_npz(const Motion& motion);
 
 /// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.

@@ -17,7 +17,7 @@ std::string number(double value) {
 }  // namespace
 
 Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
-                                 const std::string& cache_name) {
+                                 const std::string& cache_name, MotionKind kind) {
   if (cache.vertex_count != faces.vertex_count())
     return invalid_input(cache_name, "it has " + std::to_string(cache.vertex_count) +
                                          (cache.vertex_count == 1 ? " vertex" : " vertices") + ", but the mesh " +
@@ -25,9 +25,10 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
   if (cache.samples.size() < 2)
     return invalid_input(cache_name,
                          "a motion needs two samples or more, but it has " + std::to_string(cache.samples.size()));
-  for (std::size_t k = 1; k < cache.samples.size(); ++k) {
+  for (std::size_t k = 1; k < cache.samples.size() && kind != MotionKind::kTargets; ++k) {
     const double before = cache.samples[k - 1].time, time = cache.samples[k].time;
-    if (!(before < time))
+    const bool is_jump = kind == MotionKind::kAnimation && before == time;
+    if (!(before < time) && !is_jump)
       return invalid_input(cache_name + ", sample " + std::to_string(k),
                            "its time, " + number(time) + " s, is not after that of sample " + std::to_string(k - 1) +
                                ", " + number(before) + " s");
@@ -38,23 +39,31 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
   motion.keyframes.reserve(cache.samples.size());
   for (PositionCache::Sample& sample : cache.samples)
     motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
-  motion.connect_as_sequence();
+  motion.connect(kind);
   if (Status status = validate(motion); !status)
     return invalid_input(cache_name + ", " + status.error().place, status.error().message);
   return motion;
 }
 
-Status check_is_sequence(const Motion& motion) {
+Status check_keyframes(const Motion& motion) {
   const auto misuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
-  bool is_sequence = motion.keyframes.size() > 1 && motion.segments.size() == motion.keyframes.size() - 1;
-  for (std::size_t s = 0; is_sequence && s < motion.segments.size(); ++s)
-    is_sequence = motion.segments[s].from == s && motion.segments[s].to == s + 1;
-  if (!is_sequence) return misuse("this format holds one sequence of two keyframes or more, which the motion is not");
+  if (motion.keyframes.size() < 2 || motion.segments.empty())
+    return misuse("this format holds two keyframes or more, but the mesh does not move");
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     if (keyframe.positions.size() != 3 * motion.topology.vertex_count())
       return misuse("a keyframe has another number of coordinates than the vertices need");
   }
   return Success{};
+}
+
+Status check_is_sequence(const Motion& motion) {
+  if (motion.kind == MotionKind::kTargets)
+    return Error{ErrorCode::kUsage, "",
+                 "this format holds one sequence of keyframes, but the motion is targets over a base; .npz holds them"};
+  if (!motion.segments.empty() && motion.segments.size() + 1 != motion.keyframes.size())
+    return Error{ErrorCode::kUsage, "",
+                 "this format holds one sequence without jumps, but weights jump in the animation; .npz holds it"};
+  return check_keyframes(motion);
 }
 
 }  // namespace chronormal

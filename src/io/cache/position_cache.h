@@ -41,16 +41,20 @@ struct CacheOptions {
   std::string channel;           ///< which channel of a Maya cache; empty: by vertex_count
 };
 
-/// Gives the samples of a cache the faces of a mesh, as a sequence; every keyframe takes the name of the cache. The
-/// result is valid (validate() in motion/motion.h).
+/// Gives the samples of a cache the faces of a mesh, as a sequence or what else they are known to be; every keyframe
+/// takes the name of the cache. The result is valid (motion/motion.h).
 ///
 /// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
-/// fewer than two samples, times that do not ascend (the place has the sample).
+/// fewer than two samples, times that do not ascend as the kind has it (the place has the sample).
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
-                                               const std::string& cache_name);
+                                               const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
-/// Whether all keyframes of a motion can stand in a file that has one list of them: its segments join neighbours, and
-/// every keyframe has 3 x vertex_count coordinates. Errors: kUsage without a place.
+/// Whether the keyframes of a motion are a list of samples: two or more, of 3 x vertex_count coordinates each. Errors:
+/// kUsage without a place.
+[[nodiscard]] Status check_keyframes(const Motion& motion);
+
+/// Whether they are one sequence besides, so that a format can hold them that knows nothing else: segments join all
+/// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 }  // namespace chronormal

@@ -57,6 +57,17 @@ double load_number(const char* at, Component component, bool normalized) noexcep
   return 0;
 }
 
+Result<std::string> Origin::path_of(std::string_view uri, const std::string& uri_place) const {
+  if (resolve) return name_file_uri(uri, folder, uri_place);
+  return resolve_file_uri(uri, folder, allow_external, uri_place);
+}
+
+Result<FileBytes> Origin::open(const std::string& path, const std::string& uri_place) const {
+  Result<FileBytes> file = FileBytes::open(path, resolve);
+  if (!file) return invalid_input(uri_place, file.error().text());
+  return file;
+}
+
 void Bytes::release() const noexcept {
   for (const auto& [buffer, file] : files_) file.release();
 }
@@ -91,10 +102,10 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
     if (!bytes) return bytes.error();
     return std::string_view(embedded_.emplace(index, std::move(bytes).value()).first->second);
   }
-  const Result<std::string> path = resolve_file_uri(*declared.uri, origin_.folder, origin_.allow_external, uri_place);
+  const Result<std::string> path = origin_.path_of(*declared.uri, uri_place);
   if (!path) return path.error();
-  Result<FileBytes> file = FileBytes::open(path.value());
-  if (!file) return invalid_input(uri_place, file.error().text());
+  Result<FileBytes> file = origin_.open(path.value(), uri_place);
+  if (!file) return file.error();
   if (file.value().bytes().size() < declared.byte_length)
     return invalid_input(uri_place, "the file has " + std::to_string(file.value().bytes().size()) +
                                         " bytes, but byteLength is " + std::to_string(declared.byte_length));

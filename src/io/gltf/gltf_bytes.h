@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/file.h"
+#include "chronormal/io/gltf_document.h"
+#include "io/bytes/file.h"
 #include "io/gltf/gltf_model.h"
 
 namespace chronormal::gltf {
@@ -36,6 +37,12 @@ struct Origin {
   std::optional<std::string> folder;    ///< of its files; nothing for standard input
   std::optional<std::string_view> bin;  ///< the BIN chunk
   bool allow_external = false;
+  FileResolver resolve = {};  ///< where its files come from; empty: the file system
+
+  /// The path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
+  [[nodiscard]] Result<std::string> path_of(std::string_view uri, const std::string& place) const;
+  /// Opens what path_of() found; place is for messages.
+  [[nodiscard]] Result<FileBytes> open(const std::string& path, const std::string& place) const;
 };
 
 class Bytes {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "chronormal/io/file.h"
+#include "io/bytes/file.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/gltf_bytes.h"
 #include "io/gltf/gltf_document_state.h"
@@ -73,7 +73,7 @@ bool GltfDocument::recognises(std::string_view first_bytes) noexcept {
 }
 
 Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptions& options) {
-  Result<FileBytes> file = FileBytes::open(path);
+  Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
   std::optional<std::string> folder;
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
@@ -91,7 +91,7 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
 
 Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
-  gltf::Origin origin{name, folder, std::nullopt, options.allow_external};
+  gltf::Origin origin{name, folder, std::nullopt, options.allow_external, options.resolve};
   GlbChunks chunks{bytes, 0, std::nullopt, {}};
   if (is_glb(bytes)) {
     Result<GlbChunks> found = read_glb(bytes, name);

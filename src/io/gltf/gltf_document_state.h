@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/file.h"
 #include "chronormal/io/gltf_document.h"
+#include "io/bytes/file.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/gltf_bytes.h"
 #include "io/gltf/gltf_model.h"

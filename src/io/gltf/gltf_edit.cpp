@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/file.h"
+#include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
 #include "io/gltf/gltf_document_state.h"
 #include "io/gltf/gltf_edit_arrays.h"

@@ -136,13 +136,13 @@ Status EditLayout::find_images() {
     if (!text || text->front() != '"') continue;
     const std::string uri = decode_json_string(*text);
     if (is_data_uri(uri)) continue;
-    const Result<std::string> path = resolve_file_uri(uri, origin.folder, origin.allow_external, place);
+    const Result<std::string> path = origin.path_of(uri, place);
     if (!path) {
       warnings_.push_back(path.error().text() + "; the image stays a reference to it");
       continue;
     }
-    Result<FileBytes> file = FileBytes::open(path.value());
-    if (!file) return invalid_input(place, file.error().text());
+    Result<FileBytes> file = origin.open(path.value(), place);
+    if (!file) return file.error();
     const std::string_view bytes = files_.emplace_back(std::move(file).value()).bytes();
     const char* const media_type = media_type_of(bytes);
     if (media_type == nullptr)

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/file.h"
+#include "io/bytes/file.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/gltf_bytes.h"
 #include "io/gltf/gltf_edit_arrays.h"

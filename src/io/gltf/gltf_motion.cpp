@@ -1,4 +1,4 @@
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -194,8 +194,8 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
     if (Status status = assembly.add_keyframe(1, target_name(document, k), same_for_all); !status)
       return status.error();
     weights[k] = 0;
-    assembly.motion().segments.push_back({0, k + 1});
   }
+  assembly.motion().connect_as_targets();
   return assembly.finish();
 }
 
@@ -214,8 +214,9 @@ class AnimationReader {
     measure();
     if (Status status = cut(); !status) return status.error();
     for (std::size_t piece = 0; piece + 1 < pieces_.size(); ++piece) {
-      if (Status status = add_segment(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
+      if (Status status = add_piece(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
     }
+    assembly_.motion().connect(MotionKind::kAnimation);
     return assembly_.finish();
   }
 
@@ -344,9 +345,9 @@ class AnimationReader {
     return weights;
   }
 
-  // A segment between two times, from the keyframe before it where the weights do not jump there.
-  Status add_segment(double from, double to) {
-    Motion& motion = assembly_.motion();
+  // The keyframes at both ends of a piece of time; the first is the one before it where the weights do not jump there.
+  Status add_piece(double from, double to) {
+    const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {
       std::vector<std::vector<double>> weights = weights_at(time, just_before);
       if (!just_before && !motion.keyframes.empty() && weights == last_weights_) continue;
@@ -354,7 +355,6 @@ class AnimationReader {
       const auto of_part = [&](std::size_t p) { return std::span<const double>(last_weights_[p]); };
       if (Status status = assembly_.add_keyframe(time, "", of_part); !status) return status;
     }
-    motion.segments.push_back({motion.keyframes.size() - 2, motion.keyframes.size() - 1});
     return Success{};
   }
 
@@ -374,10 +374,11 @@ class AnimationReader {
 
 }  // namespace
 
-Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const GltfMotion& motion) {
-  const auto corners = motion.motion.topology.corners();
+Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const Motion& motion,
+                                                    std::span<const GltfPart> parts) {
+  const auto corners = motion.topology.corners();
   std::vector<float> result;
-  for (const GltfPart& part : motion.parts) {
+  for (const GltfPart& part : parts) {
     const Result<GltfGeometry> geometry = document.geometry(part.mesh, part.primitive, {true, false});
     if (!geometry) return geometry.error();
     const std::vector<float>& normals = geometry.value().normals;

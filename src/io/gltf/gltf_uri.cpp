@@ -80,6 +80,13 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
   return in_folder == folder.end() && in_path != path.end();
 }
 
+Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place) {
+  const std::optional<std::string> relative = decode_percent(uri);
+  if (!relative || relative->empty()) return invalid_input(place, "the URI names no file");
+  if (has_scheme(uri)) return invalid_input(place, "only files beside the asset can be read, not other schemes");
+  return fs::path(*relative);
+}
+
 }  // namespace
 
 bool is_data_uri(std::string_view uri) noexcept { return uri.starts_with("data:"); }
@@ -106,10 +113,9 @@ Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, con
 
 Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                      bool allow_external, const std::string& place) {
-  const std::optional<std::string> relative = decode_percent(uri);
-  if (!relative || relative->empty()) return invalid_input(place, "the URI names no file");
-  const fs::path path_in_uri = *relative;
-  if (has_scheme(uri)) return invalid_input(place, "only files beside the asset can be read, not other schemes");
+  const Result<fs::path> relative = decode_file_uri(uri, place);
+  if (!relative) return relative.error();
+  const fs::path& path_in_uri = relative.value();
   if (!allow_external && !folder)
     return invalid_input(place,
                          "the asset came from standard input, so there is no folder for its files; "
@@ -129,6 +135,16 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
   if (!fs::is_regular_file(status))
     return invalid_input(place, std::string(path.string()).append(" is not a regular file"));
   return path.string();
+}
+
+Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
+                                  const std::string& place) {
+  const Result<fs::path> relative = decode_file_uri(uri, place);
+  if (!relative) return relative.error();
+  const fs::path path = relative.value().lexically_normal();
+  if (path.is_absolute() || *path.begin() == "..")
+    return invalid_input(place, "the URI leads out of the folder of the asset");
+  return (fs::path(folder.value_or("")) / path).string();
 }
 
 }  // namespace chronormal

@@ -27,6 +27,11 @@ namespace chronormal {
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
+/// The name of the file that a relative URI stands for, where files are found by their names and not in a file system:
+/// the folder and the URI as one path, without "." and "..". Errors: as above; what leads out of the folder, too.
+[[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
+                                                const std::string& place);
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_URI_H_

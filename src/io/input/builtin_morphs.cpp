@@ -181,8 +181,8 @@ Motion bumps() {
   for (std::size_t k = 0; k <= kTargets; ++k) {
     motion.keyframes.push_back(head(k));
     motion.keyframes.back().name = k == 0 ? "head" : std::string("bump_").append(std::to_string(k));
-    if (k > 0) motion.segments.push_back({0, k});
   }
+  motion.connect_as_targets();
   return motion;
 }
 

@@ -1,3 +1,4 @@
+// The files that inputs stand for, in order, and one mesh out of them.
 #include "io/input/input_files.h"
 
 #include <glob.h>
@@ -9,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/file.h"
-#include "io/mesh/mesh_readers.h"
+#include "io/bytes/file.h"
+#include "io/input/formats.h"
 
 namespace chronormal {
 namespace {
@@ -59,11 +60,11 @@ Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
 
 }  // namespace
 
-Result<std::vector<std::string>> find_input_files(std::span<const std::string> inputs,
-                                                  const FolderLister& list_folder) {
+Result<std::vector<std::string>> find_input_files(const InputOptions& options, const FolderLister& list_folder) {
+  if (options.resolve) return options.files;
   std::vector<std::string> files;
   bool has_stdin = false;
-  for (const std::string& input : inputs) {
+  for (const std::string& input : options.files) {
     if (input == "-") {
       if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input can be given only once"};
       has_stdin = true;
@@ -92,17 +93,36 @@ std::string file_name_of(const std::string& path) {
   return path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
 }
 
-Result<MeshFrame> read_mesh_file(const std::string& path, const std::string& place) {
-  const Result<FileBytes> file = FileBytes::open(path);
+Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path, const std::string& place,
+                                 ReadMotion& read) {
+  const Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) {
     Error error = file.error();
     error.place = place;
     return error;
   }
-  const std::string_view bytes = file.value().bytes();
-  const Result<const MeshReader*> reader = choose_mesh_reader(bytes, file_name_of(path));
-  if (!reader) return invalid_input(place, reader.error().message);
-  return reader.value()->read(bytes, place);
+  return read_next_mesh(options, file.value().bytes(), path, place, read);
+}
+
+Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes, const std::string& path,
+                                 const std::string& place, ReadMotion& read) {
+  const std::size_t k = read.motion.keyframes.size();
+  std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
+  // The normals of all keyframes count as far as every one so far had some.
+  const bool wanted =
+      k == 0 ? options.shading != KeepShading::kNone : options.shading == KeepShading::kAll && normals.size() == k;
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, wanted);
+  if (!mesh || !wanted) return mesh;
+  if (k == 0) {
+    const Format* const format = find_format(file_name_of(path), bytes);
+    if (format != nullptr && format->read_shaded_mesh != nullptr) read.shaded_by = path == "-" ? "<stdin>" : path;
+    read.group_of_face = std::move(mesh.value().group_of_face);
+  }
+  if (!mesh.value().normal_of_corner.empty())
+    normals.push_back(std::move(mesh.value().normal_of_corner));
+  else if (k > 0)
+    normals.resize(1);
+  return mesh;
 }
 
 Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,

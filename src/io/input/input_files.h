@@ -1,32 +1,46 @@
-/// The files that inputs stand for, and one mesh out of them: what sequences and targets share. Private to io.
+/// The files that inputs stand for, and one mesh out of them: what sequences, targets and caches share. Private to io.
 #ifndef CHRONORMAL_IO_INPUT_INPUT_FILES_H_
 #define CHRONORMAL_IO_INPUT_INPUT_FILES_H_
 
+#include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/input.h"
 #include "chronormal/motion/topology.h"
 #include "io/mesh/mesh_frame.h"
 
 namespace chronormal {
 
+/// A motion as it is read from files, and what they store beside it.
+struct ReadMotion {
+  Motion motion;
+  StoredNormals normals;
+  std::vector<std::uint32_t> group_of_face;
+  std::string shaded_by;  ///< as Input has it
+};
+
 /// Which files of a folder count, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
-/// The files that inputs stand for, as io/sequence.h describes them; folders are asked of list_folder. Does not open
-/// them. Errors: kFailed where nothing of that name exists or nothing matches a pattern; kUsage for "-" twice; those of
-/// list_folder. The place is the input.
-[[nodiscard]] Result<std::vector<std::string>> find_input_files(std::span<const std::string> inputs,
+/// The files that the options stand for, in order, as io/input.h describes them; folders are asked of list_folder. Does
+/// not open them. Errors: kFailed where nothing of that name exists or nothing matches a pattern; kUsage for "-" twice;
+/// those of list_folder. The place is the input.
+[[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
                                                                 const FolderLister& list_folder);
 
 /// The last part of a path; "<stdin>" for "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
 
-/// Opens and reads one mesh. The place of every error is `place`, or begins with it.
-[[nodiscard]] Result<MeshFrame> read_mesh_file(const std::string& path, const std::string& place);
+/// Opens and reads the mesh of the next keyframe of read, whose shading read takes where the options keep it. The place
+/// of every error is `place`, or begins with it.
+[[nodiscard]] Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path,
+                                               const std::string& place, ReadMotion& read);
+/// The same of bytes that are there.
+[[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
+                                               const std::string& path, const std::string& place, ReadMotion& read);
 
 /// Whether other has the vertex count and the faces of first, which messages call first_name.
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,

@@ -1,3 +1,4 @@
+// Morph targets over a base: meshes of its topology, and deltas.
 #include "io/input/targets.h"
 
 #include <algorithm>
@@ -7,23 +8,21 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/file.h"
 #include "chronormal/motion/motion.h"
 #include "io/bytes/extension.h"
-#include "io/input/input_files.h"
+#include "io/bytes/file.h"
+#include "io/input/formats.h"
 #include "io/mesh/make_human_target.h"
-#include "io/mesh/mesh_readers.h"
 
 namespace chronormal {
 namespace {
 
 namespace fs = std::filesystem;
 
-// What kind of target a file is by its name; empty for none.
-std::string_view format_of(const std::string& file_name) {
-  if (is_make_human_target(file_name)) return "target";
-  const MeshReader* const reader = find_mesh_reader(file_name);
-  return reader == nullptr ? std::string_view() : reader->name;
+// The format of a target, by the name of its file; nullptr for what is none.
+const Format* target_format(const std::string& file_name) {
+  const Format* const format = find_format(file_name);
+  return format != nullptr && (format->holds == Holds::kTarget || format->holds == Holds::kMesh) ? format : nullptr;
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
@@ -36,26 +35,27 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   std::error_code code;
   fs::recursive_directory_iterator entries(folder, code);
   std::vector<std::string> files;
-  std::string_view format;
+  const Format* format = nullptr;
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = entries->path().string(), name = entries->path().filename().string();
-    const std::string_view own_format = format_of(name);
+    const Format* const own = target_format(name);
     std::error_code ignored;  // a link to nowhere is no file
     if (name.starts_with('.')) {
       entries.disable_recursion_pending();
-    } else if (!own_format.empty() && !fs::is_directory(path, ignored) && !is_same_file(path, base)) {
-      if (!format.empty() && format != own_format)
-        return invalid_input(folder, "the folder has both " + std::string(format) + " and " + std::string(own_format) +
-                                         " files (" + files.back() + ", " + path +
+    } else if (own != nullptr && !fs::is_directory(path, ignored) && !is_same_file(path, base)) {
+      if (format != nullptr && format != own)
+        return invalid_input(folder, "the folder has both " + std::string(format->name) + " and " +
+                                         std::string(own->name) + " files (" + files.back() + ", " + path +
                                          "); name the targets by patterns or one by one");
-      format = own_format;
+      format = own;
       files.push_back(path);
     }
     entries.increment(code);
   }
   if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (files.empty())
-    return invalid_input(folder, "the folder has no targets (.target, .target.gz, .obj or .ply) besides the base");
+    return invalid_input(folder, "the folder has no targets (" + extensions_of({Holds::kMesh, Holds::kTarget}, " or ") +
+                                     ") besides the base");
   return files;
 }
 
@@ -69,8 +69,8 @@ std::string keyframe_name(const std::string& path) {
   return (is_packed_target ? stem.stem() : stem).string();
 }
 
-Result<std::vector<float>> read_deltas(const std::string& path, const Motion& motion) {
-  const Result<FileBytes> file = FileBytes::open(path);
+Result<std::vector<float>> read_deltas(const InputOptions& options, const std::string& path, const Motion& motion) {
+  const Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
   std::vector<float> positions = motion.keyframes.front().positions;
   const auto base = VectorView<const float>::packed(positions.data(), motion.topology.vertex_count());
@@ -83,47 +83,53 @@ Result<std::vector<float>> read_deltas(const std::string& path, const Motion& mo
   return positions;
 }
 
-Result<std::vector<float>> read_shape(const std::string& path, const Motion& motion) {
-  Result<MeshFrame> mesh = read_mesh_file(path, place_of(path));
+Result<std::vector<float>> read_shape(const InputOptions& options, const std::string& path, ReadMotion& read) {
+  Result<MeshFrame> mesh = read_mesh_file(options, path, place_of(path), read);
   if (!mesh) return mesh.error();
-  const Status status = check_same_topology(motion.topology, "the base", mesh.value().topology, place_of(path));
+  const Status status = check_same_topology(read.motion.topology, "the base", mesh.value().topology, place_of(path));
   if (!status) return status.error();
   return std::move(mesh).value().positions;
 }
 
 }  // namespace
 
-Result<Motion> read_targets(const std::string& base, std::span<const std::string> inputs,
-                            const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  if (base == "-" && std::find(inputs.begin(), inputs.end(), "-") != inputs.end())
+Result<ReadMotion> read_targets(const InputOptions& options) {
+  const std::string& base = options.base;
+  if (base == "-" && std::find(options.files.begin(), options.files.end(), "-") != options.files.end())
     return Error{ErrorCode::kUsage, "-", "the standard input can be given only once"};
   Result<std::vector<std::string>> found =
-      find_input_files(inputs, [&](const std::string& folder) { return list_targets(folder, base); });
+      find_input_files(options, [&](const std::string& folder) { return list_targets(folder, base); });
   if (!found) return found.error();
   std::vector<std::string> files = std::move(found).value();
-  files.erase(std::remove_if(files.begin(), files.end(), [&](const auto& file) { return is_same_file(file, base); }),
-              files.end());
+  std::erase_if(
+      files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
   if (files.empty()) return invalid_input(place_of(base), "there is no target besides the base itself");
 
+  // Normals are those of the base: hosts that show targets have none of theirs.
+  InputOptions of_base = options;
+  if (of_base.shading == KeepShading::kAll) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();
-  Result<MeshFrame> mesh = read_mesh_file(base, place_of(base));
+  ReadMotion read;
+  Motion& motion = read.motion;
+  Result<MeshFrame> mesh = read_mesh_file(of_base, base, place_of(base), read);
   if (!mesh) return mesh.error();
-  Motion motion;
   motion.keyframes.reserve(total);
   motion.topology = std::move(mesh.value().topology);
   motion.keyframes.push_back({std::move(mesh.value().positions), 0, keyframe_name(base)});
-  if (progress) progress(1, total);
+  if (options.progress) options.progress(1, total);
   for (std::size_t k = 1; k < total; ++k) {
     const std::string& path = files[k - 1];
-    Result<std::vector<float>> positions =
-        is_make_human_target(path) ? read_deltas(path, motion) : read_shape(path, motion);
+    const Format* const format = target_format(path);
+    Result<std::vector<float>> positions = format != nullptr && format->holds == Holds::kTarget
+                                               ? read_deltas(options, path, motion)
+                                               : read_shape(of_base, path, read);
     if (!positions) return positions.error();
     motion.keyframes.push_back({std::move(positions).value(), 1, keyframe_name(path)});
-    motion.segments.push_back({0, k});
-    if (progress) progress(1 + k, total);
+    if (options.progress) options.progress(1 + k, total);
   }
+  motion.connect_as_targets();
   if (Status status = validate(motion); !status) return status.error();
-  return motion;
+  return read;
 }
 
 }  // namespace chronormal

@@ -1,7 +1,8 @@
-/// One keyframe as it is read from one file of a sequence.
+/// One mesh as it is read from one file: a keyframe of a sequence, a target, or the faces of a cache.
 #ifndef CHRONORMAL_IO_MESH_MESH_FRAME_H_
 #define CHRONORMAL_IO_MESH_MESH_FRAME_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "chronormal/motion/topology.h"
@@ -12,6 +13,14 @@ namespace chronormal {
 struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
+
+  // How the file says that its mesh is to be shaded, where that is asked for.
+  /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none. Empty
+  /// where the file has no groups.
+  std::vector<std::uint32_t> group_of_face = {};
+  /// (corners, 3): the normal of each corner as the file has it, of any length, and (0, 0, 0) for a corner without one.
+  /// Empty where no corner of the file has a normal.
+  std::vector<float> normal_of_corner = {};
 };
 
 }  // namespace chronormal

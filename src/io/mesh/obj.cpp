@@ -123,7 +123,7 @@ Result<MeshFrame> ObjReader::read() {
   Result<Topology> topology = faces_.build(vertex_count());
   if (!topology) return error_in_line(last_line, topology.error().text());
   positions_.shrink_to_fit();
-  return MeshFrame{std::move(topology).value(), std::move(positions_)};
+  return MeshFrame{std::move(topology).value(), std::move(positions_), {}, {}};
 }
 
 // The current line, and those that continue it.
@@ -315,12 +315,11 @@ Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name) {
   return ObjReader(without_byte_order_mark(bytes), name, nullptr).read();
 }
 
-Result<ObjShading> read_obj_shading(std::string_view bytes, const std::string& name) {
+Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name) {
   Shading read;
   Result<MeshFrame> mesh = ObjReader(without_byte_order_mark(bytes), name, &read).read();
-  if (!mesh) return mesh.error();
-  ObjShading shading;
-  shading.topology = std::move(mesh.value().topology);
+  if (!mesh) return mesh;
+  MeshFrame& shading = mesh.value();
   if (read.has_groups) shading.group_of_face = std::move(read.group_of_face);
   if (read.has_normals) {
     shading.normal_of_corner.reserve(3 * read.normal_of_corner.size());
@@ -329,7 +328,7 @@ Result<ObjShading> read_obj_shading(std::string_view bytes, const std::string& n
         shading.normal_of_corner.push_back(index == 0 ? 0.0F : read.normals[3 * (std::size_t{index} - 1) + k]);
     }
   }
-  return shading;
+  return mesh;
 }
 
 std::string write_obj(const Topology& topology, VectorView<const float> positions) {

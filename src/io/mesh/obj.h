@@ -42,22 +42,11 @@ namespace chronormal {
 /// Cost: one pass; memory in proportion to the numbers that are there, whatever the indices say.
 [[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name);
 
-/// How a file says that its mesh is to be shaded.
-struct ObjShading {
-  Topology topology;  ///< that of read_obj()
-  /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none, and
-  /// before the first s. Empty where the file has no s.
-  std::vector<std::uint32_t> group_of_face;
-  /// (corners, 3): the normal of each corner as the file has it, of any length, and (0, 0, 0) for a corner without one.
-  /// Empty where no corner of the file has a normal.
-  std::vector<float> normal_of_corner;
-};
-
-/// Reads how the mesh of an OBJ file is shaded.
+/// Reads the mesh of an OBJ file and how it is shaded. Faces before the first s are in no smoothing group.
 ///
 /// Errors: those of read_obj(), and in the same way: vn that are not three finite numbers; a corner with the normal
 /// index 0, or one of no vn; s without a word after it.
-[[nodiscard]] Result<ObjShading> read_obj_shading(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name);
 
 /// Writes vertices and faces as the text of an OBJ file. Coordinates have the fewest digits that read back as the
 /// same float32. positions must have as many elements as the topology has vertices.

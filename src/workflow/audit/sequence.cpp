@@ -71,7 +71,7 @@ class SequenceSource {
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
     const Segment s = motion_.segment(segments_[segment]);
     const double time = t == 0 ? s.start_time : t == 1 ? s.end_time : (1 - t) * s.start_time + t * s.end_time;
-    return {std::nullopt, std::nullopt, output.vertex, segment, time};
+    return {std::nullopt, std::nullopt, output.vertex, segment, motion_.kind == MotionKind::kTargets ? t : time};
   }
 
  private:
@@ -176,7 +176,8 @@ Result<NormalGroups> groups_of(const Motion& motion, const StoredNormals& normal
 }
 
 // A sequence is one subject; each target is one.
-std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion, bool is_targets) {
+std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
+  const bool is_targets = motion.kind == MotionKind::kTargets;
   std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
   for (std::size_t s = 0; s < motion.segments.size(); ++s) subjects[is_targets ? s : 0].push_back(s);
   return subjects;
@@ -192,7 +193,7 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 
 }  // namespace
 
-Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_targets, const AuditOptions& options) {
+Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting;
@@ -219,7 +220,8 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, bool is_
   const auto progress = [&] {
     if (options.progress) options.progress(++done, motion.segments.size());
   };
-  for (const std::vector<std::size_t>& segments : segments_of_subjects(motion, is_targets)) {
+  const bool is_targets = motion.kind == MotionKind::kTargets;
+  for (const std::vector<std::size_t>& segments : segments_of_subjects(motion)) {
     AuditSubject subject;
     subject.kind = is_targets ? AuditSubject::Kind::kTarget : AuditSubject::Kind::kSequence;
     if (is_targets) {

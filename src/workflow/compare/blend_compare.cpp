@@ -1,4 +1,4 @@
-#include "chronormal/workflow/blend_compare.h"
+#include "chronormal/workflow/compare.h"
 
 #include <algorithm>
 #include <array>
@@ -364,7 +364,7 @@ std::string_view name_of(BlendDeltas deltas) noexcept { return kNames[static_cas
 Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options) {
   if (const Status status = check(options); !status) return status.error();
   if (!options.animation.empty()) return misuse("", "only a glTF file has animations");
-  if (!is_blend_shapes(star)) return misuse("", "the motion is a sequence: it has no targets to blend");
+  if (star.kind != MotionKind::kTargets) return misuse("", "the motion is a sequence: it has no targets to blend");
   Result<BlendSet> set = blend_set_of(star);
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();

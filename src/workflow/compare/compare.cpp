@@ -231,7 +231,8 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
                         all->count(),
                         motion.segments.size(),
                         options.samples,
-                        {}};
+                        {},
+                        motion.kind};
   const double elements = static_cast<double>(all->count() * motion.segments.size());
   const Quality& linear_quality = totals[linear].quality;
   for (std::size_t s = 0; s < rows.size(); ++s) {

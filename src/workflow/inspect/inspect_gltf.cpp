@@ -1,4 +1,4 @@
-#include "chronormal/workflow/inspect_gltf.h"
+#include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,11 +107,12 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
 
 }  // namespace
 
-Result<std::size_t> count_split_normals(const GltfDocument& document, const GltfMotion& motion) {
-  const Points points = weld_coincident(motion.motion);
+Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
+                                        std::span<const GltfPart> parts) {
+  const Points points = weld_coincident(motion);
   std::vector<std::optional<Vec3d>> first_normal(points.count);
   std::size_t split = 0;
-  for (const GltfPart& part : motion.parts) {
+  for (const GltfPart& part : parts) {
     if (!document.meshes()[part.mesh].primitives[part.primitive].has_normals) continue;
     const auto geometry = document.geometry(part.mesh, part.primitive, {.shading = true, .targets = false});
     if (!geometry) return geometry.error();

@@ -66,7 +66,8 @@ std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
 }  // namespace
 
 Status check_weights(const Motion& motion, std::span<const double> weights) {
-  if (!is_blend_shapes(motion)) return misuse("only blend shapes have weights; give times, where there is motion");
+  if (motion.kind != MotionKind::kTargets)
+    return misuse("only blend shapes have weights; give times, where there is motion");
   const std::size_t targets = motion.segments.size();
   if (weights.size() != targets)
     return misuse(std::string("a pose needs a weight for each target: there ") + (targets == 1 ? "is " : "are ") +

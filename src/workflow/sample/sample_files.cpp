@@ -1,12 +1,11 @@
-#include "chronormal/workflow/sample_files.h"
+#include "chronormal/workflow/sample.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <utility>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/sequence.h"
+#include "chronormal/io/output.h"
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"

@@ -25,7 +25,6 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/normal_groups.h"
 

@@ -1,4 +1,4 @@
-#include "chronormal/io/file.h"
+#include "io/bytes/file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/io/output.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::file_test {
@@ -92,6 +93,18 @@ TEST(FileBytes, pipe_and_standard_input_are_read_to_the_end) {
 
 TEST(FileBytes, file_of_unknown_size_is_read_to_the_end) {
   EXPECT_NE(FileBytes::open("/proc/self/status").value().bytes().find("Pid:"), std::string_view::npos);
+}
+
+TEST(FileBytes, bytes_in_memory_are_found_by_their_names_and_not_copied) {
+  const std::string bytes = "some";
+  const auto resolve = [&](const std::string& name) -> Result<std::string_view> {
+    if (name == "a") return std::string_view(bytes);
+    return Error{ErrorCode::kFailed, name, "there is none of this name"};
+  };
+  const Result<FileBytes> file = FileBytes::open("a", resolve);
+  ASSERT_TRUE(file.ok());
+  EXPECT_EQ(file.value().bytes().data(), bytes.data());
+  EXPECT_EQ(FileBytes::open("b", resolve).error().text(), "b: there is none of this name");
 }
 
 TEST(FileBytes, missing_file_and_folder_are_errors_with_the_path) {

@@ -299,6 +299,43 @@ RC_GTEST_PROP(WriteNpz, what_was_written_reads_back_bit_for_bit, ()) {
   }
 }
 
+// Arrays as NumPy writes a string: '<U7' of four bytes a character, or '|S9'.
+std::string text_array(const std::string& type, const std::string& text, std::size_t bytes_per_character) {
+  std::string data;
+  for (const char c : text) data += c + std::string(bytes_per_character - 1, '\0');
+  return npy(npy_header(type, "()"), data);
+}
+
+TEST(ReadNpz, kind_is_a_string_of_numpy) {
+  const auto with_kind = [](const std::string& kind) {
+    return test::zip({{"positions.npy", kPositions}, {"faces.npy", kFaces}, {"kind.npy", kind}});
+  };
+  const Motion targets = read_good(with_kind(text_array("<U7", "targets", 4)));
+  EXPECT_EQ(targets.kind, MotionKind::kTargets);
+  EXPECT_EQ(targets.segment(0).end_time, 1);
+  EXPECT_EQ(targets.keyframes[1].name, "target 0");
+  EXPECT_EQ(read_good(with_kind(text_array("|S9", "animation", 1))).kind, MotionKind::kAnimation);
+  EXPECT_EQ(read_good(with_kind(text_array("|S9", "sequence"s + '\0', 1))).kind, MotionKind::kSequence);
+  EXPECT_EQ(error_of(with_kind(text_array("<U4", "star", 4))),
+            "walk.npz, kind: it must be sequence, targets or animation, but is 'star'");
+  EXPECT_EQ(error_of(with_kind(npy(npy_header("<i4", "()"), raw<std::int32_t>({1})))),
+            "walk.npz, kind: this must be one text, but it is () of '<i4'");
+  EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))), "walk.npz, kind: the text is not ASCII");
+  EXPECT_FALSE(error_of(with_kind(npy(npy_header("<U7", "()"), "targets"))).empty());
+}
+
+TEST(WriteNpz, what_is_no_sequence_says_so_and_targets_have_no_times) {
+  Motion motion = test::turning_motion(0, 1);
+  motion.connect_as_targets();
+  const std::string bytes = write_npz(motion).value();
+  EXPECT_EQ(bytes.find("times.npy"), std::string::npos);
+  const std::string array = text_array("<U7", "targets", 4);
+  EXPECT_NE(bytes.find(array.substr(array.size() - 28)), std::string::npos);
+  EXPECT_EQ(read_npz(bytes, "back.npz").value().kind, MotionKind::kTargets);
+  motion.segments.clear();
+  EXPECT_EQ(write_npz(motion).error().code, ErrorCode::kUsage);
+}
+
 TEST(WriteNpz, refuses_faces_of_different_numbers_of_corners) {
   Motion motion = test::turning_motion(0, 1);
   motion.topology = Topology::polygons(3, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 1}).value();

@@ -78,7 +78,7 @@ TEST(WritePc2, refuses_what_the_format_can_not_hold) {
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
   EXPECT_NE(bytes.error().message.find("keyframe 1 is not at one"), std::string::npos) << bytes.error().message;
-  motion.segments = {{0, 1}, {0, 2}};  // blend shapes
+  motion.connect_as_targets();
   bytes = write_pc2(motion);
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/motion_files.h"
+#include "io/bytes/file.h"
 #include "io/cache/maya_cache.h"
 #include "io/cache/pc2.h"
 #include "io/mesh/obj.h"
+#include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::real_caches_test {
@@ -37,11 +37,11 @@ class RealCaches : public ::testing::Test {
     const test::TemporaryFolder temporary;
     const std::string mesh = temporary.write("mesh.obj", obj + "f 1 2 3\n");
     const std::string xml = (data_ / "caches" / folder / "cache.xml").string();
-    const Result<Motion> ambiguous = read_motion(std::vector{mesh, xml}, {});
+    const Result<Motion> ambiguous = test::read_motion(test::files({mesh, xml}));
     ASSERT_FALSE(ambiguous.ok());  // both channels have 36 points
     EXPECT_NE(ambiguous.error().message.find("'pCubeShape1' (36), 'pCubeShape2' (36)"), std::string::npos);
     for (const char* const channel : {"#pCubeShape1", "#pCubeShape2"}) {
-      const Result<Motion> motion = read_motion(std::vector{mesh, xml + channel}, {});
+      const Result<Motion> motion = test::read_motion(test::files({mesh, xml + channel}));
       ASSERT_TRUE(motion.ok()) << motion.error().text();
       EXPECT_EQ(motion.value().keyframes.size(), samples);
       EXPECT_NEAR(motion.value().keyframes.front().time, first / 24, 1e-15);
@@ -122,13 +122,13 @@ TEST_F(RealCaches, pc2_of_3ds_max_is_read_and_fits_its_mesh_through_the_permutat
   }
   EXPECT_LT(std::min(worst_sum, worst_difference), 2e-4) << worst_sum << " " << worst_difference;
 
-  const Result<Motion> motion =
-      read_motion(std::vector{(folder / "max_cache_box.pc2").string(), (folder / "max_cache_box_44.obj").string()}, {});
+  const Result<Motion> motion = test::read_motion(
+      test::files({(folder / "max_cache_box.pc2").string(), (folder / "max_cache_box_44.obj").string()}));
   EXPECT_TRUE(motion.ok()) << motion.error().text();
 }
 
 TEST_F(RealCaches, md2_model_is_read_and_its_faces_point_outwards) {
-  const Result<Motion> result = read_motion(std::vector{(data_ / "sequences/md2_faerie/faerie.md2").string()}, {});
+  const Result<Motion> result = test::read_motion(test::files({(data_ / "sequences/md2_faerie/faerie.md2").string()}));
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value();
   EXPECT_EQ(motion.topology.vertex_count(), 366U);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_compressed.h"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 

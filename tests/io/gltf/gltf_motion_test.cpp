@@ -1,5 +1,5 @@
 // Targets and animations as motions.
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 
 #include <gtest/gtest.h>
 

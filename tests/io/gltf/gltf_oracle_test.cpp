@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 
 namespace chronormal::gltf_oracle_test {
 namespace {

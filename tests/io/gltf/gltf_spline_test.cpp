@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/gltf_motion.h"
+#include "io/gltf/gltf_motion.h"
 #include "chronormal/motion/motion.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"

@@ -8,14 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/file.h"
-#include "chronormal/io/sequence.h"
-#include "io/mesh/mesh_readers.h"
+#include "io/bytes/file.h"
+#include "io/input/formats.h"
+#include "tests/support/read_input.h"
 
 namespace chronormal::real_data_test {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool is_mesh(const fs::path& path) {
+  const Format* const format = find_format(path.string());
+  return format != nullptr && format->holds == Holds::kMesh;
+}
 
 class RealData : public ::testing::Test {
  protected:
@@ -28,7 +33,7 @@ class RealData : public ::testing::Test {
   [[nodiscard]] std::vector<fs::path> meshes_under(const std::string& folder) const {
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_ / folder)) {
-      if (entry.is_regular_file() && find_mesh_reader(entry.path().string()) != nullptr) files.push_back(entry.path());
+      if (entry.is_regular_file() && is_mesh(entry.path())) files.push_back(entry.path());
     }
     EXPECT_FALSE(files.empty()) << data_ / folder;
     return files;
@@ -37,7 +42,8 @@ class RealData : public ::testing::Test {
   static Result<MeshFrame> read(const fs::path& path) {
     const Result<FileBytes> file = FileBytes::open(path.string());
     if (!file) return file.error();
-    return read_mesh(file.value().bytes(), path.filename().string());
+    const std::string name = path.filename().string();
+    return read_mesh(file.value().bytes(), name, name);
   }
 
   fs::path data_;
@@ -53,12 +59,12 @@ TEST_F(RealData, meshes_of_other_programs_are_read) {
 }
 
 TEST_F(RealData, sequences_of_other_programs_are_motions) {
-  const Result<Motion> rumba = read_sequence(std::vector{(data_ / "sequences/rumba_13").string()}, {});
+  const Result<Motion> rumba = test::read_motion(test::files({(data_ / "sequences/rumba_13").string()}));
   ASSERT_TRUE(rumba.ok()) << rumba.error().text();
   EXPECT_EQ(rumba.value().topology.vertex_count(), 12811U);
   EXPECT_EQ(rumba.value().topology.face_count(), 25472U);
   EXPECT_EQ(rumba.value().keyframes.size(), 13U);
-  const Result<Motion> cloth = read_sequence(std::vector{(data_ / "sequences/thick_cloth/*.ply").string()}, {});
+  const Result<Motion> cloth = test::read_motion(test::files({(data_ / "sequences/thick_cloth/*.ply").string()}));
   ASSERT_TRUE(cloth.ok()) << cloth.error().text();
   EXPECT_EQ(cloth.value().topology.vertex_count(), 233U);
   EXPECT_EQ(cloth.value().topology.face_count(), 404U);

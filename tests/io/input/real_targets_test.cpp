@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
-#include "io/input/targets.h"
+#include "tests/support/read_input.h"
 
 namespace chronormal::real_targets_test {
 namespace {
@@ -52,7 +52,8 @@ TEST(RealTargets, face_and_all_its_targets_are_one_star_of_base_plus_deltas) {
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
   const fs::path face = fs::path(data) / "face_mpfb2";
-  const Result<Motion> result = read_targets((face / "base.obj").string(), std::vector{(face / "targets").string()});
+  const Result<Motion> result =
+      test::read_motion(test::targets_over((face / "base.obj").string(), {(face / "targets").string()}));
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value();
   EXPECT_TRUE(validate(motion).ok());

@@ -1,4 +1,4 @@
-#include "chronormal/io/sequence.h"
+#include "io/input/sequence.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/file.h"
+#include "chronormal/io/output.h"
 #include "chronormal/motion/motion.h"
 #include "io/mesh/ply.h"
 #include "tests/support/ply_bytes.h"
+#include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::sequence_test {
@@ -41,7 +42,12 @@ Names names_of(const Result<Names>& files) {
 }
 
 Result<Motion> read(const Names& inputs, double frames_per_second = 1) {
-  return read_sequence(inputs, SequenceOptions{frames_per_second});
+  InputOptions options = test::files(inputs, frames_per_second);
+  const Result<Names> files = find_frames(options);
+  if (!files) return files.error();
+  Result<ReadMotion> read = read_sequence(files.value(), options);
+  if (!read) return read.error();
+  return std::move(read).value().motion;
 }
 
 TEST(FindFrames, folder_and_pattern_are_sorted_by_number) {
@@ -57,39 +63,39 @@ TEST(FindFrames, folder_and_pattern_are_sorted_by_number) {
                           "f_10.obj",
                           "f_99999999999999999999.obj",
                           "f_100000000000000000000.obj"};
-  EXPECT_EQ(names_of(find_frames(Names{folder.path()})), expected);
-  EXPECT_EQ(names_of(find_frames(Names{folder.path() + "/"})), expected);
-  EXPECT_EQ(names_of(find_frames(Names{folder / "f_[0-9]*.obj"})),
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder.path()}))), expected);
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder.path() + "/"}))), expected);
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "f_[0-9]*.obj"}))),
             (Names{"f_02.obj", "f_2.obj", "f_2b.obj", "f_10.obj", "f_99999999999999999999.obj",
                    "f_100000000000000000000.obj"}));
-  EXPECT_EQ(names_of(find_frames(Names{folder / "f_?.obj"})), (Names{"f_2.obj"}));
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "f_?.obj"}))), (Names{"f_2.obj"}));
 }
 
 TEST(FindFrames, listed_files_keep_their_order_and_may_come_twice) {
   const TemporaryFolder folder;
   const std::string a = folder.write("a_1.obj", ""), b = folder.write("a_2.obj", "");
-  EXPECT_EQ(names_of(find_frames(Names{b, a, b})), (Names{"a_2.obj", "a_1.obj", "a_2.obj"}));
-  EXPECT_EQ(names_of(find_frames(Names{b, "-"})), (Names{"a_2.obj", "-"}));
+  EXPECT_EQ(names_of(find_frames(test::files(Names{b, a, b}))), (Names{"a_2.obj", "a_1.obj", "a_2.obj"}));
+  EXPECT_EQ(names_of(find_frames(test::files(Names{b, "-"}))), (Names{"a_2.obj", "-"}));
 }
 
 TEST(FindFrames, file_whose_name_looks_like_a_pattern_is_a_file) {
   const TemporaryFolder folder;
   folder.write("a1.obj", "");
-  EXPECT_EQ(names_of(find_frames(Names{folder / "a[1].obj"})), (Names{"a1.obj"}));
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a[1].obj"}))), (Names{"a1.obj"}));
   folder.write("a[1].obj", "");
-  EXPECT_EQ(names_of(find_frames(Names{folder / "a[1].obj"})), (Names{"a[1].obj"}));
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a[1].obj"}))), (Names{"a[1].obj"}));
 }
 
 TEST(FindFrames, what_is_not_there_is_an_error_with_its_name) {
   const TemporaryFolder folder;
-  const Error missing = error_of(find_frames(Names{folder / "no.obj"}));
+  const Error missing = error_of(find_frames(test::files(Names{folder / "no.obj"})));
   EXPECT_EQ(missing.code, ErrorCode::kFailed);
   EXPECT_EQ(missing.text(), folder / "no.obj" + ": No such file or directory");
-  const Error unmatched = error_of(find_frames(Names{folder / "no_*.obj"}));
+  const Error unmatched = error_of(find_frames(test::files(Names{folder / "no_*.obj"})));
   EXPECT_EQ(unmatched.code, ErrorCode::kFailed);
   EXPECT_EQ(unmatched.text(), folder / "no_*.obj" + ": no file of this name, and none that matches it");
-  EXPECT_EQ(error_of(find_frames(Names{"-", "-"})).code, ErrorCode::kUsage);
-  const Error empty = error_of(find_frames(Names{folder.path()}));
+  EXPECT_EQ(error_of(find_frames(test::files(Names{"-", "-"}))).code, ErrorCode::kUsage);
+  const Error empty = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(empty.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(empty.text(), folder.path() + ": the folder has no mesh files (.obj or .ply)");
 }
@@ -98,7 +104,7 @@ TEST(FindFrames, folder_of_two_formats_is_an_error_that_says_what_to_do) {
   const TemporaryFolder folder;
   folder.write("a.obj", "");
   folder.write("a.ply", "");
-  const Error error = error_of(find_frames(Names{folder.path()}));
+  const Error error = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(error.place, folder.path());
   EXPECT_NE(error.message.find("use a pattern such as '" + folder / "*."), std::string::npos) << error.message;
@@ -108,10 +114,11 @@ TEST(ReadSequence, frames_become_keyframes_with_names_and_times) {
   const TemporaryFolder folder;
   for (const int k : {1, 2, 10}) folder.write("w_" + std::to_string(k) + ".obj", obj(k));
   Names steps;
-  const Result<Motion> motion =
-      read_sequence(Names{folder.path()}, SequenceOptions{4}, [&](std::size_t done, std::size_t total) {
-        steps.push_back(std::to_string(done) + "/" + std::to_string(total));
-      });
+  InputOptions options = test::files({folder.path()}, 4);
+  options.progress = [&](std::size_t done, std::size_t total) {
+    steps.push_back(std::to_string(done) + "/" + std::to_string(total));
+  };
+  const Result<Motion> motion = test::read_motion(options);
   ASSERT_TRUE(motion.ok()) << motion.error().text();
   ASSERT_EQ(motion.value().keyframes.size(), 3U);
   EXPECT_EQ(motion.value().segments.size(), 2U);
@@ -183,7 +190,7 @@ TEST(ReadSequence, frame_rate_must_be_finite_and_positive) {
   const std::string a = folder.write("a.obj", obj(0));
   for (const double rate :
        {0.0, -1.0, 1e-320, 1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_EQ(error_of(read({a, a}, rate)).code, ErrorCode::kUsage);
+    EXPECT_EQ(error_of(test::read_motion(test::files({a, a}, rate))).code, ErrorCode::kUsage);
 }
 
 Motion three_frames() {
@@ -197,7 +204,7 @@ TEST(WriteSequence, what_was_written_reads_back) {
   const Motion motion = three_frames();
   for (const std::string extension : {".obj", ".ply", ".PLY"}) {
     const TemporaryFolder folder;
-    const Status status = write_sequence(motion, folder / "w_%03d" + extension, false);
+    const Status status = write_motion(motion, folder / "w_%03d" + extension, false);
     ASSERT_TRUE(status.ok()) << status.error().text();
     EXPECT_EQ(folder.entry_count(), 3U);
     const Result<Motion> back = read({folder.path()});
@@ -213,7 +220,7 @@ TEST(WriteSequence, pattern_of_another_form_is_a_usage_error) {
   const Motion motion = three_frames();
   for (const char* const name : {"w.obj", "w_%d.stl", "w_%d", "w_%d_%d.obj", "w_%3d.obj", "w_%0d.obj", "w_%00d.obj",
                                  "w_%s.obj", "w_%.obj", "w_%%.obj", "w_%0123d.obj", "%d/w.obj"})
-    EXPECT_EQ(error_of(write_sequence(motion, folder / name, false)).code, ErrorCode::kUsage) << name;
+    EXPECT_EQ(error_of(write_motion(motion, folder / name, false)).code, ErrorCode::kUsage) << name;
   EXPECT_EQ(folder.entry_count(), 0U);
 }
 
@@ -221,7 +228,7 @@ TEST(WriteSequence, one_keyframe_needs_no_number) {
   const TemporaryFolder folder;
   Motion motion = three_frames();
   motion.keyframes.resize(1);
-  EXPECT_TRUE(write_sequence(motion, folder / "w.obj", false).ok());
+  EXPECT_TRUE(write_motion(motion, folder / "w.obj", false).ok());
   EXPECT_EQ(test::read_whole(folder / "w.obj"), obj(0));
 }
 
@@ -229,11 +236,11 @@ TEST(WriteSequence, one_file_that_exists_keeps_all_from_being_written) {
   const TemporaryFolder folder;
   const Motion motion = three_frames();
   folder.write("w_2.obj", "old");
-  const Error error = error_of(write_sequence(motion, folder / "w_%d.obj", false));
+  const Error error = error_of(write_motion(motion, folder / "w_%d.obj", false));
   EXPECT_EQ(error.code, ErrorCode::kFailed);
   EXPECT_EQ(error.place, folder / "w_2.obj");
   EXPECT_EQ(folder.entry_count(), 1U);
-  EXPECT_TRUE(write_sequence(motion, folder / "w_%d.obj", true).ok());
+  EXPECT_TRUE(write_motion(motion, folder / "w_%d.obj", true).ok());
   EXPECT_EQ(test::read_whole(folder / "w_2.obj"), obj(2));
 }
 

@@ -1,13 +1,14 @@
-#include "io/input/targets.h"
-
+// Morph targets over a base, through the one door.
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chronormal/motion/motion.h"
+#include "tests/support/read_input.h"
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,9 +38,16 @@ Names names_of(const Result<Motion>& motion) {
   return names;
 }
 
+Result<Motion> read_over(const std::string& base, const Names& inputs,
+                         const std::function<void(std::size_t done, std::size_t total)>& progress = {}) {
+  InputOptions options = test::targets_over(base, inputs);
+  options.progress = progress;
+  return test::read_motion(options);
+}
+
 class Targets : public ::testing::Test {
  protected:
-  [[nodiscard]] Result<Motion> read(const Names& inputs) const { return read_targets(base_, inputs); }
+  [[nodiscard]] Result<Motion> read(const Names& inputs) const { return read_over(base_, inputs); }
   void make_folder(const std::string& name) const { std::filesystem::create_directories(folder_ / name); }
 
   TemporaryFolder folder_;
@@ -50,10 +58,9 @@ TEST_F(Targets, are_a_star_from_the_base_with_names_and_times) {
   const std::string lift = folder_.write("lift.target", kLift), packed = folder_.write("packed.target.gz", gzip(kLift)),
                     raised = folder_.write("raised.v2.obj", kRaisedObj);
   Names steps;
-  const Result<Motion> result =
-      read_targets(base_, Names{raised, lift, packed}, [&](std::size_t done, std::size_t total) {
-        steps.push_back(std::to_string(done) + "/" + std::to_string(total));
-      });
+  const Result<Motion> result = read_over(base_, Names{raised, lift, packed}, [&](std::size_t done, std::size_t total) {
+    steps.push_back(std::to_string(done) + "/" + std::to_string(total));
+  });
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value();
   EXPECT_TRUE(validate(motion).ok());
@@ -111,7 +118,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   EXPECT_EQ(names_of(read({folder_.path()})), expected);
   EXPECT_EQ(names_of(read({folder_ / "*.obj"})), expected);
   EXPECT_EQ(names_of(read({base_, folder_ / "smile.obj"})), expected);
-  EXPECT_EQ(names_of(read_targets(folder_ / "./base.obj", Names{folder_.path()})), expected);
+  EXPECT_EQ(names_of(read_over(folder_ / "./base.obj", Names{folder_.path()})), expected);
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(alone.text(), base_ + ": there is no target besides the base itself");
@@ -119,7 +126,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);
   folder_.write("mh/lift.target", kLift);
-  EXPECT_EQ(names_of(read_targets(base, Names{folder_ / "mh"})), (Names{"base", "lift"}));
+  EXPECT_EQ(names_of(read_over(base, Names{folder_ / "mh"})), (Names{"base", "lift"}));
 }
 
 TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
@@ -127,7 +134,7 @@ TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
   const Error none = error_of(read({folder_ / "t"}));
   EXPECT_EQ(none.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(none.text(),
-            folder_ / "t" + ": the folder has no targets (.target, .target.gz, .obj or .ply) besides the base");
+            folder_ / "t" + ": the folder has no targets (.obj, .ply, .target or .target.gz) besides the base");
   folder_.write("t/a.obj", kRaisedObj);
   folder_.write("t/in/b.target", kLift);
   const Error both = error_of(read({folder_ / "t"}));
@@ -157,13 +164,13 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
   EXPECT_EQ(missing.code, ErrorCode::kFailed);
   EXPECT_TRUE(missing.text().starts_with(folder_ / "no.target")) << missing.text();
   const std::string lift = folder_.write("lift.target", kLift);
-  const Error no_base = error_of(read_targets(folder_ / "no.obj", Names{lift}));
+  const Error no_base = error_of(read_over(folder_ / "no.obj", Names{lift}));
   EXPECT_EQ(no_base.code, ErrorCode::kFailed);
   EXPECT_EQ(no_base.place, folder_ / "no.obj");
-  const Error bad_base = error_of(read_targets(lift, Names{base_}));
+  const Error bad_base = error_of(read_over(lift, Names{base_}));
   EXPECT_EQ(bad_base.place, lift);
-  EXPECT_EQ(error_of(read_targets("-", Names{"-"})).code, ErrorCode::kUsage);
-  EXPECT_EQ(error_of(read({})).code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(error_of(read_over("-", Names{"-"})).code, ErrorCode::kUsage);
+  EXPECT_EQ(error_of(read({})).code, ErrorCode::kUsage);
 }
 
 }  // namespace

@@ -170,8 +170,8 @@ TEST(WriteObj, writes_the_fewest_digits) {
   EXPECT_EQ(write_obj(frame.topology, test::positions_of(frame)), "v 0.1 -0 1e+20\nv 1 2 3\nv 4 5 16777216\nf 3 1 2\n");
 }
 
-ObjShading shading_of(const std::string& bytes) {
-  Result<ObjShading> result = read_obj_shading(bytes, "walk.obj");
+MeshFrame shading_of(const std::string& bytes) {
+  Result<MeshFrame> result = read_obj_shading(bytes, "walk.obj");
   if (!result) {
     ADD_FAILURE() << result.error().text();
     return {};
@@ -180,14 +180,14 @@ ObjShading shading_of(const std::string& bytes) {
 }
 
 std::string shading_error_of(const std::string& bytes) {
-  const Result<ObjShading> result = read_obj_shading(bytes, "walk.obj");
+  const Result<MeshFrame> result = read_obj_shading(bytes, "walk.obj");
   if (result) return "no error";
   EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
   return result.error().text();
 }
 
 TEST(ReadObjShading, groups_are_numbered_as_the_file_names_them) {
-  const ObjShading shading = shading_of(
+  const MeshFrame shading = shading_of(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ns 4\nf 1 2 3\nf 1 2 3\ns off\nf 1 2 3\ns fur # no dog\nf 1 2 3\ns 04\n"
       "f 1 2 3\ns 0\nf 1 2 3\ns 4x\nf 1 2 3\n");
   EXPECT_EQ(shading.group_of_face, (Corners{0, 1, 1, 0, 2, 1, 0, 3}));
@@ -205,7 +205,7 @@ TEST(ReadObjShading, normals_are_those_of_the_corners) {
 }
 
 TEST(ReadObjShading, is_empty_where_the_file_says_nothing) {
-  const ObjShading shading = shading_of(std::string("vn 0 0 1\nvt 0 0\n") + kTriangle);
+  const MeshFrame shading = shading_of(std::string("vn 0 0 1\nvt 0 0\n") + kTriangle);
   EXPECT_TRUE(shading.group_of_face.empty());
   EXPECT_TRUE(shading.normal_of_corner.empty());
   EXPECT_EQ(shading.topology, read_good(kTriangle).topology);
@@ -242,7 +242,7 @@ TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {
   std::size_t good = 0, refused = 0;
   for (int round = 0; round < 5000; ++round) {
     const std::string bytes = test::with_random_edits(whole, random);
-    const Result<ObjShading> shading = read_obj_shading(bytes, "walk.obj");
+    const Result<MeshFrame> shading = read_obj_shading(bytes, "walk.obj");
     const Result<MeshFrame> mesh = read_obj(bytes, "walk.obj");
     if (!shading) {
       EXPECT_TRUE(shading.error().place.starts_with("walk.obj, line ")) << shading.error().text();
@@ -251,8 +251,9 @@ TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {
     }
     ++good;
     ASSERT_TRUE(mesh.ok()) << bytes;
-    const auto& [topology, groups, normals] = shading.value();
+    const auto& [topology, positions, groups, normals] = shading.value();
     EXPECT_EQ(topology, mesh.value().topology);
+    EXPECT_EQ(positions, mesh.value().positions);
     EXPECT_TRUE(groups.empty() || groups.size() == topology.face_count());
     EXPECT_TRUE(normals.empty() || normals.size() == 3 * topology.corner_count());
     for (const float component : normals) EXPECT_TRUE(std::isfinite(component));
@@ -268,7 +269,7 @@ TEST(WriteObj, normals_read_back_corner_by_corner) {
   const std::string text = write_obj(frame.topology, test::positions_of(frame),
                                      VectorView<const float>::packed(normals.data(), 2), of_corner);
   EXPECT_TRUE(text.ends_with("v 0 1 0\nvn 0 0 1\nvn 0 0.6 0.8\nf 1//1 2//2 3//1\nf 1//2 2//2 3//1 4//1\n")) << text;
-  const ObjShading back = shading_of(text);
+  const MeshFrame back = shading_of(text);
   EXPECT_EQ(back.topology, frame.topology);
   for (std::size_t c = 0; c < of_corner.size(); ++c) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(back.normal_of_corner.at(3 * c + k), normals[3 * of_corner[c] + k]);

@@ -18,11 +18,11 @@
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "io/input/targets.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/blend_oracle.h"
+#include "tests/support/read_input.h"
 
 namespace chronormal::blend_normals_test {
 namespace {
@@ -506,7 +506,8 @@ class RealBlendNormals : public ::testing::Test {
   [[nodiscard]] BlendSet face() const {
     const fs::path folder = fs::path(data_) / "face_mpfb2";
     return blend_set_of(
-               read_targets((folder / "base.obj").string(), std::vector{(folder / "targets").string()}).value())
+               test::read_motion(test::targets_over((folder / "base.obj").string(), {(folder / "targets").string()}))
+                   .value())
         .value();
   }
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/file.h"
+#include "io/bytes/file.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "io/mesh/obj.h"

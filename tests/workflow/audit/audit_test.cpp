@@ -524,7 +524,7 @@ Motion turning() {
 std::vector<float> thrice(float x, float y, float z) { return {x, y, z, x, y, z, x, y, z}; }
 
 Audit audit_of(const Motion& motion, const StoredNormals& normals, const AuditOptions& options = {}) {
-  Result<Audit> result = audit(motion, normals, false, options);
+  Result<Audit> result = audit(motion, normals, options);
   EXPECT_TRUE(result.ok()) << result.error().text();
   return std::move(result).value();
 }
@@ -591,9 +591,9 @@ TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
 
 TEST(Audit, targets_of_a_base_are_subjects_of_their_own) {
   Motion motion = turning();
-  motion.segments = {{0, 1}, {0, 2}};
+  motion.connect_as_targets();
   motion.keyframes[1].name = "up";
-  const Result<Audit> result = audit(motion, {}, true, {});
+  const Result<Audit> result = audit(motion, {}, {});
   ASSERT_TRUE(result.ok());
   ASSERT_EQ(result.value().subjects.size(), 2U);
   EXPECT_EQ(result.value().subjects[0].name, "up");
@@ -603,7 +603,7 @@ TEST(Audit, targets_of_a_base_are_subjects_of_their_own) {
 
 TEST(Audit, sequences_refuse_what_does_not_fit) {
   const auto code = [](const StoredNormals& normals, const AuditOptions& options) {
-    const Result<Audit> result = audit(turning(), normals, false, options);
+    const Result<Audit> result = audit(turning(), normals, options);
     return result.ok() ? std::string() : result.error().text();
   };
   EXPECT_NE(code({}, {.rule = AuditRule::kGltf}), "");

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_motion.h"
-#include "chronormal/io/motion_files.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/workflow/bake.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/read_input.h"
 #include "tests/support/reference.h"
 #include "tests/support/shown_glb.h"
 
@@ -552,9 +552,7 @@ TEST(BakeSequence, real_sequences_are_exact) {
       {(folder / "caches/max_cache_box/max_cache_box_44.obj").string(),
        (folder / "caches/max_cache_box/max_cache_box.pc2").string()}};
   for (const auto& input : inputs) {
-    MotionOptions options;
-    options.frames_per_second = 24;
-    const Result<Motion> motion = read_motion(input, options);
+    const Result<Motion> motion = test::read_motion(test::files(input, 24));
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     SequenceBake baked;
     const std::string file = bake(motion.value(), {}, &baked);

@@ -1,4 +1,4 @@
-#include "chronormal/workflow/blend_compare.h"
+#include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include "analysis/blend_quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/io/builtin_morphs.h"
-#include "io/input/targets.h"
 #include "tests/support/blend_oracle.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/read_input.h"
 #include "tests/support/shaded_mesh.h"
 
 namespace chronormal::blend_compare_test {
@@ -105,8 +105,8 @@ Motion star_of(const BlendSet& set) {
     const BlendTarget& target = set.targets[k];
     for (std::size_t i = 0; i < target.deltas.size(); ++i)
       motion.keyframes.back().positions[3 * std::size_t{target.vertices[i / 3]} + i % 3] += target.deltas[i];
-    motion.segments.push_back({0, k + 1});
   }
+  motion.connect_as_targets();
   return motion;
 }
 
@@ -438,7 +438,7 @@ TEST(BlendCompare, face_by_other_people_is_off_by_tens_of_degrees_with_end_point
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
   const std::string folder = std::string(data) + "/face_mpfb2/", targets = folder + "targets/";
-  const Result<Motion> star = read_targets(folder + "base.obj", {&targets, 1});
+  const Result<Motion> star = test::read_motion(test::targets_over(folder + "base.obj", {targets}));
   ASSERT_TRUE(star.ok()) << star.error().text();
   const BlendSubject face = compared(star.value()).subjects[0];
   EXPECT_EQ(counts_of(face), (std::vector<std::size_t>{1, 2, 4, 8, 16, 102}));

@@ -1,10 +1,11 @@
-#include "chronormal/workflow/inspect_gltf.h"
+#include "chronormal/workflow/inspect.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <vector>
 
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"
 
 namespace chronormal::inspect_gltf_test {
@@ -98,7 +99,8 @@ TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) 
   const std::size_t mesh = builder.add_mesh(with_normals({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, 0}));
   const auto split_of = [](const GltfBuilder& document) {
     const GltfFixture file(document);
-    return count_split_normals(*file, read_gltf_motion(*file, {}).value()).value();
+    const GltfMotion read = read_gltf_motion(*file, {}).value();
+    return count_split_normals(*file, read.motion, read.parts).value();
   };
   EXPECT_EQ(split_of(builder), 1U);
   builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));

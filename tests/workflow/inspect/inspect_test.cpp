@@ -157,7 +157,7 @@ TEST(Inspect, flagged_and_bytes_are_those_of_normal_curves) {
 
 TEST(Inspect, knows_a_star_from_a_sequence_by_its_segments) {
   Motion motion = triangle_motion({kTriangle, kMirrored, kStanding, kMirrored});
-  motion.segments = {{0, 1}, {0, 2}, {0, 3}};
+  motion.connect_as_targets();
   const Inspection found = inspect(motion);
   EXPECT_EQ(found.turned_over.pairs, 2U);
   EXPECT_EQ(found.turned_over.faces, 1U);

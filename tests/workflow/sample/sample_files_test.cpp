@@ -1,4 +1,4 @@
-#include "chronormal/workflow/sample_files.h"
+#include "chronormal/workflow/sample.h"
 
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ TEST(WriteSamples, npz_of_poses_has_weights_and_no_faces_of_several_kinds) {
       fixtures::make_motion(fixtures::make_polygons(4, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 3}),
                             {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}});
   motion.keyframes.push_back(motion.keyframes[1]);
-  motion.segments = {{0, 1}, {0, 2}};
+  motion.connect_as_targets();
   write_good(motion, options_of(ElementKind::kFaces), {{}, {{0.25, 0.5}, {1, 0}, {0, 0}}},
              {folder / "n.npz", SampleFormat::kNpz});
   const auto arrays = test::parse_npz(test::read_whole(folder / "n.npz"));

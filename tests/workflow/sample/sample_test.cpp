@@ -155,7 +155,7 @@ Motion star(double offset) {
   Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.2, 11);
   const Motion other = fixtures::shaken(fixtures::icosphere(1), 0.3, 12);
   motion.keyframes.push_back(other.keyframes[1]);
-  motion.segments = {{0, 1}, {0, 2}};
+  motion.connect_as_targets();
   return test::with_positions(motion, [offset](const fixtures::Point& p) {
     return fixtures::Point{p[0] + offset, p[1] - offset, p[2] + offset};
   });

@@ -1,5 +1,5 @@
-// Walks the list of readers: a reader that has no fixtures here, and no fuzz target, fails.
-#include "io/mesh/mesh_readers.h"
+// Walks the readers of meshes in the table of formats: one that has no fixtures here, and no fuzz target, fails.
+#include "io/input/formats.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 #include "tests/support/ply_bytes.h"
 #include "tests/support/random_edits.h"
 
-namespace chronormal::mesh_readers_test {
+namespace chronormal::formats_test {
 namespace {
 
 struct Fixture {
@@ -56,9 +56,9 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
 // The parameter is the name of the reader.
 class Readers : public ::testing::TestWithParam<std::string> {
  protected:
-  [[nodiscard]] static const MeshReader& reader() {
-    const auto readers = mesh_readers();
-    return *std::find_if(readers.begin(), readers.end(), [](const MeshReader& r) { return r.name == GetParam(); });
+  [[nodiscard]] static const Format& reader() {
+    const auto all = formats();
+    return *std::find_if(all.begin(), all.end(), [](const Format& format) { return format.name == GetParam(); });
   }
   [[nodiscard]] static const std::vector<Fixture>& reader_fixtures() {
     static const std::vector<Fixture> none;
@@ -70,7 +70,7 @@ class Readers : public ::testing::TestWithParam<std::string> {
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const auto start = std::chrono::steady_clock::now();
-    const Result<MeshFrame> result = reader().read(bytes, "frame 3 (a.mesh)");
+    const Result<MeshFrame> result = reader().read_mesh(bytes, "frame 3 (a.mesh)");
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     EXPECT_LT(seconds.count(), 1.0);
     if (!result) {
@@ -96,7 +96,7 @@ TEST_P(Readers, have_fixtures_that_they_read) {
   ASSERT_FALSE(reader_fixtures().empty()) << "give the reader " << reader().name << " fixtures in this file";
   for (const Fixture& fixture : reader_fixtures()) {
     SCOPED_TRACE(fixture.label);
-    const Result<MeshFrame> result = reader().read(fixture.bytes, "name");
+    const Result<MeshFrame> result = reader().read_mesh(fixture.bytes, "name");
     EXPECT_TRUE(result.ok()) << result.error().text();
     EXPECT_TRUE(reader().recognises(fixture.bytes) || fixture.label == "faces first");
   }
@@ -216,7 +216,8 @@ TEST_P(Readers, random_edits_are_errors_or_meshes) {
 
 std::vector<std::string> all_reader_names() {
   std::vector<std::string> names;
-  for (const MeshReader& reader : mesh_readers()) names.emplace_back(reader.name);
+  for (const Format& format : formats())
+    if (format.read_mesh != nullptr) names.emplace_back(format.name);
   return names;
 }
 
@@ -224,30 +225,59 @@ INSTANTIATE_TEST_SUITE_P(Io, Readers, ::testing::ValuesIn(all_reader_names()),
                          [](const auto& param_info) { return param_info.param; });
 
 TEST(ReadMesh, chooses_by_extension_in_upper_and_lower_case) {
-  EXPECT_EQ(find_mesh_reader("a.b/walk.1.OBJ")->name, "obj");
-  EXPECT_EQ(find_mesh_reader("walk.Ply")->name, "ply");
-  EXPECT_EQ(find_mesh_reader("a.obj/walk"), nullptr);
-  EXPECT_EQ(find_mesh_reader("obj"), nullptr);
-  const Result<MeshFrame> misnamed = read_mesh(test::small_binary_ply(false), "walk.obj");
+  EXPECT_EQ(find_format("a.b/walk.1.OBJ")->name, "obj");
+  EXPECT_EQ(find_format("walk.Ply")->name, "ply");
+  EXPECT_EQ(find_format("a.obj/walk"), nullptr);
+  EXPECT_EQ(find_format("obj"), nullptr);
+  const Result<MeshFrame> misnamed = read_mesh(test::small_binary_ply(false), "walk.obj", "walk.obj");
   ASSERT_FALSE(misnamed.ok());
   EXPECT_EQ(misnamed.error().place, "walk.obj, line 10") << misnamed.error().text();
 }
 
 TEST(ReadMesh, chooses_by_content_where_the_name_does_not_tell) {
-  EXPECT_TRUE(read_mesh(test::small_binary_ply(true), "<stdin>").ok());
-  EXPECT_TRUE(read_mesh("# by hand\n\nv 0 0 0\nf 1 1 1\n", "<stdin>").ok());
-  EXPECT_TRUE(read_mesh("o thing\nv 0 0 0\nf 1 1 1\n", "mesh.txt").ok());
+  EXPECT_TRUE(read_mesh(test::small_binary_ply(true), "<stdin>", "<stdin>").ok());
+  EXPECT_TRUE(read_mesh("# by hand\n\nv 0 0 0\nf 1 1 1\n", "<stdin>", "<stdin>").ok());
+  EXPECT_TRUE(read_mesh("o thing\nv 0 0 0\nf 1 1 1\n", "mesh.txt", "mesh.txt").ok());
+}
+
+TEST(Formats, are_found_by_extension_in_upper_and_lower_case) {
+  EXPECT_EQ(find_format("a.b/walk.NPZ")->name, "npz");
+  EXPECT_EQ(find_format("walk.md2")->name, "md2");
+  EXPECT_EQ(find_format("a.npz/walk"), nullptr);
+  EXPECT_EQ(find_format("walk.Pc2")->name, "pc2");
+  EXPECT_EQ(find_format("walk.mcx")->name, "maya");
+  EXPECT_EQ(find_format("walk.xml")->name, "maya_xml");
+  EXPECT_EQ(find_format("face.GLB")->name, "gltf");
+  EXPECT_EQ(find_format("blink.Target.GZ")->holds, Holds::kTarget);
+  EXPECT_EQ(find_format("blink.gz"), nullptr);
+  EXPECT_EQ(find_format("mdd"), nullptr);
+}
+
+TEST(Formats, list_their_extensions_for_messages) {
+  EXPECT_EQ(extensions_of({Holds::kMesh}, " or "), ".obj or .ply");
+  EXPECT_EQ(extensions_of({Holds::kGltf, Holds::kMotion}), ".gltf, .glb, .npz, .md2");
+}
+
+TEST(Formats, have_the_readers_and_writers_that_go_with_what_they_hold) {
+  for (const Format& format : formats()) {
+    SCOPED_TRACE(format.name);
+    EXPECT_EQ(format.read_mesh != nullptr, format.holds == Holds::kMesh);
+    EXPECT_EQ(format.read_motion != nullptr, format.holds == Holds::kMotion);
+    EXPECT_FALSE(format.read_cache != nullptr && format.holds != Holds::kCache);
+    EXPECT_FALSE(format.write_mesh != nullptr && format.holds != Holds::kMesh);
+    EXPECT_FALSE(format.extensions.empty());
+  }
 }
 
 TEST(ReadMesh, unknown_format_is_an_error_that_lists_what_can_be_read) {
   for (const char* const bytes : {"", "solid cube\n", "plywood\n", "\x89PNG\r\n"}) {
-    const Result<MeshFrame> result = read_mesh(bytes, "cube.stl");
+    const Result<MeshFrame> result = read_mesh(bytes, "cube.stl", "cube.stl");
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(result.error().place, "cube.stl");
-    EXPECT_NE(result.error().message.find("ply (.ply), obj (.obj)"), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.find("a mesh is .obj or .ply"), std::string::npos) << result.error().message;
   }
 }
 
 }  // namespace
-}  // namespace chronormal::mesh_readers_test
+}  // namespace chronormal::formats_test

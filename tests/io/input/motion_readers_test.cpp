@@ -1,5 +1,6 @@
-// Walks the lists of readers of motions and caches: a reader that has no fixtures here, and no fuzz target, fails.
-#include "io/cache/motion_readers.h"
+// Walks the readers of motions and caches in the table of formats: one that has no fixtures here, and no fuzz target,
+// fails.
+#include "io/input/formats.h"
 
 #include <gtest/gtest.h>
 
@@ -85,15 +86,15 @@ bool check(const Result<MayaCacheDescription>& result, std::size_t) {
 // Every reader as one function, whether the bytes were read.
 std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   std::map<std::string, std::function<bool(const std::string&)>> readers;
-  for (const CacheReader& reader : cache_readers()) {
-    readers.emplace(reader.name, [&reader](const std::string& bytes) {
-      return check(reader.read(bytes, "a.bin", {1, 3, ""}), bytes.size());
-    });
-  }
-  for (const MotionReader& reader : motion_readers()) {
-    readers.emplace(reader.name, [&reader](const std::string& bytes) {
-      return check(reader.read(bytes, "a.bin", 1), bytes.size());
-    });
+  for (const Format& format : formats()) {
+    if (format.read_cache != nullptr)
+      readers.emplace(format.name, [&format](const std::string& bytes) {
+        return check(format.read_cache(bytes, "a.bin", {1, 3, ""}), bytes.size());
+      });
+    if (format.read_motion != nullptr)
+      readers.emplace(format.name, [&format](const std::string& bytes) {
+        return check(format.read_motion(bytes, "a.bin", 1), bytes.size());
+      });
   }
   readers.emplace("maya_xml",
                   [](const std::string& bytes) { return check(read_maya_description(bytes, "a.bin"), bytes.size()); });
@@ -223,23 +224,9 @@ std::vector<std::string> all_reader_names() {
 INSTANTIATE_TEST_SUITE_P(Io, MotionReaders, ::testing::ValuesIn(all_reader_names()),
                          [](const auto& param_info) { return param_info.param; });
 
-TEST(MotionReaderLists, find_readers_by_extension_in_upper_and_lower_case) {
-  EXPECT_EQ(find_motion_reader("a.b/walk.NPZ")->name, "npz");
-  EXPECT_EQ(find_motion_reader("walk.md2")->name, "md2");
-  EXPECT_EQ(find_motion_reader("a.npz/walk"), nullptr);
-  EXPECT_EQ(find_cache_reader("walk.Pc2")->name, "pc2");
-  EXPECT_EQ(find_cache_reader("walk.mdd")->name, "mdd");
-  EXPECT_EQ(find_cache_reader("walk.npy")->name, "npy");
-  EXPECT_EQ(find_cache_reader("walk.mc")->name, "maya");
-  EXPECT_EQ(find_cache_reader("walk.mcx")->name, "maya");
-  EXPECT_EQ(find_cache_reader("walk.xml"), nullptr);
-  EXPECT_EQ(find_cache_reader("mdd"), nullptr);
-}
-
-TEST(MotionReaderLists, recognise_files_by_their_first_bytes) {
-  EXPECT_TRUE(motion_readers()[0].recognises(test::small_npz(false)));
-  EXPECT_TRUE(motion_readers()[1].recognises(test::small_md2()));
-  EXPECT_FALSE(motion_readers()[0].recognises(test::small_md2()));
+TEST(MotionFormats, are_found_by_content_where_the_name_does_not_tell) {
+  EXPECT_EQ(find_format("<stdin>", test::small_npz(false))->name, "npz");
+  EXPECT_EQ(find_format("<stdin>", test::small_md2())->name, "md2");
 }
 
 }  // namespace

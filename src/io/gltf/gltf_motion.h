@@ -1,4 +1,5 @@
-/// The motions of a glTF file: its morph targets, or one of its animations, as keyframes and segments.
+/// The motions of a glTF file: its morph targets, or one of its animations, as keyframes and segments. Private to
+/// io; others ask an Input for them (chronormal/io/input.h).
 ///
 ///     targets      keyframe 0 is the base, keyframe k has target k - 1 of every mesh at weight 1; segments 0 -> k
 ///     animation    a keyframe per time at which any of its weight tracks has a key; where weights step, two
@@ -12,11 +13,11 @@
 /// the world. They are where the mesh has them, or in the world where its nodes put them as they stand in the file
 /// (animations of nodes and skins are not applied; by the specification, a node with a skin does not move its mesh).
 /// Where a node mirrors, faces are turned round, so that their normals keep the outward side.
-#ifndef CHRONORMAL_IO_GLTF_MOTION_H_
-#define CHRONORMAL_IO_GLTF_MOTION_H_
+#ifndef CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
+#define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 
 #include <cstddef>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,14 +34,6 @@ struct GltfMotionOptions {
   double curve_tolerance = 1e-5;
   /// The most memory that keyframes may take, in bytes: a small file can ask for much.
   std::size_t most_bytes = std::size_t{4} << 30;
-};
-
-/// One primitive of the motion: where its vertices and faces came from.
-struct GltfPart {
-  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing where nodes do not matter
-  std::size_t mesh = 0, primitive = 0;
-  std::size_t first_vertex = 0, vertex_count = 0;
-  std::size_t first_face = 0, face_count = 0;
 };
 
 struct GltfMotion {
@@ -68,9 +61,9 @@ struct GltfMotion {
 /// The normals that a file stores, one for each corner of a motion that was read from it: (corners, 3), those of the
 /// base and in the space of the mesh; (0, 0, 0) where a primitive has none. Empty where none has. Errors: of
 /// GltfDocument.
-[[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document,
-                                                                  const GltfMotion& motion);
+[[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const Motion& motion,
+                                                                  std::span<const GltfPart> parts);
 
 }  // namespace chronormal
 
-#endif  // CHRONORMAL_IO_GLTF_MOTION_H_
+#endif  // CHRONORMAL_IO_GLTF_GLTF_MOTION_H_

@@ -1,4 +1,4 @@
-#include "chronormal/workflow/elements.h"
+#include "chronormal/workflow/sample.h"
 
 #include <array>
 #include <cassert>

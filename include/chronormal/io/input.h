@@ -1,0 +1,131 @@
+/// What is read: one input of any format, from files or from memory.
+///
+///     walk_0.obj walk_1.obj         several meshes: the keyframes of a sequence, in the order given
+///     'walk_*.obj'  walk/           a pattern with * ? [..] (where no file has that very name), or a folder of meshes
+///                                   of one format; both are sorted by number, so that walk_2 stands before walk_10
+///     body.obj walk.pc2             a mesh and a point cache: .pc2, .mdd, .npy, .mc, .mcx, or a Maya .xml
+///     body.obj cache.xml#bodyShape  the same, with the channel of a Maya cache
+///     walk.npz                      a whole motion: .npz or .md2
+///     face.glb                      a glTF document: its morph targets, or one of its animations
+///     base, and any of              a set of morph targets: meshes with the faces of the base, targets of MakeHuman,
+///       smile.obj lift.target t/      patterns, folders with all folders in them; the base itself is passed over
+///     sample twist                  a built-in morph (io/builtin_morphs.h)
+///     -                             one file on the standard input
+///
+/// A file is opened once and looked at once: its extension says what it is, or else its content, so that pipes are as
+/// good as files. docs/formats.md says what each format holds.
+///
+/// Units      times: seconds. Keyframe k is at k / frames_per_second in formats that have no times of their own or
+///            count them in frames (meshes, npy, npz without times, MD2, PC2); targets have weights.
+/// Threads    one input belongs to one thread at a time.
+#ifndef CHRONORMAL_IO_INPUT_H_
+#define CHRONORMAL_IO_INPUT_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// Which of the normals and smoothing groups are kept that meshes store beside their positions.
+enum class KeepShading {
+  kNone,
+  kFirst,  ///< of the first keyframe: of the base, or of the mesh of a cache
+  kAll,    ///< of all keyframes, as far as all of them store normals
+};
+
+/// Names are those of the program's options, which fill this.
+struct InputOptions {
+  std::vector<std::string> files;    ///< files, patterns, folders or "-": one motion, or the targets of the base
+  std::vector<std::string> samples;  ///< a built-in morph, in place of files
+  std::string base;                  ///< the mesh of which files are morph targets; empty where there is none
+  double frames_per_second = 1;      ///< from 1e-9 to 1e9
+  std::string animation = {};        ///< of a glTF file, by name or index; empty: its morph targets
+  bool world = false;                ///< vertices of a glTF file are where its nodes put them
+  bool allow_external = false;       ///< a glTF file may name files outside its folder
+  bool allow_mesh = false;           ///< a mesh that does not move is an input, too
+  KeepShading shading = KeepShading::kNone;
+  /// Where the bytes of files come from; empty: the file system. With a resolver, files are names and not patterns or
+  /// folders, and a glTF file's buffers are asked for by their paths below its folder.
+  FileResolver resolve = {};
+  /// Called after each file that was read.
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+
+/// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
+[[nodiscard]] Status check_input(const InputOptions& options);
+
+/// Normals that files store beside a motion, (corners, 3) each, of any length.
+struct StoredNormals {
+  /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
+  std::vector<std::vector<float>> of_keyframes;
+};
+
+/// An input that was opened: a glTF document, or else a motion or a mesh.
+class Input {
+ public:
+  Input(Input&&) noexcept;
+  Input& operator=(Input&&) noexcept;
+  ~Input();
+
+  /// What a person calls it: the only file, "first ... last", the base, or the built-in morph.
+  [[nodiscard]] const std::string& name() const noexcept;
+  /// Bytes of the file, where the input is a document.
+  [[nodiscard]] std::size_t file_size() const noexcept;
+
+  /// The glTF file that the input is; nullptr where it is none. It lives as long as the input.
+  [[nodiscard]] const GltfDocument* document() const noexcept;
+
+  /// What moves: of a document what the options chose (and read now, when it is asked for the first time); with
+  /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All
+  /// keyframes are in memory, as most who compute want them; those who need them one by one should ask for keyframe().
+  /// Errors: of a document only: of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
+  /// nothing moves, or keyframes would take more than 4 GiB.
+  [[nodiscard]] Result<const Motion*> motion();
+
+  /// Keyframe k of the motion, from 0, in any order. It is good until the next call: today all are in memory, but a
+  /// sequence that is longer than memory will be read as it goes. Errors: those of motion(), and of reading the file.
+  [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
+  [[nodiscard]] Result<std::size_t> keyframe_count();
+
+  /// The normals that the input stores, as far as the options keep them; of a document those of its base, in the space
+  /// of the meshes. Errors: those of motion().
+  [[nodiscard]] Result<const StoredNormals*> normals();
+  /// The smoothing group of each face, as the first keyframe has them (io/mesh/mesh_frame.h); empty where there are
+  /// none.
+  [[nodiscard]] std::span<const std::uint32_t> group_of_face() const noexcept;
+  /// The file of these; empty where its format is read without normals and groups.
+  [[nodiscard]] const std::string& shaded_by() const noexcept;
+
+  /// Of a document, once motion() was asked for: where vertices and faces came from, and a bound of the distance
+  /// between the cut cubic splines of an animation and the true ones, in units of the file.
+  [[nodiscard]] std::span<const GltfPart> parts() const noexcept;
+  [[nodiscard]] double curve_error() const noexcept;
+
+ private:
+  friend Result<Input> open_input(const InputOptions& options);
+  struct State;
+  explicit Input(std::unique_ptr<State> state) noexcept;
+
+  std::unique_ptr<State> state_;
+};
+
+/// Opens what the options name, and reads it, but for a glTF document, of which nothing but its JSON is read.
+///
+/// Errors: those of check_input(); kFailed for files that are not there or can not be read; those of the readers, with
+/// the file in the place ("frame 3 (walk_3.obj), line 17"); kInvalidInput for fewer than two keyframes, vertices or
+/// faces that change between them, folders without meshes or with several formats; kUsage for inputs that do not go
+/// together.
+[[nodiscard]] Result<Input> open_input(const InputOptions& options);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_INPUT_H_

@@ -1,0 +1,141 @@
+// The one table of file formats.
+#include "io/input/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "chronormal/io/gltf_document.h"
+#include "io/bytes/scan.h"
+#include "io/cache/maya_cache.h"
+#include "io/cache/md2.h"
+#include "io/cache/mdd.h"
+#include "io/cache/npz.h"
+#include "io/cache/pc2.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/ply.h"
+
+namespace chronormal {
+namespace {
+
+using Extension = std::string_view;
+
+constexpr std::array<Extension, 1> kObj = {".obj"}, kPly = {".ply"}, kNpz = {".npz"}, kMd2 = {".md2"}, kPc2 = {".pc2"},
+                                   kMdd = {".mdd"}, kNpy = {".npy"}, kMayaDescription = {".xml"};
+constexpr std::array<Extension, 2> kGltf = {".gltf", ".glb"}, kMaya = {".mc", ".mcx"},
+                                   kTarget = {".target", ".target.gz"};
+
+// The first line that is neither empty nor a comment begins with a common word of OBJ.
+bool is_obj(std::string_view first_bytes) {
+  constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o",      "g",
+                                                          "mtllib", "s",  "l",  "p", "usemtl", "vp"};
+  if (first_bytes.starts_with("\xEF\xBB\xBF")) first_bytes.remove_prefix(3);
+  scan::Lines lines(first_bytes, first_bytes.find('\n') == std::string_view::npos ? '\r' : '\n');
+  bool has_comment = false;
+  while (lines.next()) {
+    std::string_view line = lines.line();
+    const std::string_view keyword = scan::take_word(line);
+    if (keyword.starts_with('#')) has_comment = true;
+    if (keyword.empty() || keyword.starts_with('#')) continue;
+    return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
+  }
+  return has_comment;  // nothing but comments so far
+}
+
+bool is_ply(std::string_view first_bytes) {
+  return first_bytes.starts_with("ply\n") || first_bytes.starts_with("ply\r");
+}
+
+bool is_gltf(std::string_view first_bytes) { return GltfDocument::recognises(first_bytes); }
+bool is_zip(std::string_view first_bytes) { return first_bytes.starts_with("PK\3\4"); }
+bool is_md2(std::string_view first_bytes) { return first_bytes.starts_with("IDP2"); }
+
+std::string write_binary_ply(const Topology& topology, VectorView<const float> positions) {
+  return write_ply(topology, positions, PlyEncoding::kBinaryLittleEndian);
+}
+
+Result<std::string> write_pc2_at_one(const Motion& motion) { return write_pc2(motion); }  // frame a second
+
+constexpr std::array<Format, 11> kFormats = {{
+    {.name = "obj",
+     .holds = Holds::kMesh,
+     .extensions = kObj,
+     .recognises = is_obj,
+     .read_mesh = read_obj,
+     .read_shaded_mesh = read_obj_shading,
+     .write_mesh = write_obj},
+    {.name = "ply",
+     .holds = Holds::kMesh,
+     .extensions = kPly,
+     .recognises = is_ply,
+     .read_mesh = read_ply,
+     .write_mesh = write_binary_ply},
+    {.name = "gltf", .holds = Holds::kGltf, .extensions = kGltf, .recognises = is_gltf},
+    {.name = "npz",
+     .holds = Holds::kMotion,
+     .extensions = kNpz,
+     .recognises = is_zip,
+     .read_motion = read_npz,
+     .write_motion = write_npz},
+    {.name = "md2", .holds = Holds::kMotion, .extensions = kMd2, .recognises = is_md2, .read_motion = read_md2},
+    {.name = "pc2",
+     .holds = Holds::kCache,
+     .extensions = kPc2,
+     .read_cache = read_pc2,
+     .write_motion = write_pc2_at_one},
+    {.name = "mdd", .holds = Holds::kCache, .extensions = kMdd, .read_cache = read_mdd, .write_motion = write_mdd},
+    {.name = "npy", .holds = Holds::kCache, .extensions = kNpy, .read_cache = read_npy},
+    {.name = "maya", .holds = Holds::kCache, .extensions = kMaya, .read_cache = read_maya_points},
+    {.name = "maya_xml", .holds = Holds::kCache, .extensions = kMayaDescription},
+    {.name = "target", .holds = Holds::kTarget, .extensions = kTarget},
+}};
+
+}  // namespace
+
+std::span<const Format> formats() noexcept { return kFormats; }
+
+const Format* find_format(std::string_view file_name) noexcept {
+  const auto ends_with = [file_name](Extension extension) {
+    const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; };
+    return file_name.size() >= extension.size() &&
+           std::equal(file_name.end() - static_cast<std::ptrdiff_t>(extension.size()), file_name.end(),
+                      extension.begin(), same);
+  };
+  for (const Format& format : kFormats)
+    if (std::any_of(format.extensions.begin(), format.extensions.end(), ends_with)) return &format;
+  return nullptr;
+}
+
+const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept {
+  if (const Format* const format = find_format(file_name)) return format;
+  const std::string_view first_bytes = bytes.substr(0, 512);
+  for (const Format& format : kFormats)
+    if (format.recognises != nullptr && format.recognises(first_bytes)) return &format;
+  return nullptr;
+}
+
+std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last) {
+  std::vector<Extension> found;
+  for (const Format& format : kFormats) {
+    if (std::find(kinds.begin(), kinds.end(), format.holds) != kinds.end())
+      found.insert(found.end(), format.extensions.begin(), format.extensions.end());
+  }
+  std::string text;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (i > 0) text += i + 1 == found.size() ? last : ", ";
+    text += found[i];
+  }
+  return text;
+}
+
+Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name, const std::string& place,
+                            bool shaded) {
+  const Format* const format = find_format(file_name, bytes);
+  if (format == nullptr || format->holds != Holds::kMesh)
+    return invalid_input(place, std::string(format == nullptr ? "neither the name nor the content tells the format"
+                                                              : "this is no mesh, by its name or its content") +
+                                    "; a mesh is " + extensions_of({Holds::kMesh}, " or "));
+  return (shaded && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes, place);
+}
+
+}  // namespace chronormal

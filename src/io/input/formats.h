@@ -1,0 +1,72 @@
+/// The one table of file formats: how each is recognised, what it holds, and what reads and writes it. Private to io.
+///
+/// A new format is a new entry; tests/io/input/formats_test.cpp and motion_readers_test.cpp walk the table and fail for
+/// a reader that has no truncation, boundary and mutation tests, or no fuzz target fuzz/NAME_fuzz.cpp.
+#ifndef CHRONORMAL_IO_INPUT_FORMATS_H_
+#define CHRONORMAL_IO_INPUT_FORMATS_H_
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "io/cache/position_cache.h"
+#include "io/mesh/mesh_frame.h"
+
+namespace chronormal {
+
+/// What a file holds.
+enum class Holds {
+  kMesh,    ///< one mesh: a keyframe of a sequence, a target, or the faces of a cache
+  kTarget,  ///< what a target adds to a base (io/mesh/make_human_target.h)
+  kGltf,    ///< a glTF document (chronormal/io/gltf_document.h)
+  kMotion,  ///< a whole motion
+  kCache,   ///< positions over time, for a mesh beside it
+};
+
+struct Format {
+  std::string_view name;  ///< "obj": in messages, and of its fuzz target
+  Holds holds;
+  std::span<const std::string_view> extensions;  ///< lower case, with the dot: ".obj"
+  /// Whether a file that begins with these bytes (a few hundred are enough) looks like this format; nullptr where only
+  /// the extension tells.
+  bool (*recognises)(std::string_view first_bytes) = nullptr;
+
+  // The reader that goes with what the format holds; the others are nullptr, and so is that of glTF, of targets and of
+  // Maya's descriptions, which need more than bytes. name is for messages. Errors: kInvalidInput, always with a place.
+  Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  /// The same with smoothing groups and normals; nullptr where the format is read without them.
+  Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second) = nullptr;
+  Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
+                                      const CacheOptions& options) = nullptr;
+
+  // What writes it; nullptr where nothing does.
+  std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions) = nullptr;
+  Result<std::string> (*write_motion)(const Motion& motion) = nullptr;
+};
+
+/// All formats, in the order in which they are asked whether they recognise a file.
+[[nodiscard]] std::span<const Format> formats() noexcept;
+
+/// The format whose extension the file name has, in upper or lower case; nullptr if there is none.
+[[nodiscard]] const Format* find_format(std::string_view file_name) noexcept;
+
+/// The format of a file: by its extension, or else by its content (the standard input, an extension unknown). nullptr
+/// if neither tells.
+[[nodiscard]] const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept;
+
+/// ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last after `last`.
+[[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
+
+/// Reads a mesh in the format that it has, with its shading where that is wanted and the format has any; place is for
+/// messages, and begins that of every error. Errors: kInvalidInput where the format is none of a mesh; the message
+/// lists what can be read; those of the reader.
+[[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
+                                          const std::string& place, bool shaded = false);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_INPUT_FORMATS_H_

@@ -1,0 +1,327 @@
+// One door for what is read. open_input() goes through the forms that an input can have, in this order: a built-in
+// morph, a base with its targets, a cache with its mesh, one file that is whole, the files of a sequence. What a file
+// is, its extension says, or else its content, which is there by then: no file is opened twice.
+#include "chronormal/io/input.h"
+
+#include <cassert>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "io/bytes/file.h"
+#include "io/cache/maya_cache.h"
+#include "io/gltf/gltf_motion.h"
+#include "io/input/formats.h"
+#include "io/input/input_files.h"
+#include "io/input/sequence.h"
+#include "io/input/targets.h"
+
+namespace chronormal {
+
+namespace {
+
+Error misuse(std::string place, std::string message) {
+  return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
+}
+
+Error not_animated(const std::string& input) {
+  return misuse(input, "--animation chooses among those of a glTF file, which this is not");
+}
+
+// What was opened: a document, or else a motion or a mesh.
+struct Opened {
+  std::optional<GltfDocument> document;
+  std::size_t file_size = 0;  // of the document
+  ReadMotion read;            // of the document not yet
+};
+
+// What messages and tables call a path, and what they call several.
+std::string path_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
+
+std::string short_name(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  return file_name_of(path);
+}
+
+std::string name_of_files(const std::vector<std::string>& files) {
+  return files.size() == 1 ? path_name(files.front()) : short_name(files.front()) + " ... " + short_name(files.back());
+}
+
+// An input that is a point cache: its file, and the channel after "#".
+struct CacheInput {
+  std::string path;
+  std::string channel;
+  const Format* format = nullptr;
+};
+
+std::optional<CacheInput> as_cache(const std::string& input) {
+  const auto classify = [](std::string path, std::string channel) -> std::optional<CacheInput> {
+    const Format* const format = find_format(path);
+    if (format == nullptr || format->holds != Holds::kCache) return std::nullopt;
+    return CacheInput{std::move(path), std::move(channel), format};
+  };
+  if (std::optional<CacheInput> whole = classify(input, "")) return whole;
+  const std::size_t hash = input.rfind('#');
+  if (hash == std::string::npos) return std::nullopt;
+  return classify(input.substr(0, hash), input.substr(hash + 1));
+}
+
+Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& cache_options,
+                                 const InputOptions& options) {
+  if (input.format->read_cache == nullptr) return read_maya_cache(input.path, cache_options, options.resolve);
+  const Result<FileBytes> file = FileBytes::open(input.path, options.resolve);
+  if (!file) return file.error();
+  return input.format->read_cache(file.value().bytes(), file_name_of(input.path), cache_options);
+}
+
+Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,
+                                        const InputOptions& options) {
+  InputOptions of_mesh = options;
+  of_mesh.files = {mesh_input};
+  const Result<std::vector<std::string>> meshes = find_frames(of_mesh);
+  if (!meshes) return meshes.error();
+  if (meshes.value().size() != 1)
+    return misuse(mesh_input, "a cache goes over one mesh, but this stands for " +
+                                  std::to_string(meshes.value().size()) + " files");
+  const std::string& mesh_path = meshes.value().front();
+  ReadMotion read;
+  Result<FileBytes> file = FileBytes::open(mesh_path, options.resolve);
+  if (!file) return file.error();
+  Result<MeshFrame> mesh = read_next_mesh(options, file.value().bytes(), mesh_path, file_name_of(mesh_path), read);
+  if (!mesh) return mesh.error();
+  Topology faces = std::move(mesh.value().topology);
+  if (options.progress) options.progress(1, 2);
+  Result<PositionCache> cache =
+      read_cache(input, {options.frames_per_second, faces.vertex_count(), input.channel}, options);
+  if (!cache) return cache.error();
+  if (options.progress) options.progress(2, 2);
+  Result<Motion> motion =
+      motion_from_cache(std::move(faces), std::move(cache).value(), file_name_of(mesh_path), file_name_of(input.path));
+  if (!motion) return motion.error();
+  read.motion = std::move(motion).value();
+  return read;
+}
+
+// A mesh that does not move, as one keyframe.
+Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& path, const InputOptions& options) {
+  ReadMotion read;
+  Result<MeshFrame> mesh = read_next_mesh(options, bytes, path, file_name_of(path), read);
+  if (!mesh) return mesh.error();
+  read.motion.topology = std::move(mesh.value().topology);
+  read.motion.keyframes.push_back({std::move(mesh.value().positions), 0, file_name_of(path)});
+  return read;
+}
+
+// Whether one input is a file by itself, and not a pattern or a folder, that may be whole. A mesh is that only where
+// one that does not move is welcome.
+bool may_be_whole(const std::string& input, const InputOptions& options) {
+  const Format* const format = find_format(input);
+  if (format != nullptr && format->holds == Holds::kMesh && !options.allow_mesh) return false;
+  if (as_cache(input)) return false;
+  if (input == "-" || options.resolve) return true;
+  if (format != nullptr && format->holds != Holds::kMesh) return true;
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(input, code);
+  return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
+}
+
+Result<Opened> open_document(FileBytes file, const std::string& path, const InputOptions& options) {
+  std::optional<std::string> folder;
+  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
+  Opened opened;
+  opened.file_size = file.bytes().size();
+  Result<GltfDocument> document =
+      GltfDocument::read(std::move(file), file_name_of(path), folder,
+                         {.allow_external = options.allow_external, .resolve = options.resolve});
+  if (!document) return document.error();
+  opened.document = std::move(document).value();
+  return opened;
+}
+
+// Opens the one file that the input is.
+Result<Opened> open_whole(const std::string& path, const InputOptions& options) {
+  Result<FileBytes> file = FileBytes::open(path, options.resolve);
+  if (!file) return file.error();
+  const std::string_view bytes = file.value().bytes();
+  const Format* const format = find_format(path, bytes);
+  if (format != nullptr && format->holds == Holds::kGltf) return open_document(std::move(file).value(), path, options);
+  if (!options.animation.empty()) return not_animated(path);
+  Opened opened;
+  if (format != nullptr && format->holds == Holds::kMotion) {
+    Result<Motion> motion = format->read_motion(bytes, file_name_of(path), options.frames_per_second);
+    if (!motion) return motion.error();
+    opened.read.motion = std::move(motion).value();
+  } else if (options.allow_mesh) {
+    Result<ReadMotion> mesh = read_still_mesh(bytes, path, options);
+    if (!mesh) return mesh.error();
+    opened.read = std::move(mesh).value();
+  } else {
+    return invalid_input(file_name_of(path),
+                         "neither the name nor the content tells a format that holds a whole motion (" +
+                             extensions_of({Holds::kGltf, Holds::kMotion}) + "); a sequence of " +
+                             extensions_of({Holds::kMesh}, " or ") + " files needs two or more");
+  }
+  if (options.progress) options.progress(1, 1);
+  return opened;
+}
+
+// Reads one of the two forms that are several files: a cache with its mesh, or a sequence.
+Result<ReadMotion> read_several(const InputOptions& options) {
+  const std::vector<std::string>& inputs = options.files;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::optional<CacheInput> cache = as_cache(inputs[i]);
+    if (!cache) continue;
+    if (inputs.size() != 2 || as_cache(inputs[1 - i]))
+      return misuse(inputs[i], "a cache has no faces: give it together with one mesh (" +
+                                   extensions_of({Holds::kMesh}, " or ") + ")");
+    if (!options.animation.empty()) return not_animated(inputs[i]);
+    return read_cache_over_mesh(*cache, inputs[1 - i], options);
+  }
+  for (const std::string& input : inputs) {
+    const Format* const format = find_format(input);
+    if (format != nullptr && (format->holds == Holds::kGltf || format->holds == Holds::kMotion))
+      return misuse(input, "the file is a whole motion: give it alone");
+  }
+  if (!options.animation.empty()) return not_animated(inputs.front());
+  const Result<std::vector<std::string>> files = find_frames(options);
+  if (!files) return files.error();
+  if (files.value().size() > 1 || !options.allow_mesh) return read_sequence(files.value(), options);
+  const Result<FileBytes> file = FileBytes::open(files.value().front(), options.resolve);
+  if (!file) return file.error();
+  return read_still_mesh(file.value().bytes(), files.value().front(), options);
+}
+
+}  // namespace
+
+Status check_input(const InputOptions& options) {
+  if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
+    return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
+  if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
+    return misuse("--animation", "it chooses among those of a glTF file: name one");
+  if (!options.base.empty()) {
+    if (!options.samples.empty()) return misuse("--base", "a built-in morph is no target: give .obj, .ply or .target");
+    if (options.files.empty()) return misuse("--base", "there is nothing to read: name the targets of the base");
+    if (options.frames_per_second != 1)
+      return misuse("--fps", "targets of a base have no frames and no times, but weights: leave it out");
+    return Success{};
+  }
+  if (options.files.empty() && options.samples.empty())
+    return misuse("", "there is nothing to read: name the keyframes, or --sample NAME");
+  if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
+    return misuse("", "there are several inputs: give one");
+  for (const std::string& file : options.files) {
+    const Format* const format = find_format(file);
+    if (format != nullptr && format->holds == Holds::kTarget)
+      return misuse(file, "a target changes a mesh: name the mesh with --base FILE");
+  }
+  return Success{};
+}
+
+struct Input::State {
+  std::string name;
+  Opened opened;
+  GltfMotionOptions chosen;  // of the document
+  bool allow_mesh = false;
+  // Of the document, once it was asked for.
+  bool has_motion = true, has_normals = true;
+  std::vector<GltfPart> parts;
+  double curve_error = 0;
+
+  [[nodiscard]] Status read_motion();
+};
+
+Status Input::State::read_motion() {
+  if (has_motion) return Success{};
+  const GltfDocument& document = *opened.document;
+  const bool is_mesh = allow_mesh && chosen.animation.empty() && !has_moving_targets(document);
+  Result<GltfMotion> read = is_mesh ? read_gltf_mesh(document, chosen) : read_gltf_motion(document, chosen);
+  if (!read) return read.error();
+  opened.read.motion = std::move(read.value().motion);
+  parts = std::move(read.value().parts);
+  curve_error = read.value().curve_error;
+  has_motion = true;
+  return Success{};
+}
+
+Input::Input(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Input::Input(Input&&) noexcept = default;
+Input& Input::operator=(Input&&) noexcept = default;
+Input::~Input() = default;
+
+const std::string& Input::name() const noexcept { return state_->name; }
+std::size_t Input::file_size() const noexcept { return state_->opened.file_size; }
+const GltfDocument* Input::document() const noexcept {
+  return state_->opened.document ? &*state_->opened.document : nullptr;
+}
+std::span<const std::uint32_t> Input::group_of_face() const noexcept { return state_->opened.read.group_of_face; }
+const std::string& Input::shaded_by() const noexcept { return state_->opened.read.shaded_by; }
+std::span<const GltfPart> Input::parts() const noexcept { return state_->parts; }
+double Input::curve_error() const noexcept { return state_->curve_error; }
+
+Result<const Motion*> Input::motion() {
+  if (const Status status = state_->read_motion(); !status) return status.error();
+  return &state_->opened.read.motion;
+}
+
+Result<std::size_t> Input::keyframe_count() {
+  const Result<const Motion*> read = motion();
+  if (!read) return read.error();
+  return read.value()->keyframes.size();
+}
+
+Result<const Motion::Keyframe*> Input::keyframe(std::size_t k) {
+  const Result<const Motion*> read = motion();
+  if (!read) return read.error();
+  assert(k < read.value()->keyframes.size());
+  return &read.value()->keyframes[k];
+}
+
+Result<const StoredNormals*> Input::normals() {
+  StoredNormals& normals = state_->opened.read.normals;
+  if (!state_->has_normals) {
+    const Result<const Motion*> read = motion();
+    if (!read) return read.error();
+    Result<std::vector<float>> of_corners = read_gltf_corner_normals(*document(), *read.value(), state_->parts);
+    if (!of_corners) return of_corners.error();
+    if (!of_corners.value().empty()) normals.of_keyframes.push_back(std::move(of_corners).value());
+    state_->has_normals = true;
+  }
+  return &normals;
+}
+
+Result<Input> open_input(const InputOptions& options) {
+  if (const Status status = check_input(options); !status) return status.error();
+  auto state = std::make_unique<Input::State>();
+  const auto keep = [&](std::string name, Result<ReadMotion> read) -> Result<Input> {
+    if (!read) return read.error();
+    state->name = std::move(name);
+    state->opened.read = std::move(read).value();
+    return Input(std::move(state));
+  };
+  if (!options.samples.empty()) {
+    Result<Motion> motion = make_builtin_morph(options.samples.front());
+    if (!motion) return motion.error();
+    return keep(options.samples.front(), ReadMotion{std::move(motion).value(), {}, {}, {}});
+  }
+  if (!options.base.empty()) return keep(path_name(options.base), read_targets(options));
+  if (options.files.size() > 1 || !may_be_whole(options.files.front(), options))
+    return keep(name_of_files(options.files), read_several(options));
+
+  Result<Opened> opened = open_whole(options.files.front(), options);
+  if (!opened) return opened.error();
+  state->name = name_of_files(options.files);
+  state->opened = std::move(opened).value();
+  if (state->opened.document) {
+    state->chosen.animation = options.animation;
+    state->chosen.world = options.world;
+    state->allow_mesh = options.allow_mesh;
+    state->has_motion = state->has_normals = false;
+    state->opened.read.shaded_by = state->name;
+  }
+  return Input(std::move(state));
+}
+
+}  // namespace chronormal

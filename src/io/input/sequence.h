@@ -1,0 +1,26 @@
+/// Sequences: several mesh files of one topology, the keyframes of one motion. Private to io.
+#ifndef CHRONORMAL_IO_INPUT_SEQUENCE_H_
+#define CHRONORMAL_IO_INPUT_SEQUENCE_H_
+
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "io/input/input_files.h"
+
+namespace chronormal {
+
+/// The files that the options stand for; of a folder all meshes. Does not open them.
+/// Errors: those of find_input_files(); kInvalidInput for a folder without meshes, or with files of two formats.
+[[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options);
+
+/// Reads these files as keyframes; each takes the name of its file. Only one file is open at a time, and one topology
+/// is kept. The result is valid (motion/motion.h).
+///
+/// Errors: those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj), line 17");
+/// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
+[[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_INPUT_SEQUENCE_H_

@@ -1,0 +1,97 @@
+// Motions as files: one that holds everything, or one for each keyframe.
+#include <cassert>
+#include <string_view>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "io/input/formats.h"
+
+namespace chronormal {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// A name with a place for a number.
+struct NamePattern {
+  std::string before, after;
+  bool has_number = false;
+  std::size_t width = 0;  // of the number, filled up with zeros
+
+  [[nodiscard]] std::string name(std::size_t k) const {
+    if (!has_number) return before;
+    std::string number = std::to_string(k);
+    if (number.size() < width) number.insert(0, width - number.size(), '0');
+    return before + number + after;
+  }
+};
+
+Result<NamePattern> parse_pattern(const std::string& pattern) {
+  const Error misuse{ErrorCode::kUsage, pattern,
+                     "the name must have one %d or %0Nd (N = 1 to 99) for the number of the file"};
+  NamePattern parts;
+  const std::size_t slash = pattern.rfind('/');
+  const std::size_t percent = pattern.find('%', slash == std::string::npos ? 0 : slash);
+  parts.before = pattern.substr(0, percent);
+  if (percent == std::string::npos) return parts;
+
+  std::string_view rest = std::string_view(pattern).substr(percent + 1);
+  if (rest.starts_with('0')) {
+    rest.remove_prefix(1);
+    std::size_t digits = 0;
+    for (; digits < 2 && digits < rest.size() && is_digit(rest[digits]); ++digits)
+      parts.width = 10 * parts.width + static_cast<std::size_t>(rest[digits] - '0');
+    if (parts.width == 0) return misuse;
+    rest.remove_prefix(digits);
+  }
+  if (!rest.starts_with('d') || rest.find('%') != std::string_view::npos) return misuse;
+  parts.after = rest.substr(1);
+  parts.has_number = true;
+  return parts;
+}
+
+Status write_keyframes(const Motion& motion, const Format& format, const std::string& pattern, bool force) {
+  const Result<std::vector<std::string>> names = numbered_names(pattern, motion.keyframes.size());
+  if (!names) return names.error();
+  for (const std::string& name : names.value()) {
+    if (Status status = check_output(name, force); !status) return status;
+  }
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    const std::vector<float>& coordinates = motion.keyframes[k].positions;
+    assert(coordinates.size() == 3 * motion.topology.vertex_count());
+    const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
+    if (Status status = write_output(names.value()[k], format.write_mesh(motion.topology, positions), force); !status)
+      return status;
+  }
+  return Success{};
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count) {
+  const Result<NamePattern> parts = parse_pattern(pattern);
+  if (!parts) return parts.error();
+  if (!parts.value().has_number && count > 1)
+    return Error{ErrorCode::kUsage, pattern,
+                 "there are " + std::to_string(count) + " files to write: the name must have a %d for their number"};
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < count; ++k) names.push_back(parts.value().name(k));
+  return names;
+}
+
+Status write_motion(const Motion& motion, const std::string& path, bool force) {
+  const Format* const format = find_format(path);
+  if (format != nullptr && format->write_mesh != nullptr) return write_keyframes(motion, *format, path, force);
+  if (format == nullptr || format->write_motion == nullptr) {
+    std::string writable;
+    for (const Format& each : formats())
+      if (each.write_mesh != nullptr || each.write_motion != nullptr)
+        writable.append(writable.empty() ? "" : ", ").append(each.extensions.front());
+    return Error{ErrorCode::kUsage, path, "the name must end in one of " + writable};
+  }
+  if (Status status = check_output(path, force); !status) return status;
+  const Result<std::string> bytes = format->write_motion(motion);
+  if (!bytes) return Error{bytes.error().code, path, bytes.error().message};
+  return write_output(path, bytes.value(), force);
+}
+
+}  // namespace chronormal
