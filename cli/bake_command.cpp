@@ -94,7 +94,7 @@ std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& 
   return BeforeAndAfter{first.value().error, second.value().error};
 }
 
-int run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
+Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
   if (!options.input.animation.empty())
@@ -135,7 +135,7 @@ int run_gltf(const Options& options, BakeOptions how, const Input& input, Progre
   return kExitDone;
 }
 
-int run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
+Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
