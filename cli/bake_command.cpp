@@ -38,9 +38,8 @@ struct Options {
 Result<BakeOptions> understand(const Options& options) {
   BakeOptions how;
   if (!options.encode.empty()) {
-    if (options.encode != "exact" && options.encode != "endpoint")
-      return misuse("--encode", "it must be exact or endpoint");
-    how.encoding = options.encode == "exact" ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
+    how.encoding = find_bake_encoding(options.encode);
+    if (!how.encoding) return misuse("--encode", "it must be exact or endpoint");
   }
   const Result<Weighting> weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);

@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 
-const char* encoding_name(BakeEncoding encoding) { return encoding == BakeEncoding::kExact ? "exact" : "endpoint"; }
-
 std::string headline(const BakeReport& report) {
   return fmt::format("{} -> {}\n", printable(report.input), printable(report.output));
 }
@@ -27,7 +25,7 @@ void add_row(const BakedMesh& mesh, Table& table) {
   } else if (mesh.elements == 0) {
     table.add_row({name, "stays flat", "", "", "", ""});
   } else {
-    table.add_row({name, encoding_name(mesh.encoding), grouped(mesh.elements), grouped(mesh.extras.size()),
+    table.add_row({name, std::string(name_of(mesh.encoding)), grouped(mesh.elements), grouped(mesh.extras.size()),
                    grouped(mesh.bytes), four_decimals(stated_error(mesh))});
   }
 }
@@ -57,7 +55,7 @@ Json mesh_json(const BakedMesh& mesh) {
     extras.push_back({{"target", extra.target}, {"factors", {extra.i, extra.j}}});
   return {{"mesh", mesh.mesh},
           {"name", mesh.name},
-          {"encoding", encoding_name(mesh.encoding)},
+          {"encoding", name_of(mesh.encoding)},
           {"already_baked", mesh.already_baked},
           {"different_normals", mesh.elements},
           {"extra_targets", std::move(extras)},
@@ -128,8 +126,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
     text += "exact at every instant\n";
   else
-    text += fmt::format("{}: at most {} degrees from the right normals, as far as can be proven\n",
-                        encoding == BakeEncoding::kExact ? "fitted" : "endpoint", four_decimals(bake.largest_error));
+    text +=
+        fmt::format("{}: at most {} degrees from the right normals, as far as can be proven\n",
+                    encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error));
   return text + lines_after(report);
 }
 
@@ -151,7 +150,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
 
 std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
   Json json = common_json(report);
-  json["encoding"] = encoding_name(encoding);
+  json["encoding"] = name_of(encoding);
   json["keyframes"] = bake.keyframes;
   json["vertices"] = bake.vertices;
   json["targets"] = bake.targets;

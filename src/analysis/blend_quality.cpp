@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {
@@ -89,4 +89,4 @@ std::vector<double> random_blend_weights(const BlendWeightOptions& options) {
   return weights;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -24,7 +24,7 @@
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Exact base normals, and what is missing to the exact ones of each target alone at weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
@@ -52,6 +52,6 @@ struct BlendWeightOptions {
 /// Rows of random weights, evenly between low and high, of as many random targets. Pure: the same on every system.
 [[nodiscard]] std::vector<double> random_blend_weights(const BlendWeightOptions& options);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_ANALYSIS_BLEND_QUALITY_H_

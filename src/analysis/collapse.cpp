@@ -5,7 +5,7 @@
 
 #include "chronormal/core/polynomial.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 double length_squared(const Vec3d& v) { return dot(v, v); }
@@ -73,4 +73,4 @@ Collapses find_collapses(const ControlNormals& normals) noexcept {
   return found;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -16,7 +16,7 @@
 
 #include "chronormal/normals/control_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Far above the rounding of float32 positions, far below any length that was meant.
 inline constexpr double kCollapseShare = 1e-6;
@@ -39,6 +39,6 @@ struct Collapses {
 /// between them are one. Cost: three dot products for most faces, the roots of a cubic for those that turn far.
 [[nodiscard]] Collapses find_collapses(const ControlNormals& normals) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_ANALYSIS_COLLAPSE_H_

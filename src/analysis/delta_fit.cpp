@@ -9,7 +9,7 @@
 
 #include "core/cholesky.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // Of the mean of the diagonal: pulls what the rows leave open to the deltas at the start.
@@ -104,4 +104,4 @@ void DeltaFit::solve() {
   for (std::vector<Vec3d>& of_target : right_) std::fill(of_target.begin(), of_target.end(), Vec3d{});
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

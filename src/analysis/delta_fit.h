@@ -21,7 +21,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What a host adds up.
 struct DeltaNormals {
@@ -57,6 +57,6 @@ class DeltaFit {
   std::vector<std::vector<Vec3d>> right_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_ANALYSIS_DELTA_FIT_H_

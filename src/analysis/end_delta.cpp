@@ -13,7 +13,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr double kHalfPi = 1.57079632679489661923;
@@ -319,4 +319,4 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   return {best_scale * u1 - u0, best_scale, angle_of_key(best.key)};
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -11,7 +11,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/control_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct EndDelta {
   Vec3d delta;       ///< s u1 - u0, with |u0| = 1
@@ -30,6 +30,6 @@ struct EndDelta {
 /// control normals are zero. from and to must not be zero
 [[nodiscard]] double largest_line_error(const ControlNormals& normals, const Vec3d& from, const Vec3d& to) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_ANALYSIS_END_DELTA_H_

@@ -9,7 +9,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 [[nodiscard]] constexpr std::size_t block_count(std::size_t count, std::size_t block) noexcept {
   return (count + block - 1) / block;
@@ -62,6 +62,6 @@ void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body)
   }
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_CORE_BLOCKS_H_

@@ -11,7 +11,7 @@
 
 #include "chronormal/core/vec3.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The lower factor of a matrix. O(n^3), and O(n^2) for each solve().
 class Cholesky {
@@ -48,6 +48,6 @@ class Cholesky {
   std::size_t n_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_CORE_CHOLESKY_H_

@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kCacheLine = 64;
@@ -44,4 +44,4 @@ void AlignedBytes::release_rest() noexcept {
 #endif
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Where one pass reads and writes more bytes than this, results go past the caches if all their arrays are aligned to
 /// 64 bytes (those of recompute and of the schemes: if they are packed as well). In a shared cache of 32 MiB they would
@@ -73,6 +73,6 @@ template <class T>
 AlignedArray<T>::AlignedArray(std::size_t count)
     : bytes_(count > std::size_t(-1) / sizeof(T) ? std::size_t(-1) : count * sizeof(T)) {}
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_CORE_MEMORY_H_

@@ -12,7 +12,7 @@
 
 #include "chronormal/core/vec3.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// u: one operation of double, or of float, is within this of its exact value, relative to that.
 inline constexpr double kUnitRoundoff = 0x1p-53;
@@ -78,6 +78,6 @@ class CrossSum {
   std::size_t terms_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_CORE_ROUNDING_H_

@@ -24,7 +24,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // Scalars whose masks are bool.
 template <class S>
@@ -80,7 +80,7 @@ HWY_INLINE S upper_angle(const S& y, const S& x) {
   return select(x < zero, S(3.141592654f) - quadrant, quadrant);
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_CORE_TRIGONOMETRY_INL_H_

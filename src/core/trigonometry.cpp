@@ -2,10 +2,10 @@
 
 #include "core/trigonometry-inl.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 SinCos<float> sin_cos(float x) noexcept { return HWY_NAMESPACE::sin_cos<float>(x); }
 
 float upper_angle(float y, float x) noexcept { return HWY_NAMESPACE::upper_angle<float>(y, x); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -17,7 +17,7 @@
 
 #include "chronormal/core/vec3.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Calls body(e, f) for each triangle of the fan of a polygon, with its edges from the first corner, in the order of the
 /// corners. edge_to(c) makes the edge to corner c, once for each c = 1 ... corners - 1.
@@ -42,6 +42,6 @@ template <class VertexAt>
   return sum;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_CORE_VECTOR_AREA_H_

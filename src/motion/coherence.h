@@ -9,7 +9,7 @@
 
 #include "chronormal/motion/topology.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// How many cache lines of packed positions a face brings in that the faces just before it did not: about 0.2 on a mesh
 /// in grid order, 3 where vertices lie in no order. A pure function of the topology; less than 0.1 ms.
@@ -37,6 +37,6 @@ namespace chronormal {
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_MOTION_COHERENCE_H_

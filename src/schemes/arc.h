@@ -12,7 +12,7 @@
 #include "chronormal/core/vec3.h"
 #include "schemes/curve_scheme.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct Arc {
   Vec3d w, p, q;
@@ -110,6 +110,6 @@ struct UniformArc {
   }
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_ARC_H_

@@ -11,7 +11,7 @@
 #include "schemes/arc.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 struct ThroughMiddle {
@@ -63,4 +63,4 @@ struct TimedCircle {
 std::unique_ptr<Scheme> make_circle() { return std::make_unique<CurveScheme<Circle>>(Circle{}); }
 std::unique_ptr<Scheme> make_timed_circle() { return std::make_unique<CurveScheme<TimedCircle>>(TimedCircle{}); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

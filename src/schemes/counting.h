@@ -8,7 +8,7 @@
 #include "chronormal/schemes/scheme.h"
 #include "core/trigonometry.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Comparisons and changes of sign are free; selections are taken as the values have it.
 class Counting {
@@ -52,6 +52,6 @@ class Counting {
   float value_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_COUNTING_H_

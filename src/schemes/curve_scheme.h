@@ -30,7 +30,7 @@
 #include "core/memory.h"
 #include "schemes/kernels/curve_kernels.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// One element while it is fitted.
 class ElementMotion {
@@ -275,6 +275,6 @@ class CurveScheme final : public Scheme {
   BlockedValues values_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_CURVE_SCHEME_H_

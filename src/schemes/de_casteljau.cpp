@@ -4,7 +4,7 @@
 #include "schemes/curve_scheme.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 class DeCasteljau {
@@ -33,4 +33,4 @@ std::unique_ptr<Scheme> make_de_casteljau(std::size_t normal_count) {
   return std::make_unique<CurveScheme<DeCasteljau>>(DeCasteljau(normal_count));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

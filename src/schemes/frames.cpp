@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // The edges at the first corner of a face: e to the next corner, f to the previous one. For a polygon they are taken
@@ -158,4 +158,4 @@ Arc shorter_arc(const FramePair& frames) {
   return arc_about((1 / size) * v, a.normal, 2 * std::atan2(size, w));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -9,7 +9,7 @@
 #include "schemes/curve_scheme.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 class Lagrange {
@@ -83,4 +83,4 @@ std::unique_ptr<Scheme> make_lagrange(std::size_t degree) {
   return std::make_unique<CurveScheme<Lagrange>>(Lagrange(degree));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -6,7 +6,7 @@
 #include "schemes/mean_error.h"
 #include "schemes/minimize.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 class ScaledLinear {
@@ -48,4 +48,4 @@ class ScaledLinear {
 
 std::unique_ptr<Scheme> make_scaled_linear() { return std::make_unique<CurveScheme<ScaledLinear>>(ScaledLinear{}); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -7,7 +7,7 @@
 
 #include "chronormal/schemes/scheme.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 std::unique_ptr<Scheme> make_recompute();                             // recompute.cpp
 std::unique_ptr<Scheme> make_polynomial();                            // polynomial.cpp
@@ -24,6 +24,6 @@ std::unique_ptr<Scheme> make_quaternion_optimal();  // quaternion_optimal.cpp
 std::unique_ptr<Scheme> make_circle();              // circle.cpp
 std::unique_ptr<Scheme> make_timed_circle();
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_MAKERS_H_

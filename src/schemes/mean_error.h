@@ -10,7 +10,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "schemes/arc.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. A polynomial
 /// in place of the arc sine, since a search asks for it hundreds of times per element.
@@ -88,6 +88,6 @@ class ExactSamples {
   std::array<Vec3d, kFineIntervals> exact_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_MEAN_ERROR_H_

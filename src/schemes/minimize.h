@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Evaluates f at every point, then narrows the lowest local minima by golden section.
 /// points must ascend; at most 64 of them. Returns the best x seen, so never worse than the best point given.
@@ -71,6 +71,6 @@ template <class F>
   return best_x;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_MINIMIZE_H_

@@ -7,7 +7,7 @@
 #include "schemes/frames.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 template <class MakeFrames>
@@ -42,4 +42,4 @@ std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed) {
   return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); }, false);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

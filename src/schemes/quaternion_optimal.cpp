@@ -9,7 +9,7 @@
 #include "schemes/mean_error.h"
 #include "schemes/minimize.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 struct OptimalQuaternion : UniformArc {
@@ -54,4 +54,4 @@ std::unique_ptr<Scheme> make_quaternion_optimal() {
   return std::make_unique<CurveScheme<OptimalQuaternion>>(OptimalQuaternion{});
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -6,7 +6,7 @@
 #include "schemes/curve_scheme.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // Against control normals of length 1: below float32's rounding, and its square well above zero.
@@ -49,4 +49,4 @@ class Rational {
 
 std::unique_ptr<Scheme> make_rational() { return std::make_unique<CurveScheme<Rational>>(Rational{}); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

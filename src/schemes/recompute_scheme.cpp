@@ -7,7 +7,7 @@
 #include "schemes/counting.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 template <class S>
@@ -65,4 +65,4 @@ class Recompute final : public Scheme {
 
 std::unique_ptr<Scheme> make_recompute() { return std::make_unique<Recompute>(); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

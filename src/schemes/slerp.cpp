@@ -7,7 +7,7 @@
 #include "schemes/arc.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 struct Slerp {
@@ -36,4 +36,4 @@ struct Slerp {
 
 std::unique_ptr<Scheme> make_slerp() { return std::make_unique<CurveScheme<Slerp>>(Slerp{}); }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

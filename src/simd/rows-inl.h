@@ -16,7 +16,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // A vector of floats makes two of doubles; a single lane (Highway's plain C++) makes one.
 inline constexpr std::size_t kDoubleLanes = kLanes > 1 ? kLanes / 2 : 1;
@@ -140,7 +140,7 @@ HWY_INLINE Row RoundedRow(const double* from) {
 #endif
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

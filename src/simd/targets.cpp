@@ -2,7 +2,7 @@
 
 #include <hwy/targets.h>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 std::vector<std::int64_t> supported_targets() {
   std::vector<std::int64_t> targets;
@@ -28,4 +28,4 @@ ScopedTarget::~ScopedTarget() {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

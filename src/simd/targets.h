@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Those that the kernels are compiled for and that this machine runs, the best first. Values of Highway's HWY_TARGET.
 [[nodiscard]] std::vector<std::int64_t> supported_targets();
@@ -25,6 +25,6 @@ class ScopedTarget {
   ~ScopedTarget();
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SIMD_TARGETS_H_

@@ -236,6 +236,28 @@ TEST(Layers, raw_intrinsics_stand_in_one_file) {
   }
 }
 
+// The lines by which a private header declares names where public ones live. An inline namespace keeps the two apart for
+// the linker and the compiler, and needs no word where the names are used.
+std::vector<std::string> public_names(const std::string& path, const std::string& text) {
+  std::vector<std::string> found;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with("namespace chronormal") && !line.starts_with("namespace chronormal::inline internal"))
+      found.push_back(path + ": " + line);
+  }
+  return found;
+}
+
+TEST(Layers, private_headers_declare_internal_names) {
+  EXPECT_EQ(public_names("src/normals/x.h", "namespace chronormal {\nnamespace chronormal::gltf {\n").size(), 2u);
+  EXPECT_TRUE(public_names("src/normals/x.h", "namespace chronormal::inline internal::gltf {\n").empty());
+
+  const fs::path state_of_public_class = "src/io/gltf/gltf_document_state.h";
+  for (const fs::path& file : product_files()) {
+    if (!file.string().starts_with("src/") || file.extension() != ".h" || file == state_of_public_class) continue;
+    for (const std::string& line : public_names(file.string(), read(kRoot / file))) ADD_FAILURE() << line;
+  }
+}
+
 TEST(Layers, files_can_be_seen_at_a_glance) {
   for (const fs::path& file : product_files()) {
     const std::size_t limit = file.string().starts_with("include/") ? 250 : 500;

@@ -17,6 +17,7 @@
 #define CHRONORMAL_IO_GLTF_DOCUMENT_H_
 
 #include <array>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,7 +33,9 @@
 
 namespace chronormal {
 
+inline namespace internal {
 class FileBytes;
+}
 
 /// Finds the bytes of a file by its name, in place of the file system. They must stay as long as what was opened with
 /// it. Errors: what the caller is to be told.
@@ -67,10 +70,24 @@ struct GltfExtraTarget {
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
+/// How a bake encodes the normals of targets (workflow/bake.h): with extra targets, or one delta for each.
+enum class BakeEncoding { kExact, kEndpoint };
+
+/// The encodings by name, for the command line, for JSON and for the mark in a file.
+struct BakeEncodingName {
+  BakeEncoding encoding;
+  std::string_view name;
+};
+inline constexpr std::array<BakeEncodingName, 2> kBakeEncodings = {
+    {{BakeEncoding::kExact, "exact"}, {BakeEncoding::kEndpoint, "endpoint"}}};
+[[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
+/// Nothing where no encoding has that name.
+[[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
+
 /// What a bake leaves in extras.chronormal of a mesh, for instance
 ///     {"version": 1, "encode": "exact", "sequence": false, "extras": [{"target": 2, "factors": [0, "base"]}]}
 struct GltfBakeMark {
-  std::string encode;                   ///< "exact" or "endpoint"
+  BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
   std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
 };

@@ -42,7 +42,9 @@
 
 namespace chronormal {
 
+inline namespace internal {
 struct CurveData;
+}
 
 /// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians

@@ -24,8 +24,6 @@
 
 namespace chronormal {
 
-enum class BakeEncoding { kExact, kEndpoint };
-
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< nothing: exact where animations drive the weights, else endpoint
   Weighting weighting = Weighting::kArea;     ///< others than area are fitted, with a stated error

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace chronormal::binary {
+namespace chronormal::inline internal::binary {
 
 /// Reads the number whose first byte is at `at`.
 template <class T>
@@ -61,6 +61,6 @@ template <class Real>
   return name + ", byte " + std::to_string(at);
 }
 
-}  // namespace chronormal::binary
+}  // namespace chronormal::internal::binary
 
 #endif  // CHRONORMAL_IO_BYTES_BINARY_H_

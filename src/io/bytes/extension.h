@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// In lower case and with the dot (".obj"); empty where there is none.
 [[nodiscard]] inline std::string lower_extension(std::string_view path) {
@@ -20,6 +20,6 @@ namespace chronormal {
   return extension;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_BYTES_EXTENSION_H_

@@ -12,7 +12,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The bytes of a file, as long as the object lives. Regular files are mapped (another program must not shorten the
 /// file meanwhile), pipes and devices are read to their end.
@@ -47,6 +47,6 @@ class FileBytes {
   std::string owned_;       // where there is no view
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_BYTES_FILE_H_

@@ -4,7 +4,7 @@
 #include <limits>
 #include <system_error>
 
-namespace chronormal::scan {
+namespace chronormal::inline internal::scan {
 namespace {
 
 // std::from_chars takes no plus sign.
@@ -88,4 +88,4 @@ std::string describe(NumberFault fault, std::string_view word) {
   return quoted(word) + " is not a number";
 }
 
-}  // namespace chronormal::scan
+}  // namespace chronormal::internal::scan

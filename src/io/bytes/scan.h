@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace chronormal::scan {
+namespace chronormal::inline internal::scan {
 
 /// Blank inside a line; CR too, so that CRLF needs no care.
 [[nodiscard]] constexpr bool is_blank(char c) noexcept {
@@ -75,6 +75,6 @@ void append_number(std::string& text, Number number) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
 }
 
-}  // namespace chronormal::scan
+}  // namespace chronormal::internal::scan
 
 #endif  // CHRONORMAL_IO_BYTES_SCAN_H_

@@ -13,7 +13,7 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal::zip {
+namespace chronormal::inline internal::zip {
 namespace {
 
 constexpr std::endian kOrder = std::endian::little;
@@ -289,4 +289,4 @@ std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
   return file;
 }
 
-}  // namespace chronormal::zip
+}  // namespace chronormal::internal::zip

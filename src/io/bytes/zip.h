@@ -13,7 +13,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal::zip {
+namespace chronormal::inline internal::zip {
 
 /// An entry of the directory.
 struct Member {
@@ -47,6 +47,6 @@ struct Part {
 /// (tests make it small).
 [[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
 
-}  // namespace chronormal::zip
+}  // namespace chronormal::internal::zip
 
 #endif  // CHRONORMAL_IO_BYTES_ZIP_H_

@@ -16,7 +16,7 @@
 #include "io/bytes/scan.h"
 #include "io/cache/maya_chunks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 class DescriptionReader {
@@ -226,4 +226,4 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   return cache;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -29,7 +29,7 @@
 #include "chronormal/core/result.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 constexpr std::int32_t kMayaTicksPerSecond = 6000;
 
@@ -73,6 +73,6 @@ struct MayaCacheDescription {
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_MAYA_CACHE_H_

@@ -9,7 +9,7 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal::maya {
+namespace chronormal::inline internal::maya {
 namespace {
 
 constexpr std::endian kOrder = std::endian::big;
@@ -205,4 +205,4 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
   return Success{};
 }
 
-}  // namespace chronormal::maya
+}  // namespace chronormal::internal::maya

@@ -12,7 +12,7 @@
 #include "io/cache/maya_cache.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal::maya {
+namespace chronormal::inline internal::maya {
 
 /// The points of one channel at one time.
 struct Points {
@@ -37,6 +37,6 @@ struct Points {
 [[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                                     const std::string& name, PositionCache& cache);
 
-}  // namespace chronormal::maya
+}  // namespace chronormal::internal::maya
 
 #endif  // CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_

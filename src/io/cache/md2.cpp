@@ -11,7 +11,7 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::endian kOrder = std::endian::little;
@@ -135,4 +135,4 @@ Result<Motion> read_md2(std::string_view bytes, const std::string& name, double 
   return Md2Reader(bytes, name).read(frames_per_second);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -21,7 +21,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads a motion, of which name is the name for messages; keyframe k is at k / frames_per_second and has the name of
 /// the frame ("stand01"). The result is valid (validate() in motion/motion.h).
@@ -31,6 +31,6 @@ namespace chronormal {
 /// of this before memory is taken), indices of no vertex, coordinates that are not finite or too large for float32.
 [[nodiscard]] Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second = 1);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_MD2_H_

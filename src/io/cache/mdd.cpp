@@ -7,7 +7,7 @@
 
 #include "io/cache/point_cache_body.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kHeaderSize = 8;
@@ -57,4 +57,4 @@ Result<std::string> write_mdd(const Motion& motion) {
   return bytes;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -16,7 +16,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads an MDD file, of which name is the name for messages; nothing of options is needed.
 ///
@@ -30,6 +30,6 @@ namespace chronormal {
 /// vertices or keyframes, and times that are the same as float32.
 [[nodiscard]] Result<std::string> write_mdd(const Motion& motion);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_MDD_H_

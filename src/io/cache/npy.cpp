@@ -10,7 +10,7 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal::npy {
+namespace chronormal::inline internal::npy {
 namespace {
 
 constexpr std::string_view kFirstWord("\x93NUMPY", 6);
@@ -252,4 +252,4 @@ std::string write_header(std::string_view type, const std::vector<std::uint64_t>
   return header + text;
 }
 
-}  // namespace chronormal::npy
+}  // namespace chronormal::internal::npy

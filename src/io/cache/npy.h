@@ -14,7 +14,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal::npy {
+namespace chronormal::inline internal::npy {
 
 enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 'U', kBytes = 'S' };
 
@@ -59,6 +59,6 @@ struct Array {
 /// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
 [[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
 
-}  // namespace chronormal::npy
+}  // namespace chronormal::internal::npy
 
 #endif  // CHRONORMAL_IO_CACHE_NPY_H_

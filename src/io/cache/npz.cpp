@@ -14,7 +14,7 @@
 #include "io/bytes/zip.h"
 #include "io/cache/npy.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using npy::Array;
@@ -263,4 +263,4 @@ Result<std::string> write_npz(const Motion& motion) {
   return write_npz(members);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -28,7 +28,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads a motion, of which name is the name for messages; the result is valid (validate() in motion/motion.h).
 ///
@@ -80,6 +80,6 @@ struct NpzMember {
 /// Writes a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_NPZ_H_

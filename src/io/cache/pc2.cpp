@@ -6,7 +6,7 @@
 
 #include "io/cache/point_cache_body.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kFirstWord("POINTCACHE2\0", 12);
@@ -64,4 +64,4 @@ Result<std::string> write_pc2(const Motion& motion, double frames_per_second) {
   return bytes;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -21,7 +21,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads a PC2 file, of which name is the name for messages.
 ///
@@ -35,6 +35,6 @@ namespace chronormal {
 /// Errors: kUsage without a place: times at other steps, blend shapes, more than 2^31 - 1 vertices or keyframes.
 [[nodiscard]] Result<std::string> write_pc2(const Motion& motion, double frames_per_second = 1);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_PC2_H_

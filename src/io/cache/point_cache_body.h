@@ -15,7 +15,7 @@
 #include "io/bytes/binary.h"
 #include "io/cache/position_cache.h"
 
-namespace chronormal::point_cache {
+namespace chronormal::inline internal::point_cache {
 
 /// The counts of a header.
 struct Counts {
@@ -77,6 +77,6 @@ inline void append_positions(std::string& file, const Motion& motion, std::endia
   }
 }
 
-}  // namespace chronormal::point_cache
+}  // namespace chronormal::internal::point_cache
 
 #endif  // CHRONORMAL_IO_CACHE_POINT_CACHE_BODY_H_

@@ -5,7 +5,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 std::string number(double value) {
@@ -66,4 +66,4 @@ Status check_is_sequence(const Motion& motion) {
   return check_keyframes(motion);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

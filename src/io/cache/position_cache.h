@@ -20,7 +20,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/topology.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What a cache reader returns: at least one vertex and one sample, finite times and positions. The times need not
 /// ascend.
@@ -57,6 +57,6 @@ struct CacheOptions {
 /// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_CACHE_POSITION_CACHE_H_

@@ -6,7 +6,7 @@
 
 #include "io/bytes/binary.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;
@@ -96,4 +96,4 @@ Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

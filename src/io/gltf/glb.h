@@ -19,7 +19,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Views of the file.
 struct GlbChunks {
@@ -47,6 +47,6 @@ struct GlbPieces {
                                             const std::optional<std::vector<std::string_view>>& bin,
                                             std::string_view rest, const std::string& name);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLB_H_

@@ -9,7 +9,7 @@
 #include "io/bytes/binary.h"
 #include "io/gltf/glb.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -80,4 +80,4 @@ Result<std::string> GlbBuilder::finish() {
   return file;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -22,7 +22,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "io/gltf/gltf_edit_arrays.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 class GlbBuilder {
  public:
@@ -54,6 +54,6 @@ class GlbBuilder {
   std::size_t most_bytes_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLB_BUILDER_H_

@@ -7,7 +7,7 @@
 
 #include "io/json/json.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kVersion = 1;
@@ -57,8 +57,9 @@ GltfBakeMark read_mark(const JsonView& view, const nlohmann::json& value, std::s
   GltfBakeMark mark;
   const std::size_t version = view.required_count("version", std::size_t{1} << 31);
   if (version != kVersion) view.complain("version", "it was written by another version of chronormal");
-  mark.encode = view.required_text("encode");
-  if (mark.encode != "exact" && mark.encode != "endpoint") view.complain("encode", "it is neither exact nor endpoint");
+  const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
+  if (!encoding) view.complain("encode", "it is neither exact nor endpoint");
+  mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = view.flag("sequence");
   const auto list = value.find("extras");
   if (list == value.end() || (list->is_array() && list->empty())) return mark;
@@ -102,7 +103,26 @@ nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark) {
   Json extras = Json::array();
   for (const GltfExtraTarget& extra : mark.extras)
     extras.push_back({{"target", extra.target}, {"factors", Json::array({factor(extra.i), factor(extra.j)})}});
-  return {{"version", kVersion}, {"encode", mark.encode}, {"sequence", mark.sequence}, {"extras", std::move(extras)}};
+  return {{"version", kVersion},
+          {"encode", name_of(mark.encoding)},
+          {"sequence", mark.sequence},
+          {"extras", std::move(extras)}};
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::inline internal::gltf
+
+namespace chronormal {
+
+std::string_view name_of(BakeEncoding encoding) noexcept {
+  return std::find_if(kBakeEncodings.begin(), kBakeEncodings.end(),
+                      [&](const BakeEncodingName& known) { return known.encoding == encoding; })
+      ->name;
+}
+
+std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept {
+  for (const BakeEncodingName& known : kBakeEncodings)
+    if (known.name == name) return known.encoding;
+  return std::nullopt;
+}
+
+}  // namespace chronormal

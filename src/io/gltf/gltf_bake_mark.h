@@ -7,7 +7,7 @@
 
 #include "chronormal/io/gltf_document.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// Sets mesh.mark where there is one, or mesh.mark_fault where there is one that makes no sense. Extras are anyone's:
 /// they never make a file unreadable. pointer is that of the mesh, name that of the file; mesh has its target_count.
@@ -17,6 +17,6 @@ void read_bake_mark(const nlohmann::json& document, const std::string& pointer, 
 /// A mark as it is written.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_

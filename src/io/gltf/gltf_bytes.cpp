@@ -11,7 +11,7 @@
 #include "io/bytes/binary.h"
 #include "io/gltf/gltf_uri.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 std::uint32_t load_index(const char* at, Component component) noexcept {
@@ -257,4 +257,4 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
   return result;
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

@@ -17,7 +17,7 @@
 #include "io/bytes/file.h"
 #include "io/gltf/gltf_model.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// One number as glTF means it (section 3.6.2.2 of the specification): integers that are normalised are fractions.
 [[nodiscard]] double load_number(const char* at, Component component, bool normalized) noexcept;
@@ -91,6 +91,6 @@ class Bytes {
   std::size_t kept_bytes_ = 0;                                       // of views_
 };
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_BYTES_H_

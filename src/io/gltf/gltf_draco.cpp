@@ -18,7 +18,7 @@
 
 #include "io/gltf/gltf_bytes.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 draco::DataType data_type(Component component) {
@@ -118,4 +118,4 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   return geometry;
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

@@ -9,7 +9,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "io/gltf/gltf_model.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// Decodes triangles, positions and, where they are wanted and there, normals and tangents; what the numbers mean is
 /// said by the accessors of the primitive, which must have draco.
@@ -19,6 +19,6 @@ namespace chronormal::gltf {
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const std::string& place);
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_DRACO_H_

@@ -12,7 +12,7 @@
 #include "io/bytes/binary.h"
 #include "io/json/json_writer.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
@@ -184,4 +184,4 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
   return result;
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

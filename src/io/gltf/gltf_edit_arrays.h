@@ -11,7 +11,7 @@
 
 #include "chronormal/io/gltf_edit.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// Arrays of one kind share a buffer view: vectors, whose target is ARRAY_BUFFER (section 3.6.2.4 of the
 /// specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
@@ -56,6 +56,6 @@ class NewArrays {
   std::unordered_multimap<std::size_t, std::size_t> by_hash_;
 };
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_EDIT_ARRAYS_H_

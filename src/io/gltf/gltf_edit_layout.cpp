@@ -10,7 +10,7 @@
 #include "io/gltf/gltf_uri.h"
 #include "io/json/json_writer.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::string_view kZeros{"\0\0\0\0\0\0\0", 7};
@@ -289,4 +289,4 @@ Status EditLayout::lay_out_gltf() {
   return append("/buffers", buffer.text());
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

@@ -18,7 +18,7 @@
 #include "io/gltf/gltf_model.h"
 #include "io/json/json_text.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// What is written. All of it must outlive the layout.
 struct EditedDocument {
@@ -90,6 +90,6 @@ class EditLayout {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_EDIT_LAYOUT_H_

@@ -9,7 +9,7 @@
 
 #include "io/gltf/gltf_model_parser.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 53;  // what a JSON number holds exactly
@@ -346,4 +346,4 @@ Result<Model> parse_model(std::string_view json, const std::string& name, std::s
   return parser.parse(document.value());
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

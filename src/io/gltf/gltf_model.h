@@ -16,7 +16,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// The values are those of the format.
 enum class Component { kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125, kFloat = 5126 };
@@ -110,6 +110,6 @@ struct Model {
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes);
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MODEL_H_

@@ -10,7 +10,7 @@
 #include "io/gltf/gltf_bake_mark.h"
 #include "io/gltf/gltf_model_parser.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
@@ -325,4 +325,4 @@ void Parser::parse_track(const JsonView& animation, const JsonView& channel, std
   sources.push_back(source);
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

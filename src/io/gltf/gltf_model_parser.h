@@ -14,7 +14,7 @@
 #include "io/gltf/gltf_model.h"
 #include "io/json/json.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 class Parser {
  public:
@@ -83,6 +83,6 @@ class Parser {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
 };
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MODEL_PARSER_H_

@@ -12,7 +12,7 @@
 #include "io/gltf/gltf_model.h"
 #include "io/gltf/gltf_weights.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using gltf::WeightCurve;
@@ -424,4 +424,4 @@ Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotion
   return assembly.finish_without_motion();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

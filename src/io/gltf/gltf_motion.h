@@ -25,7 +25,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct GltfMotionOptions {
   std::string animation;  ///< name or index; empty: the targets
@@ -64,6 +64,6 @@ struct GltfMotion {
 [[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const Motion& motion,
                                                                   std::span<const GltfPart> parts);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MOTION_H_

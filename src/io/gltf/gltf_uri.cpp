@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ Result<std::string> name_file_uri(std::string_view uri, const std::optional<std:
   return (fs::path(folder.value_or("")) / path).string();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

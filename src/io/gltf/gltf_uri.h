@@ -12,7 +12,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Whether the URI holds the bytes itself.
 [[nodiscard]] bool is_data_uri(std::string_view uri) noexcept;
@@ -32,6 +32,6 @@ namespace chronormal {
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_URI_H_

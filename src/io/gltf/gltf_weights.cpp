@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 double WeightCurve::value(std::size_t key, std::size_t target) const noexcept {
   const bool cubic = interpolation_ == GltfInterpolation::kCubicSpline;
@@ -65,4 +65,4 @@ void WeightCurve::curvature(double from_time, double to_time, std::span<double> 
   }
 }
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf

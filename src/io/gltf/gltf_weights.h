@@ -8,7 +8,7 @@
 
 #include "chronormal/io/gltf_document.h"
 
-namespace chronormal::gltf {
+namespace chronormal::inline internal::gltf {
 
 /// The weights of one node (N targets) as functions of time: constant before the first key and after the last, between
 /// them as appendix C of the glTF specification has it.
@@ -36,6 +36,6 @@ class WeightCurve {
   GltfKeys keys_;
 };
 
-}  // namespace chronormal::gltf
+}  // namespace chronormal::internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_WEIGHTS_H_

@@ -15,7 +15,7 @@
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Extension = std::string_view;
@@ -138,4 +138,4 @@ Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name
   return (shaded && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes, place);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

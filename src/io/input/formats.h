@@ -15,7 +15,7 @@
 #include "io/cache/position_cache.h"
 #include "io/mesh/mesh_frame.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What a file holds.
 enum class Holds {
@@ -67,6 +67,6 @@ struct Format {
 [[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
                                           const std::string& place, bool shaded = false);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_INPUT_FORMATS_H_

@@ -13,7 +13,7 @@
 #include "io/bytes/file.h"
 #include "io/input/formats.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
@@ -144,4 +144,4 @@ Status check_same_topology(const Topology& first, const std::string& first_name,
   return Success{};
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -12,7 +12,7 @@
 #include "chronormal/motion/topology.h"
 #include "io/mesh/mesh_frame.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// A motion as it is read from files, and what they store beside it.
 struct ReadMotion {
@@ -46,6 +46,6 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                                          const std::string& place);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_INPUT_INPUT_FILES_H_

@@ -9,7 +9,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/input/formats.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
@@ -79,4 +79,4 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   return read;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

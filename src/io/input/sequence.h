@@ -8,7 +8,7 @@
 #include "chronormal/core/result.h"
 #include "io/input/input_files.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The files that the options stand for; of a folder all meshes. Does not open them.
 /// Errors: those of find_input_files(); kInvalidInput for a folder without meshes, or with files of two formats.
@@ -21,6 +21,6 @@ namespace chronormal {
 /// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_INPUT_SEQUENCE_H_

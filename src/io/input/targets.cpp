@@ -14,7 +14,7 @@
 #include "io/input/formats.h"
 #include "io/mesh/make_human_target.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   return read;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -15,7 +15,7 @@
 #include "chronormal/core/result.h"
 #include "io/input/input_files.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads the base and the targets of the options. A keyframe takes the name of its file without the extensions
 /// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time; memory is 12 bytes per vertex
@@ -27,6 +27,6 @@ namespace chronormal {
 /// the file ("targets/blink.target, line 17").
 [[nodiscard]] Result<ReadMotion> read_targets(const InputOptions& options);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_INPUT_TARGETS_H_

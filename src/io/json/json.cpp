@@ -10,7 +10,7 @@
 #include "io/bytes/binary.h"
 #include "io/json/json_text.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -366,4 +366,4 @@ double JsonView::as_number() const {
   return 0;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -18,7 +18,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Arrays and objects may be nested so deep; glTF itself needs about ten.
 inline constexpr std::size_t kDeepestJson = 256;
@@ -108,6 +108,6 @@ class JsonView {
   JsonComplaint* complaint_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_H_

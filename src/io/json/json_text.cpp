@@ -8,7 +8,7 @@
 
 #include "io/json/json_writer.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF", kBlanks = " \t\r\n";
@@ -359,4 +359,4 @@ std::string join(const std::vector<std::string_view>& pieces) {
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

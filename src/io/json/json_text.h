@@ -25,7 +25,7 @@
 
 #include "chronormal/core/result.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The text of a string: "\u00e9" without its quotation marks, in UTF-8. quoted must be a valid JSON string.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
@@ -93,6 +93,6 @@ class JsonText {
 /// Pieces of a text as one.
 [[nodiscard]] std::string join(const std::vector<std::string_view>& pieces);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_TEXT_H_

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 template <class Number>
@@ -47,4 +47,4 @@ JsonObject& JsonObject::add(std::string_view name, std::string_view json) {
   return *this;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

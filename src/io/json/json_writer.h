@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// A string as JSON. text must be UTF-8.
 [[nodiscard]] std::string quote_json(std::string_view text);
@@ -35,6 +35,6 @@ class JsonObject {
   std::string text_ = "{";
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_WRITER_H_

@@ -12,7 +12,7 @@
 #include "io/bytes/extension.h"
 #include "io/bytes/scan.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using scan::NumberFault;
@@ -168,4 +168,4 @@ Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std
   return TargetReader(bytes, name, base).read();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -21,7 +21,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Delta i is added to the vertex vertices[i]. No vertex comes twice.
 struct MakeHumanTarget {
@@ -51,6 +51,6 @@ struct MakeHumanTarget {
 [[nodiscard]] Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
                                                              VectorView<const float> base);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_MESH_MAKE_HUMAN_TARGET_H_

@@ -7,7 +7,7 @@
 
 #include "chronormal/motion/topology.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What a mesh reader returns: at least one vertex and one face, and finite positions.
 struct MeshFrame {
@@ -23,6 +23,6 @@ struct MeshFrame {
   std::vector<float> normal_of_corner = {};
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_MESH_MESH_FRAME_H_

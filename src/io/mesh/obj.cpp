@@ -12,7 +12,7 @@
 #include "io/bytes/scan.h"
 #include "io/mesh/polygon_builder.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using scan::NumberFault;
@@ -351,4 +351,4 @@ std::string write_obj(const Topology& topology, VectorView<const float> position
   return text;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -30,7 +30,7 @@
 #include "chronormal/core/views.h"
 #include "io/mesh/mesh_frame.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Reads the mesh of an OBJ file, of which name is the name for messages.
 ///
@@ -57,6 +57,6 @@ namespace chronormal {
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     VectorView<const float> normals, std::span<const std::uint32_t> normal_of_corner);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_MESH_OBJ_H_

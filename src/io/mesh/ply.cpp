@@ -15,7 +15,7 @@
 #include "io/mesh/ply_header.h"
 #include "io/mesh/polygon_builder.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using ply::Element;
@@ -396,4 +396,4 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
   return bytes;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

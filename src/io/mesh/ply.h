@@ -31,7 +31,7 @@
 #include "chronormal/core/views.h"
 #include "io/mesh/mesh_frame.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
@@ -61,6 +61,6 @@ struct PlyNormals {
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
                                     const PlyNormals& normals, PlyEncoding encoding);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_MESH_PLY_H_

@@ -10,7 +10,7 @@
 
 #include "io/bytes/scan.h"
 
-namespace chronormal::ply {
+namespace chronormal::inline internal::ply {
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -219,4 +219,4 @@ Status HeaderReader::check_elements() {
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
 
-}  // namespace chronormal::ply
+}  // namespace chronormal::internal::ply

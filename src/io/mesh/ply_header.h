@@ -11,7 +11,7 @@
 #include "chronormal/core/result.h"
 #include "io/mesh/ply.h"
 
-namespace chronormal::ply {
+namespace chronormal::inline internal::ply {
 
 enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
@@ -55,6 +55,6 @@ struct Header {
 /// Errors: as read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
-}  // namespace chronormal::ply
+}  // namespace chronormal::internal::ply
 
 #endif  // CHRONORMAL_IO_MESH_PLY_HEADER_H_

@@ -11,7 +11,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/motion/topology.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Keeps no offsets until the first face that is not a triangle: most meshes never need them.
 class PolygonBuilder {
@@ -56,6 +56,6 @@ class PolygonBuilder {
   std::size_t face_count_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_IO_MESH_POLYGON_BUILDER_H_

@@ -13,7 +13,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kLanes = 4;
@@ -389,4 +389,4 @@ BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weig
   return Call(source, weights, scratch, result, threads).run();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

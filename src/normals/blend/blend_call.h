@@ -12,7 +12,7 @@
 #include "normals/blend/blend_scratch.h"
 #include "normals/blend/blend_storage.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What an evaluation reads.
 struct BlendSource {
@@ -30,6 +30,6 @@ BlendChoice choose_path(const BlendSource& source, std::span<const double> weigh
 BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch,
                          VectorView<float> result, Threads threads);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_

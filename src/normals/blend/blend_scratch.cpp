@@ -7,7 +7,7 @@
 #include "normals/blend/blend_storage.h"
 #include "normals/blend/blend_terms.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kLanes = 4;
@@ -57,4 +57,4 @@ std::size_t scratch_bytes(const BlendShape& shape) noexcept {
          shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -10,7 +10,7 @@
 #include "chronormal/motion/blend_set.h"
 #include "normals/blend/index_bits.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 class BlendTerms;
 
@@ -49,6 +49,6 @@ struct BlendScratch {
 
 [[nodiscard]] std::size_t scratch_bytes(const BlendShape& shape) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_

@@ -8,7 +8,7 @@
 #include "core/rounding.h"
 #include "normals/blend/blend_scratch.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kLanes = 4;
@@ -227,4 +227,4 @@ void BlendStorage::update_cost() {
   cost_.peak_bytes = std::max(cost_.bytes + largest_work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -13,7 +13,7 @@
 #include "normals/blend/blend_terms.h"
 #include "normals/blend/index_bits.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Bounds of rounding are kept in this unit, that of float32.
 
@@ -75,6 +75,6 @@ class BlendStorage {
   BlendCost cost_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_

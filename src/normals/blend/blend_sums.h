@@ -14,7 +14,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Faces of so many corners cost no memory of their own.
 inline constexpr std::size_t kSmallFace = 4;
@@ -90,6 +90,6 @@ class ElementSum {
   double noise_ = 0, size_ = 0, count_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_

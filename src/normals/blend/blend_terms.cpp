@@ -9,7 +9,7 @@
 #include "core/blocks.h"
 #include "normals/blend/blend_sums.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -413,4 +413,4 @@ std::size_t BlendTerms::counting_bytes(std::size_t pairs) const noexcept {
          2 * pairs * sizeof(PairCount);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

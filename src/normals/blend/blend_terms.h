@@ -23,7 +23,7 @@
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/normal_groups.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The elements where a coefficient is not zero, ascending, and its values there.
 struct BlendTerm {
@@ -149,6 +149,6 @@ class BlendTerms::Term {
   std::vector<Rounded> of_large_faces_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_

@@ -22,6 +22,8 @@ struct Edge {
 
 }  // namespace
 
+inline namespace internal {
+
 PolygonNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) noexcept {
   CrossSum n0, m, n1;
   const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
@@ -37,6 +39,8 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
   return {{n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()},
           std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude())))};
 }
+
+}  // namespace internal
 
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());

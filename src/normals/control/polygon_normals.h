@@ -8,7 +8,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Of the largest control normal: coefficients below it count as zero in degree(). Direction errors of 2^-28 stay far
 /// below those of float32 evaluation.
@@ -23,6 +23,6 @@ struct PolygonNormals {
 [[nodiscard]] PolygonNormals polygon_control_normals(const Segment& segment,
                                                      std::span<const std::uint32_t> face) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_

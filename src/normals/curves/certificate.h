@@ -8,7 +8,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/control_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 inline constexpr int kCertificateDepth = 4;
 
@@ -32,6 +32,6 @@ inline constexpr int kCertificateDepth = 4;
   return certainly_not_negative(slack);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_

@@ -19,7 +19,7 @@
 #include "normals/groups/group_sum.h"
 #include "normals/groups/kernels/group_tiles.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kChunkTiles = 32;
@@ -484,4 +484,4 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_from(segment, nullptr);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

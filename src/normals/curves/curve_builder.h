@@ -17,7 +17,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "normals/curves/curve_data.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Makes the curves of elements whose control normals are there already.
 [[nodiscard]] CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options);
@@ -29,6 +29,6 @@ namespace chronormal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_

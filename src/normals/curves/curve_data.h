@@ -15,7 +15,7 @@
 #include "core/memory.h"
 #include "normals/curves/kernels/curve_blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct CurveData {
   /// Neighbouring blocks of one kind.
@@ -47,6 +47,6 @@ struct CurveData {
 /// result must have as many elements as the curves
 std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_

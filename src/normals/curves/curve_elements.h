@@ -7,7 +7,7 @@
 
 #include "chronormal/core/vec3.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The weights of n0, m, n1 in eq. 5, shared by all elements at one t. Made in double: each is right to half a bit.
 template <class S>
@@ -43,6 +43,6 @@ template <class S>
   return scale * v;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_

@@ -14,7 +14,7 @@
 #include "chronormal/normals/encodings.h"
 #include "normals/curves/kernels/evaluate.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 [[nodiscard]] inline bool is_packed(const VectorView<float>& view) {
   return view.is_packed();
@@ -110,6 +110,6 @@ auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body bod
   return body(AnyOutput{of_pass.working_set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_

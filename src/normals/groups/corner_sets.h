@@ -13,7 +13,7 @@
 #include "chronormal/motion/topology.h"
 #include "chronormal/normals/normal_groups.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The first corner of a face, as an index into Topology::corners().
 [[nodiscard]] inline std::size_t first_corner(const Topology& topology, std::size_t f) noexcept {
@@ -76,6 +76,6 @@ struct Listing {
   return listing;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_CORNER_SETS_H_

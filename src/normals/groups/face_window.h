@@ -16,7 +16,7 @@
 
 #include "chronormal/core/views.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct FaceWindow {
   std::size_t capacity = 0;        ///< a power of two
@@ -42,6 +42,6 @@ struct FaceWindow {
   }
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_

@@ -11,7 +11,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "core/rounding.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// A sum over faces, with zero for what is nothing but rounding.
 class ControlNormalsSum {
@@ -42,6 +42,6 @@ class ControlNormalsSum {
   return sum.without_rounding();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_

@@ -13,7 +13,7 @@
 #include "core/rounding.h"
 #include "normals/groups/corner_sets.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The vertices of one corner: here, and the ends of its two edges.
 struct CornerVertices {
@@ -61,6 +61,6 @@ inline constexpr double kCrossError = 32 * kUnitRoundoff;
   return angle * (weighting == Weighting::kAngle ? unit(n) : n);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_

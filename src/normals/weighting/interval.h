@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct Interval {
   double low = 0, high = 0;
@@ -80,6 +80,6 @@ struct Interval {
   return Interval::outwards(angle - error, angle + error);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_

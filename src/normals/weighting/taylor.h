@@ -14,7 +14,7 @@
 #include "chronormal/core/polynomial.h"
 #include "normals/weighting/interval.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 template <std::size_t M>
 using Series = std::array<Interval, M>;
@@ -107,6 +107,6 @@ template <std::size_t M>
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_

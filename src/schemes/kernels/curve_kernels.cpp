@@ -19,7 +19,7 @@
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 enum class Layout { kPacked, kPackedPastCaches, kPlanes };
 
@@ -162,12 +162,12 @@ void AdvanceCurves(Formula formula, const CoefficientBlocks& curves, float* stat
   });
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(EvaluateCurves);
 HWY_EXPORT(AdvanceCurves);
@@ -214,6 +214,6 @@ OperationCounts count_advance(Formula formula, std::span<const float> coefficien
   return Counting::counts();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // HWY_ONCE

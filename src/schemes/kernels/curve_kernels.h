@@ -18,7 +18,7 @@
 #include "chronormal/schemes/scheme.h"
 #include "core/memory.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 inline constexpr std::size_t kBlock = 32;
 
@@ -62,6 +62,6 @@ void advance_curves(Formula formula, const CoefficientBlocks& curves, float* sta
 [[nodiscard]] OperationCounts count_advance(Formula formula, std::span<const float> coefficients,
                                             std::span<const float> state);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_CURVE_KERNELS_H_

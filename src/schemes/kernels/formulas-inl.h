@@ -26,7 +26,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // v scaled to length 1, or `fallback` where v is as good as zero: opposite unit vectors can cancel.
 template <class S>
@@ -196,7 +196,7 @@ struct SphericalDeCasteljau {
   }
 };
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_FORMULAS_INL_H_

@@ -20,7 +20,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // How many elements are evaluated at a time: two vectors, since a processor cannot look far enough ahead to keep busy
 // with one after the other where a formula is a long chain of operations, as a sine is.
@@ -178,7 +178,7 @@ HWY_INLINE void set_vector(const State<S>& state, std::size_t k, const Triple<S>
   state.set(3 * k + 2, v.z);
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_SCALARS_INL_H_

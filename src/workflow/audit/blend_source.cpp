@@ -5,7 +5,7 @@
 
 #include "workflow/audit/measure.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
   const auto after = std::upper_bound(shading.parts.begin(), shading.parts.end(), vertex,
@@ -147,4 +147,4 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::
   return outputs;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

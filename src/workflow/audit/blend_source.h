@@ -14,7 +14,7 @@
 #include "workflow/audit/judged_part.h"
 #include "workflow/shading/gltf_shading.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 [[nodiscard]] inline Vec3f vector_at(const std::vector<float>& values, std::size_t i) {
   const float* v = values.data() + 3 * i;
@@ -67,6 +67,6 @@ class BlendSource {
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
                                                        AuditRule rule);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_

@@ -6,7 +6,7 @@
 #include "chronormal/analysis/quality.h"
 #include "workflow/audit/measure.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Kind = AuditFinding::Kind;
@@ -115,4 +115,4 @@ std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are
   return fault;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

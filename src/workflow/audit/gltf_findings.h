@@ -10,7 +10,7 @@
 #include "workflow/audit/blend_source.h"
 #include "workflow/shading/gltf_shading.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What is no fault, but good to know.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
@@ -25,6 +25,6 @@ namespace chronormal {
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_

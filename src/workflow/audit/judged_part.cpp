@@ -7,7 +7,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
@@ -109,4 +109,4 @@ Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::
   return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(normal) : normal);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

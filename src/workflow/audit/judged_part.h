@@ -12,7 +12,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What one task takes.
 inline constexpr std::size_t kRange = 4096;
@@ -59,6 +59,6 @@ class JudgedPart {
   std::vector<JudgedOutput> outputs_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_

@@ -16,7 +16,7 @@
 #include "core/blocks.h"
 #include "workflow/audit/judged_part.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Below this part of its largest control normal, the direction of a normal means nothing.
 inline constexpr double kVanished = 1e-4;
@@ -141,6 +141,6 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
   subject.vertices = part.outputs().size();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_

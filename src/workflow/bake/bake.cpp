@@ -117,10 +117,6 @@ void report_plan(const MeshPlan& plan, std::size_t target_count, BakedMesh& repo
   report.resampling_error = plan.left_out;
 }
 
-GltfBakeMark mark_of(const BakedMesh& report) {
-  return {report.encoding == BakeEncoding::kExact ? "exact" : "endpoint", false, report.extras};
-}
-
 // Bakes what was read of one mesh, which moves and has normals. step() is called for each target that is done.
 Status bake_shading(const GltfDocument& document, const GltfShading& shading, const BakeOptions& options,
                     const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
@@ -161,7 +157,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     step();
   }
   writer.append_weights(baked.report.extras);
-  writer.set_mark(mark_of(baked.report));
+  writer.set_mark({plan.encoding, false, baked.report.extras});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.extras = plan.extras;
@@ -180,7 +176,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   if (mesh.mark_fault) return *mesh.mark_fault;
   if (mesh.mark) {
     baked.report.already_baked = true;
-    baked.report.encoding = mesh.mark->encode == "exact" ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
+    baked.report.encoding = mesh.mark->encoding;
     return std::optional(std::move(baked));
   }
   Result<GltfShading> shading = read_gltf_shading(document, index, {options.smooth, options.crease_angle, false});

@@ -8,7 +8,7 @@
 #include "analysis/end_delta.h"
 #include "core/blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
@@ -139,4 +139,4 @@ TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct&
   return deltas_of_term(source, source.terms.pair_by_element(product.i, product.j));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -14,7 +14,7 @@
 #include "workflow/bake/terms.h"
 #include "workflow/shading/gltf_shading.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// What the deltas of a mesh are computed from.
 struct DeltaSource {
@@ -52,6 +52,6 @@ struct TargetDeltas {
 /// The deltas of the extra target whose weight is a product of two others.
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct& product);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_H_

@@ -11,7 +11,7 @@
 #include "core/blocks.h"
 #include "core/cholesky.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // A host scales what it adds up to length 1, so that any length will do: each round takes those that come nearest to
@@ -315,4 +315,4 @@ bool FittedLines::find(std::size_t target, std::uint32_t element, Vec3d& delta) 
   return true;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

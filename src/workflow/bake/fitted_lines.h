@@ -11,7 +11,7 @@
 #include "workflow/bake/terms.h"
 #include "workflow/shading/target_weights.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Deltas of elements for which |n(0)| is 1: where two targets move an element and are active at once somewhere in the
 /// file, those of all active targets that move it, fitted together by least squares to the weights of the file
@@ -43,6 +43,6 @@ class FittedLines {
   std::size_t elements_ = 0;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_FITTED_LINES_H_

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -86,4 +86,4 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

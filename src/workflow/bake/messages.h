@@ -9,7 +9,7 @@
 #include "workflow/bake/plan.h"
 #include "workflow/shading/gltf_shading.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The name of an extra target in a mesh whose targets have names: "chronormal w0*w1".
 [[nodiscard]] std::string name_of_extra(const GltfExtraTarget& extra);
@@ -25,6 +25,6 @@ void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std:
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
                    const BakedMesh& baked, std::vector<std::string>& warnings);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_MESSAGES_H_

@@ -13,7 +13,7 @@
 #include "chronormal/analysis/quality.h"
 #include "core/blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
@@ -366,4 +366,4 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
   return plan;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

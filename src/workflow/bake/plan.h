@@ -11,7 +11,7 @@
 #include "workflow/bake/tracks.h"
 #include "workflow/shading/target_weights.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// 0 and 1, and what lies beyond them of the weights of a file.
 struct WeightRange {
@@ -41,6 +41,6 @@ struct MeshPlan {
   return !shading.set.targets[target].vertices.empty();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_PLAN_H_

@@ -7,7 +7,7 @@
 #include "analysis/end_delta.h"
 #include "core/blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 256;
@@ -96,4 +96,4 @@ EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentFor
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

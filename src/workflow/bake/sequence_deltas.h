@@ -9,7 +9,7 @@
 
 #include "workflow/bake/sequence_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The normal that a file shows where an element has none.
 inline constexpr Vec3d kAnyNormal{0, 0, 1};
@@ -41,6 +41,6 @@ struct EndDeltas {
 [[nodiscard]] EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form,
                                    std::span<const double> bounds, const std::vector<Vec3d>& before);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_DELTAS_H_

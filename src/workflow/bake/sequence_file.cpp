@@ -6,7 +6,7 @@
 #include "chronormal/core/views.h"
 #include "io/gltf/gltf_bake_mark.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -93,7 +93,7 @@ GltfBakeMark mark_of(const SequenceTargets& targets) {
   const auto factor = [&](std::size_t key) {
     return key == 0 && !targets.has_key_0 ? GltfExtraTarget::kBase : targets.of_key(key);
   };
-  GltfBakeMark mark{targets.exact ? "exact" : "endpoint", true, {}};
+  GltfBakeMark mark{targets.exact ? BakeEncoding::kExact : BakeEncoding::kEndpoint, true, {}};
   for (const std::size_t s : targets.bent_segments)
     mark.extras.push_back({targets.of_keys() + mark.extras.size(), factor(s), factor(s + 1)});
   return mark;
@@ -175,4 +175,4 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
   return builder_.finish();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

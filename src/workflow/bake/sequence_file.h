@@ -15,7 +15,7 @@
 #include "io/gltf/glb_builder.h"
 #include "workflow/bake/sequence_deltas.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Which target stands for what: first one for each key, key 0 only where some normal needs it, then one for each
 /// segment in which normals bend.
@@ -80,6 +80,6 @@ class SequenceFile {
   std::vector<std::string> names_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FILE_H_

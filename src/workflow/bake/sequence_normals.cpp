@@ -13,7 +13,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // faces or elements that one task takes
@@ -114,4 +114,4 @@ std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
   return vector_areas(displacements);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

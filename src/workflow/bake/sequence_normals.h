@@ -16,7 +16,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
@@ -75,6 +75,6 @@ template <class Body>
   return Success{};
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_NORMALS_H_

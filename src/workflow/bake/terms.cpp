@@ -8,7 +8,7 @@
 #include "chronormal/normals/transform.h"
 #include "chronormal/normals/weighting.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 std::vector<float> moved_positions(const BlendSet& set, std::size_t target) {
@@ -175,4 +175,4 @@ Vec3d VertexTerms::fitted_delta(const Vec3d& delta) const noexcept {
   return (max_abs(base_) > 0 ? length_ : kLongest * length_) * turn(delta);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

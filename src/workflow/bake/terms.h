@@ -15,7 +15,7 @@
 #include "normals/blend/blend_terms.h"
 #include "workflow/shading/gltf_shading.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// n(w) of all elements as a quadratic form. By area it is exact, for any targets at once; other weightings are fitted
 /// for one target at a time, and have no term for two.
@@ -120,6 +120,6 @@ class VertexTerms {
   double length_ = 1, scale_ = 0, side_ = 1;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_TERMS_H_

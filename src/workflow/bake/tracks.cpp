@@ -8,7 +8,7 @@
 
 #include "chronormal/core/polynomial.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr int kMostHalvings = 10;  // of a piece between two keys of the file
@@ -211,4 +211,4 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightPro
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

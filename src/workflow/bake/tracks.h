@@ -13,7 +13,7 @@
 
 #include "workflow/shading/target_weights.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// One extra target, as a track sees it.
 struct WeightProduct {
@@ -34,6 +34,6 @@ struct ExtendedTrack {
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products,
                                            double tolerance);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_

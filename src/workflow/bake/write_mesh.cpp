@@ -7,7 +7,7 @@
 #include "io/json/json_writer.h"
 #include "workflow/bake/messages.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // A weight as JSON. What is beyond float32, which JSON has no word for, becomes the largest float.
@@ -122,4 +122,4 @@ void MeshWriter::set_mark(const GltfBakeMark& mark) {
   edit_.set(pointer_ + "/extras/chronormal", gltf::bake_mark_json(mark).dump());
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -13,7 +13,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "workflow/bake/deltas.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Accessors of zeros, one for each number of vertices.
 class ZeroVectors {
@@ -71,6 +71,6 @@ class MeshWriter {
   std::vector<Attributes> attributes_;            // of each primitive
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_MESH_H_

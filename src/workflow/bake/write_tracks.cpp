@@ -11,7 +11,7 @@
 
 #include "io/json/json_writer.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 std::string item(const std::string& list, std::size_t index) {
@@ -195,4 +195,4 @@ Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const
   return std::move(writer).written();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

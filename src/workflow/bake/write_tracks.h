@@ -11,7 +11,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "workflow/bake/tracks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// A mesh that got extra targets, one at least.
 struct GrownMesh {
@@ -29,6 +29,6 @@ struct WrittenTracks {
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
                                                  double tolerance, GltfEdit& edit);
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_

@@ -14,7 +14,7 @@
 #include "core/blocks.h"
 #include "core/vector_area.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kChunk = 8192;
@@ -368,4 +368,4 @@ void fill_extra_weights(const GltfShading& shading, std::span<double> weights) n
   for (const GltfExtraTarget& extra : extras) weights[extra.target] = factor(extra.i) * factor(extra.j);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

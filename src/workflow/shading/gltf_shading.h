@@ -28,7 +28,7 @@
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/normal_groups.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 struct GltfShadingOptions {
   bool smooth = false;        ///< primitives without NORMAL get vertex normals, instead of being flat
@@ -89,6 +89,6 @@ struct GltfShading {
 /// weights must have one for each target; those of extra ones are written
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_

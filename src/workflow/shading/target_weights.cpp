@@ -6,7 +6,7 @@
 
 #include "chronormal/core/polynomial.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kSamplesPerPiece = 16;
@@ -133,4 +133,4 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

@@ -11,7 +11,7 @@
 
 #include "chronormal/io/gltf_document.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The keys of a track and what is between them. A cubic spline with one key is none: it holds still.
 struct WeightTrack {
@@ -69,6 +69,6 @@ class WeightUse {
   std::vector<const WeightTrack*> tracks_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_WORKFLOW_SHADING_TARGET_WEIGHTS_H_

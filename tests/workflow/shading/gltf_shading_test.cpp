@@ -245,7 +245,7 @@ Json good_mark() {
 TEST(GltfShading, mark_of_a_bake_says_which_weights_are_products) {
   const GltfShading shading = read(marked(good_mark()));
   ASSERT_TRUE(shading.mark.has_value());
-  EXPECT_EQ(shading.mark->encode, "exact");
+  EXPECT_EQ(shading.mark->encoding, BakeEncoding::kExact);
   EXPECT_FALSE(shading.mark->sequence);
   EXPECT_EQ(shading.mark->extras, (std::vector<GltfExtraTarget>{{2, 0, 0}, {3, 1, GltfExtraTarget::kBase}}));
   EXPECT_EQ(shading.own_targets(), 2U);

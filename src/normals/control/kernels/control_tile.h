@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 inline constexpr std::size_t kTile = 16;
 
@@ -24,6 +24,6 @@ struct alignas(64) ControlTile {
   std::int32_t degree[kTile];
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_

@@ -6,7 +6,7 @@
 
 #include "normals/control/polygon_normals.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 void set_normals(const ControlNormals& c, std::size_t lane, ExactTile& tile) noexcept {
@@ -38,4 +38,4 @@ void set_without_rounding(const Segment& segment, const std::uint32_t* corners, 
   if (!std::isfinite(tile.magnitude[lane])) tile.magnitude[lane] = magnitude_above(triangle.magnitude);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

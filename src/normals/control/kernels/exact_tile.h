@@ -8,7 +8,7 @@
 #include "chronormal/motion/motion.h"
 #include "normals/control/kernels/control_tile.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Planes as in ControlTile; the bits of face_control_normals().
 struct alignas(64) ExactTile {
@@ -29,6 +29,6 @@ void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, Exa
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_

@@ -12,7 +12,7 @@
 #include "normals/control/kernels/triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
   const bool rows = IsRows(segment.from) && IsRows(segment.to);
@@ -46,11 +46,11 @@ void TriangleControlNormals(const Segment& segment, IndexRange faces, double* re
   }
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(FaceTiles);
 HWY_EXPORT(TriangleControlNormals);
@@ -67,5 +67,5 @@ void triangle_control_normals(const Segment& segment, IndexRange faces, std::spa
   HWY_DYNAMIC_DISPATCH(TriangleControlNormals)(segment, faces, reinterpret_cast<double*>(result.data()));
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

@@ -10,7 +10,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "normals/control/kernels/control_tile.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Writes the tiles of a range of faces: tile k holds the faces faces.first + 16 k ... (see ControlTile). The values
 /// are those of face_control_normals(), rounded to float32, and so is the degree.
@@ -20,6 +20,6 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
 /// face_control_normals() of a mesh of triangles.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_

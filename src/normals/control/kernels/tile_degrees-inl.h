@@ -20,7 +20,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // Sets the degrees to 2 and returns true if float32 alone shows that they are. Its error in n0 - 2 m + n1 is below
 // 2^-20 of the largest component, far above the tolerance of degree(), but so is the term itself in most motions.
@@ -58,7 +58,7 @@ HWY_NOINLINE inline void SetDegrees(const ExactTile& exact, ControlTile& tile) {
   }
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_

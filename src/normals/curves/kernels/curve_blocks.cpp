@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr double kLargestWeight = 32767;
@@ -57,4 +57,4 @@ CurveWeights CurveWeights::at(double t, bool compact) noexcept {
   return weights;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal

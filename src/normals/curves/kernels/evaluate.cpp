@@ -13,7 +13,7 @@
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kCacheLine = 64;
 
@@ -367,11 +367,11 @@ void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(EvaluatePacked);
 HWY_EXPORT(EvaluatePlanes);
@@ -396,5 +396,5 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2
   HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(span, weights, result);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "normals/curves/kernels/curve_blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Neighbouring blocks of one kind, the last of which may be filled in part.
 struct BlockSpan {
@@ -64,6 +64,6 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2
 /// Makes what this thread has streamed visible to the others: once, after the last span, for it waits for the memory.
 void flush_stream() noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_

@@ -12,7 +12,7 @@
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 using DoubleTag = hn::CappedTag<double, 8>;
 using Doubles = hn::Vec<DoubleTag>;
@@ -92,11 +92,11 @@ std::size_t ExactUnitNormals(const ControlNormals* normals, std::size_t count, d
   return without_direction;
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(ExactUnitNormals);
 
@@ -105,5 +105,5 @@ std::size_t exact_unit_normals(std::span<const ControlNormals> normals, double t
   return HWY_DYNAMIC_DISPATCH(ExactUnitNormals)(normals.data(), normals.size(), t, result.data());
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

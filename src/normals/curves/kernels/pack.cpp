@@ -14,7 +14,7 @@
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 HWY_INLINE Lanes3 LoadTileVector(const ControlTile& tile, std::size_t k, std::size_t lane) {
   const float* const p = &tile.normals[3 * k][lane];
@@ -330,11 +330,11 @@ void PackTiles(const ControlTile* tiles, std::size_t count, BlockKind kind, std:
   for (std::size_t i = 0; i < count; ++i) PackTile(tiles[i], kind, blocks + i * kTile * bytes_of(kind));
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   constexpr double kSqrt3 = 1.7320508075688772;
@@ -366,5 +366,5 @@ void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* b
   HWY_DYNAMIC_DISPATCH(PackTiles)(tiles.data(), tiles.size(), kind, blocks);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

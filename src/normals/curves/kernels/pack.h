@@ -9,7 +9,7 @@
 #include "normals/control/kernels/control_tile.h"
 #include "normals/curves/kernels/curve_blocks.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// How short n(t) may get for each precision to keep a tolerance (docs/theory.md, section 13). A precision that cannot
 /// keep it at all has a limit of 0.
@@ -42,6 +42,6 @@ void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& 
 /// zero. blocks must have 16 * bytes_of(kind) bytes for each tile, aligned to 64
 void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* blocks) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_

@@ -9,7 +9,7 @@
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 HWY_INLINE Lanes3 LoadState(const float* p) {
   return {hn::Load(kFloats, p), hn::Load(kFloats, p + kTile), hn::Load(kFloats, p + 2 * kTile)};
@@ -57,11 +57,11 @@ void PlayPlanes(float* state, std::size_t block_count, int degree, PlanesResult 
   }
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(PlayPacked);
 HWY_EXPORT(PlayPlanes);
@@ -74,5 +74,5 @@ void play_blocks(float* state, std::size_t block_count, int degree, PlanesResult
   HWY_DYNAMIC_DISPATCH(PlayPlanes)(state, block_count, degree, result);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

@@ -6,7 +6,7 @@
 
 #include "normals/curves/kernels/evaluate.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// The state of 16 elements that are played: as many vectors as the degree and one, n first, then its differences, each
 /// as 16 x, 16 y, 16 z. Writes the unit normals of n and moves the state on by a step.
@@ -14,6 +14,6 @@ namespace chronormal {
 void play_blocks(float* state, std::size_t block_count, int degree, PackedResult result) noexcept;
 void play_blocks(float* state, std::size_t block_count, int degree, PlanesResult result) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_PLAY_H_

@@ -22,7 +22,7 @@
 
 #ifndef CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 // Sums of sixteen elements: nine components, the magnitude, and two that are 0.
 inline constexpr std::size_t kSumRow = 12;
@@ -38,11 +38,11 @@ inline constexpr float kSumErrorAbove = 0x1p-43f;
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               SumRows& sums, ControlTile& tile) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // ---- sums ----------------------------------------------------------------------------------------------------------
 
@@ -360,11 +360,11 @@ void GroupTilesOf(const Segment& segment, const NormalGroups& groups, RowWindow&
   }
 }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(GroupTilesOf);
 HWY_EXPORT(FaceRows);
@@ -411,5 +411,5 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) noexce
   HWY_DYNAMIC_DISPATCH(GroupTilesOf)(segment_, *groups_, window_, elements, tiles.data());
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

@@ -13,7 +13,7 @@
 #include "normals/control/kernels/control_tile.h"
 #include "normals/groups/face_window.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// A window of control normals, a row for each face: nine components and the magnitude, at the beginning of two cache
 /// lines. It begins and ends at multiples of 16, and grows where faces that have left it are missed.
@@ -65,6 +65,6 @@ class GroupTiles {
   RowWindow window_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_

@@ -17,7 +17,7 @@
 #include "simd/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace chronormal::HWY_NAMESPACE {
+namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kBlock = 16;
 
@@ -396,11 +396,11 @@ std::size_t RecomputeGroupNormals(const NormalGroups& groups, IndexRange element
 
 IndexRange RangeOfIndices(const std::uint32_t* indices, std::size_t count) { return RangeOf(indices, count); }
 
-}  // namespace chronormal::HWY_NAMESPACE
+}  // namespace chronormal::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace chronormal {
+namespace chronormal::inline internal {
 
 HWY_EXPORT(RecomputeUnitNormals);
 HWY_EXPORT(RecomputeFaceNormals);
@@ -430,5 +430,5 @@ IndexRange range_of(std::span<const std::uint32_t> values) noexcept {
   return HWY_DYNAMIC_DISPATCH(RangeOfIndices)(values.data(), values.size());
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 #endif  // HWY_ONCE

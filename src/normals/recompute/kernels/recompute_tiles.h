@@ -19,7 +19,7 @@
 #include "chronormal/core/views.h"
 #include "chronormal/normals/normal_groups.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 /// Triangles as the kernels read them: positions packed; or paired, x0 y0 z0 _ x1 y1 z1 _ for each vertex.
 struct MovingTriangles {
@@ -63,6 +63,6 @@ std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange eleme
 /// From the smallest to the largest of some values.
 [[nodiscard]] IndexRange range_of(std::span<const std::uint32_t> values) noexcept;
 
-}  // namespace chronormal
+}  // namespace chronormal::internal
 
 #endif  // CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
