@@ -89,4 +89,4 @@ std::vector<double> random_blend_weights(const BlendWeightOptions& options) {
   return weights;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

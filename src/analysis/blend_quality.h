@@ -52,6 +52,6 @@ struct BlendWeightOptions {
 /// Rows of random weights, evenly between low and high, of as many random targets. Pure: the same on every system.
 [[nodiscard]] std::vector<double> random_blend_weights(const BlendWeightOptions& options);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_ANALYSIS_BLEND_QUALITY_H_

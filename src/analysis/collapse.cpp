@@ -73,4 +73,4 @@ Collapses find_collapses(const ControlNormals& normals) noexcept {
   return found;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -39,6 +39,6 @@ struct Collapses {
 /// between them are one. Cost: three dot products for most faces, the roots of a cubic for those that turn far.
 [[nodiscard]] Collapses find_collapses(const ControlNormals& normals) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_ANALYSIS_COLLAPSE_H_

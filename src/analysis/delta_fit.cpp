@@ -104,4 +104,4 @@ void DeltaFit::solve() {
   for (std::vector<Vec3d>& of_target : right_) std::fill(of_target.begin(), of_target.end(), Vec3d{});
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -57,6 +57,6 @@ class DeltaFit {
   std::vector<std::vector<Vec3d>> right_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_ANALYSIS_DELTA_FIT_H_

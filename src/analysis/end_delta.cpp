@@ -319,4 +319,4 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   return {best_scale * u1 - u0, best_scale, angle_of_key(best.key)};
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -30,6 +30,6 @@ struct EndDelta {
 /// control normals are zero. from and to must not be zero
 [[nodiscard]] double largest_line_error(const ControlNormals& normals, const Vec3d& from, const Vec3d& to) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_ANALYSIS_END_DELTA_H_

@@ -62,6 +62,6 @@ void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body)
   }
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_BLOCKS_H_

@@ -48,6 +48,6 @@ class Cholesky {
   std::size_t n_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_CHOLESKY_H_

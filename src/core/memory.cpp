@@ -44,4 +44,4 @@ void AlignedBytes::release_rest() noexcept {
 #endif
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -73,6 +73,6 @@ template <class T>
 AlignedArray<T>::AlignedArray(std::size_t count)
     : bytes_(count > std::size_t(-1) / sizeof(T) ? std::size_t(-1) : count * sizeof(T)) {}
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_MEMORY_H_

@@ -78,6 +78,6 @@ class CrossSum {
   std::size_t terms_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_ROUNDING_H_

@@ -80,7 +80,7 @@ HWY_INLINE S upper_angle(const S& y, const S& x) {
   return select(x < zero, S(3.141592654f) - quadrant, quadrant);
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_CORE_TRIGONOMETRY_INL_H_

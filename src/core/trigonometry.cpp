@@ -8,4 +8,4 @@ SinCos<float> sin_cos(float x) noexcept { return HWY_NAMESPACE::sin_cos<float>(x
 
 float upper_angle(float y, float x) noexcept { return HWY_NAMESPACE::upper_angle<float>(y, x); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -19,6 +19,6 @@ struct SinCos {
 /// The angle of the vector (x, y) with y >= 0, in [0, pi]; 0 for the zero vector. Error below 3e-7.
 [[nodiscard]] float upper_angle(float y, float x) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_TRIGONOMETRY_H_

@@ -42,6 +42,6 @@ template <class VertexAt>
   return sum;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_CORE_VECTOR_AREA_H_

@@ -37,6 +37,6 @@ namespace chronormal::inline internal {
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_MOTION_COHERENCE_H_

@@ -110,6 +110,6 @@ struct UniformArc {
   }
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_ARC_H_

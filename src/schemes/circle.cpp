@@ -63,4 +63,4 @@ struct TimedCircle {
 std::unique_ptr<Scheme> make_circle() { return std::make_unique<CurveScheme<Circle>>(Circle{}); }
 std::unique_ptr<Scheme> make_timed_circle() { return std::make_unique<CurveScheme<TimedCircle>>(TimedCircle{}); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

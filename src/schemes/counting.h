@@ -52,6 +52,6 @@ class Counting {
   float value_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_COUNTING_H_

@@ -275,6 +275,6 @@ class CurveScheme final : public Scheme {
   BlockedValues values_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_CURVE_SCHEME_H_

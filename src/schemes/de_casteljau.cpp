@@ -33,4 +33,4 @@ std::unique_ptr<Scheme> make_de_casteljau(std::size_t normal_count) {
   return std::make_unique<CurveScheme<DeCasteljau>>(DeCasteljau(normal_count));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -158,4 +158,4 @@ Arc shorter_arc(const FramePair& frames) {
   return arc_about((1 / size) * v, a.normal, 2 * std::atan2(size, w));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

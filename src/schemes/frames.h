@@ -33,6 +33,6 @@ struct FramePair {
 /// The path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
 [[nodiscard]] Arc shorter_arc(const FramePair& frames);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_FRAMES_H_

@@ -83,4 +83,4 @@ std::unique_ptr<Scheme> make_lagrange(std::size_t degree) {
   return std::make_unique<CurveScheme<Lagrange>>(Lagrange(degree));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

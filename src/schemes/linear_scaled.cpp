@@ -48,4 +48,4 @@ class ScaledLinear {
 
 std::unique_ptr<Scheme> make_scaled_linear() { return std::make_unique<CurveScheme<ScaledLinear>>(ScaledLinear{}); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

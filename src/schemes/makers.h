@@ -24,6 +24,6 @@ std::unique_ptr<Scheme> make_quaternion_optimal();  // quaternion_optimal.cpp
 std::unique_ptr<Scheme> make_circle();              // circle.cpp
 std::unique_ptr<Scheme> make_timed_circle();
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_MAKERS_H_

@@ -88,6 +88,6 @@ class ExactSamples {
   std::array<Vec3d, kFineIntervals> exact_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_MEAN_ERROR_H_

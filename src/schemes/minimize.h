@@ -71,6 +71,6 @@ template <class F>
   return best_x;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_MINIMIZE_H_

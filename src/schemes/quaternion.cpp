@@ -42,4 +42,4 @@ std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed) {
   return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); }, false);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

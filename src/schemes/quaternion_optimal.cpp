@@ -54,4 +54,4 @@ std::unique_ptr<Scheme> make_quaternion_optimal() {
   return std::make_unique<CurveScheme<OptimalQuaternion>>(OptimalQuaternion{});
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -49,4 +49,4 @@ class Rational {
 
 std::unique_ptr<Scheme> make_rational() { return std::make_unique<CurveScheme<Rational>>(Rational{}); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

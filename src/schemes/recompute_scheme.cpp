@@ -65,4 +65,4 @@ class Recompute final : public Scheme {
 
 std::unique_ptr<Scheme> make_recompute() { return std::make_unique<Recompute>(); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

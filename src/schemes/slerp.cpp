@@ -36,4 +36,4 @@ struct Slerp {
 
 std::unique_ptr<Scheme> make_slerp() { return std::make_unique<CurveScheme<Slerp>>(Slerp{}); }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -46,7 +46,7 @@ HWY_INLINE IndexRange RangeOf(const std::uint32_t* indices, std::size_t count) {
   return {first, std::size_t{last} - first + 1};
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SIMD_INDEX_RANGE_INL_H_

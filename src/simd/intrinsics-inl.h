@@ -148,7 +148,7 @@ HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SIMD_INTRINSICS_INL_H_

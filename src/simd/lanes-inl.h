@@ -82,7 +82,7 @@ HWY_INLINE void StoreOne(Floats v, float* to) {
   }
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SIMD_LANES_INL_H_

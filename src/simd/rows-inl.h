@@ -140,7 +140,7 @@ HWY_INLINE Row RoundedRow(const double* from) {
 #endif
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

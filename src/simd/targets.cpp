@@ -28,4 +28,4 @@ ScopedTarget::~ScopedTarget() {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -25,6 +25,6 @@ class ScopedTarget {
   ~ScopedTarget();
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SIMD_TARGETS_H_

@@ -17,7 +17,6 @@
 #define CHRONORMAL_IO_GLTF_DOCUMENT_H_
 
 #include <array>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

@@ -61,6 +61,6 @@ template <class Real>
   return name + ", byte " + std::to_string(at);
 }
 
-}  // namespace chronormal::internal::binary
+}  // namespace chronormal::inline internal::binary
 
 #endif  // CHRONORMAL_IO_BYTES_BINARY_H_

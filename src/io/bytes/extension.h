@@ -20,6 +20,6 @@ namespace chronormal::inline internal {
   return extension;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_BYTES_EXTENSION_H_

@@ -47,6 +47,6 @@ class FileBytes {
   std::string owned_;       // where there is no view
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_BYTES_FILE_H_

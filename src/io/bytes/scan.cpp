@@ -88,4 +88,4 @@ std::string describe(NumberFault fault, std::string_view word) {
   return quoted(word) + " is not a number";
 }
 
-}  // namespace chronormal::internal::scan
+}  // namespace chronormal::inline internal::scan

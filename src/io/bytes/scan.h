@@ -75,6 +75,6 @@ void append_number(std::string& text, Number number) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
 }
 
-}  // namespace chronormal::internal::scan
+}  // namespace chronormal::inline internal::scan
 
 #endif  // CHRONORMAL_IO_BYTES_SCAN_H_

@@ -289,4 +289,4 @@ std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
   return file;
 }
 
-}  // namespace chronormal::internal::zip
+}  // namespace chronormal::inline internal::zip

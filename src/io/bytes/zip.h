@@ -47,6 +47,6 @@ struct Part {
 /// (tests make it small).
 [[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
 
-}  // namespace chronormal::internal::zip
+}  // namespace chronormal::inline internal::zip
 
 #endif  // CHRONORMAL_IO_BYTES_ZIP_H_

@@ -226,4 +226,4 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   return cache;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

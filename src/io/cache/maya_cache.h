@@ -73,6 +73,6 @@ struct MayaCacheDescription {
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_MAYA_CACHE_H_

@@ -205,4 +205,4 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
   return Success{};
 }
 
-}  // namespace chronormal::internal::maya
+}  // namespace chronormal::inline internal::maya

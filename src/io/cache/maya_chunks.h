@@ -37,6 +37,6 @@ struct Points {
 [[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                                     const std::string& name, PositionCache& cache);
 
-}  // namespace chronormal::internal::maya
+}  // namespace chronormal::inline internal::maya
 
 #endif  // CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_

@@ -135,4 +135,4 @@ Result<Motion> read_md2(std::string_view bytes, const std::string& name, double 
   return Md2Reader(bytes, name).read(frames_per_second);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -31,6 +31,6 @@ namespace chronormal::inline internal {
 /// of this before memory is taken), indices of no vertex, coordinates that are not finite or too large for float32.
 [[nodiscard]] Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second = 1);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_MD2_H_

@@ -57,4 +57,4 @@ Result<std::string> write_mdd(const Motion& motion) {
   return bytes;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -30,6 +30,6 @@ namespace chronormal::inline internal {
 /// vertices or keyframes, and times that are the same as float32.
 [[nodiscard]] Result<std::string> write_mdd(const Motion& motion);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_MDD_H_

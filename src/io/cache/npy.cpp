@@ -252,4 +252,4 @@ std::string write_header(std::string_view type, const std::vector<std::uint64_t>
   return header + text;
 }
 
-}  // namespace chronormal::internal::npy
+}  // namespace chronormal::inline internal::npy

@@ -59,6 +59,6 @@ struct Array {
 /// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
 [[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
 
-}  // namespace chronormal::internal::npy
+}  // namespace chronormal::inline internal::npy
 
 #endif  // CHRONORMAL_IO_CACHE_NPY_H_

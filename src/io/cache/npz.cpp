@@ -263,4 +263,4 @@ Result<std::string> write_npz(const Motion& motion) {
   return write_npz(members);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -80,6 +80,6 @@ struct NpzMember {
 /// Writes a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_NPZ_H_

@@ -64,4 +64,4 @@ Result<std::string> write_pc2(const Motion& motion, double frames_per_second) {
   return bytes;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

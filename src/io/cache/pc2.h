@@ -35,6 +35,6 @@ namespace chronormal::inline internal {
 /// Errors: kUsage without a place: times at other steps, blend shapes, more than 2^31 - 1 vertices or keyframes.
 [[nodiscard]] Result<std::string> write_pc2(const Motion& motion, double frames_per_second = 1);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_PC2_H_

@@ -77,6 +77,6 @@ inline void append_positions(std::string& file, const Motion& motion, std::endia
   }
 }
 
-}  // namespace chronormal::internal::point_cache
+}  // namespace chronormal::inline internal::point_cache
 
 #endif  // CHRONORMAL_IO_CACHE_POINT_CACHE_BODY_H_

@@ -66,4 +66,4 @@ Status check_is_sequence(const Motion& motion) {
   return check_keyframes(motion);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

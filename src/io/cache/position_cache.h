@@ -57,6 +57,6 @@ struct CacheOptions {
 /// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_CACHE_POSITION_CACHE_H_

@@ -96,4 +96,4 @@ Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

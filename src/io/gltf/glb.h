@@ -47,6 +47,6 @@ struct GlbPieces {
                                             const std::optional<std::vector<std::string_view>>& bin,
                                             std::string_view rest, const std::string& name);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLB_H_

@@ -80,4 +80,4 @@ Result<std::string> GlbBuilder::finish() {
   return file;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -54,6 +54,6 @@ class GlbBuilder {
   std::size_t most_bytes_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLB_BUILDER_H_

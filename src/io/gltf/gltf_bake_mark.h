@@ -17,6 +17,6 @@ void read_bake_mark(const nlohmann::json& document, const std::string& pointer, 
 /// A mark as it is written.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_

@@ -257,4 +257,4 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
   return result;
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

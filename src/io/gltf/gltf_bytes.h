@@ -91,6 +91,6 @@ class Bytes {
   std::size_t kept_bytes_ = 0;                                       // of views_
 };
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_BYTES_H_

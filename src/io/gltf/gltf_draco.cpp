@@ -118,4 +118,4 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   return geometry;
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

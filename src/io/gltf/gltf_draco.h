@@ -19,6 +19,6 @@ namespace chronormal::inline internal::gltf {
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const std::string& place);
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_DRACO_H_

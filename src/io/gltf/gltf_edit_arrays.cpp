@@ -184,4 +184,4 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
   return result;
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

@@ -56,6 +56,6 @@ class NewArrays {
   std::unordered_multimap<std::size_t, std::size_t> by_hash_;
 };
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_EDIT_ARRAYS_H_

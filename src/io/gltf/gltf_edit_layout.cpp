@@ -289,4 +289,4 @@ Status EditLayout::lay_out_gltf() {
   return append("/buffers", buffer.text());
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

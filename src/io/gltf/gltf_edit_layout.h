@@ -90,6 +90,6 @@ class EditLayout {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_EDIT_LAYOUT_H_

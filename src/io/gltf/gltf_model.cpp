@@ -346,4 +346,4 @@ Result<Model> parse_model(std::string_view json, const std::string& name, std::s
   return parser.parse(document.value());
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

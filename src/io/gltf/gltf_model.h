@@ -110,6 +110,6 @@ struct Model {
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes);
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MODEL_H_

@@ -325,4 +325,4 @@ void Parser::parse_track(const JsonView& animation, const JsonView& channel, std
   sources.push_back(source);
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

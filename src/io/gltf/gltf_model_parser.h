@@ -83,6 +83,6 @@ class Parser {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
 };
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MODEL_PARSER_H_

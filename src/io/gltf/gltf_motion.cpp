@@ -424,4 +424,4 @@ Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotion
   return assembly.finish_without_motion();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -64,6 +64,6 @@ struct GltfMotion {
 [[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const Motion& motion,
                                                                   std::span<const GltfPart> parts);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_MOTION_H_

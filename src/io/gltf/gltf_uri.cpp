@@ -147,4 +147,4 @@ Result<std::string> name_file_uri(std::string_view uri, const std::optional<std:
   return (fs::path(folder.value_or("")) / path).string();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

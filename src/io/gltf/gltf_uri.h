@@ -32,6 +32,6 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_URI_H_

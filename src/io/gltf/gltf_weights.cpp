@@ -65,4 +65,4 @@ void WeightCurve::curvature(double from_time, double to_time, std::span<double> 
   }
 }
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf

@@ -36,6 +36,6 @@ class WeightCurve {
   GltfKeys keys_;
 };
 
-}  // namespace chronormal::internal::gltf
+}  // namespace chronormal::inline internal::gltf
 
 #endif  // CHRONORMAL_IO_GLTF_GLTF_WEIGHTS_H_

@@ -138,4 +138,4 @@ Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name
   return (shaded && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes, place);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

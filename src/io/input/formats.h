@@ -67,6 +67,6 @@ struct Format {
 [[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
                                           const std::string& place, bool shaded = false);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_INPUT_FORMATS_H_

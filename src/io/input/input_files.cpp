@@ -144,4 +144,4 @@ Status check_same_topology(const Topology& first, const std::string& first_name,
   return Success{};
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -46,6 +46,6 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                                          const std::string& place);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_INPUT_INPUT_FILES_H_

@@ -79,4 +79,4 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   return read;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

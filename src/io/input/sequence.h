@@ -21,6 +21,6 @@ namespace chronormal::inline internal {
 /// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_INPUT_SEQUENCE_H_

@@ -132,4 +132,4 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   return read;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -27,6 +27,6 @@ namespace chronormal::inline internal {
 /// the file ("targets/blink.target, line 17").
 [[nodiscard]] Result<ReadMotion> read_targets(const InputOptions& options);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_INPUT_TARGETS_H_

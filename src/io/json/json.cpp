@@ -366,4 +366,4 @@ double JsonView::as_number() const {
   return 0;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

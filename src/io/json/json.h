@@ -108,6 +108,6 @@ class JsonView {
   JsonComplaint* complaint_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_H_

@@ -359,4 +359,4 @@ std::string join(const std::vector<std::string_view>& pieces) {
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -93,6 +93,6 @@ class JsonText {
 /// Pieces of a text as one.
 [[nodiscard]] std::string join(const std::vector<std::string_view>& pieces);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_TEXT_H_

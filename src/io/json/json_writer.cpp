@@ -47,4 +47,4 @@ JsonObject& JsonObject::add(std::string_view name, std::string_view json) {
   return *this;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

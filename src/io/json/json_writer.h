@@ -35,6 +35,6 @@ class JsonObject {
   std::string text_ = "{";
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_JSON_JSON_WRITER_H_

@@ -168,4 +168,4 @@ Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std
   return TargetReader(bytes, name, base).read();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

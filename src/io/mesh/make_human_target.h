@@ -51,6 +51,6 @@ struct MakeHumanTarget {
 [[nodiscard]] Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
                                                              VectorView<const float> base);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_MESH_MAKE_HUMAN_TARGET_H_

@@ -23,6 +23,6 @@ struct MeshFrame {
   std::vector<float> normal_of_corner = {};
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_MESH_MESH_FRAME_H_

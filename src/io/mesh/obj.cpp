@@ -351,4 +351,4 @@ std::string write_obj(const Topology& topology, VectorView<const float> position
   return text;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

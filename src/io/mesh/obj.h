@@ -57,6 +57,6 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     VectorView<const float> normals, std::span<const std::uint32_t> normal_of_corner);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_MESH_OBJ_H_

@@ -396,4 +396,4 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
   return bytes;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

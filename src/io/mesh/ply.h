@@ -61,6 +61,6 @@ struct PlyNormals {
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
                                     const PlyNormals& normals, PlyEncoding encoding);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_MESH_PLY_H_

@@ -219,4 +219,4 @@ Status HeaderReader::check_elements() {
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
 
-}  // namespace chronormal::internal::ply
+}  // namespace chronormal::inline internal::ply

@@ -55,6 +55,6 @@ struct Header {
 /// Errors: as read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
-}  // namespace chronormal::internal::ply
+}  // namespace chronormal::inline internal::ply
 
 #endif  // CHRONORMAL_IO_MESH_PLY_HEADER_H_

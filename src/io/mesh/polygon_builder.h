@@ -56,6 +56,6 @@ class PolygonBuilder {
   std::size_t face_count_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_IO_MESH_POLYGON_BUILDER_H_

@@ -389,4 +389,4 @@ BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weig
   return Call(source, weights, scratch, result, threads).run();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

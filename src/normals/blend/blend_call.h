@@ -30,6 +30,6 @@ BlendChoice choose_path(const BlendSource& source, std::span<const double> weigh
 BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch,
                          VectorView<float> result, Threads threads);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_

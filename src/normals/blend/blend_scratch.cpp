@@ -57,4 +57,4 @@ std::size_t scratch_bytes(const BlendShape& shape) noexcept {
          shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

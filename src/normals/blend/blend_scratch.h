@@ -49,6 +49,6 @@ struct BlendScratch {
 
 [[nodiscard]] std::size_t scratch_bytes(const BlendShape& shape) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_

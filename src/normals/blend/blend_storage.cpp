@@ -227,4 +227,4 @@ void BlendStorage::update_cost() {
   cost_.peak_bytes = std::max(cost_.bytes + largest_work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

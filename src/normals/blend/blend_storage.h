@@ -75,6 +75,6 @@ class BlendStorage {
   BlendCost cost_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_

@@ -90,6 +90,6 @@ class ElementSum {
   double noise_ = 0, size_ = 0, count_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_

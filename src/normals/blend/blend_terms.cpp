@@ -413,4 +413,4 @@ std::size_t BlendTerms::counting_bytes(std::size_t pairs) const noexcept {
          2 * pairs * sizeof(PairCount);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -149,6 +149,6 @@ class BlendTerms::Term {
   std::vector<Rounded> of_large_faces_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_

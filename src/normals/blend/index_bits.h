@@ -104,6 +104,6 @@ void for_bits(std::span<const std::uint64_t> words, IndexRange places, const Bod
   for (std::size_t i = places.first; i < places.end(); ++i) for_bits(words[i], i, body);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_BLEND_INDEX_BITS_H_

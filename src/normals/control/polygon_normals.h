@@ -23,6 +23,6 @@ struct PolygonNormals {
 [[nodiscard]] PolygonNormals polygon_control_normals(const Segment& segment,
                                                      std::span<const std::uint32_t> face) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_

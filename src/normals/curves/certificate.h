@@ -32,6 +32,6 @@ inline constexpr int kCertificateDepth = 4;
   return certainly_not_negative(slack);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_

@@ -484,4 +484,4 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_from(segment, nullptr);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

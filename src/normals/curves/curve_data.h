@@ -47,6 +47,6 @@ struct CurveData {
 /// result must have as many elements as the curves
 std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_

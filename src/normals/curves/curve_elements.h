@@ -43,6 +43,6 @@ template <class S>
   return scale * v;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_

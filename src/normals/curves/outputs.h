@@ -16,9 +16,7 @@
 
 namespace chronormal::inline internal {
 
-[[nodiscard]] inline bool is_packed(const VectorView<float>& view) {
-  return view.is_packed();
-}
+[[nodiscard]] inline bool is_packed(const VectorView<float>& view) { return view.is_packed(); }
 
 /// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.
 template <class... Pointer>
@@ -110,6 +108,6 @@ auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body bod
   return body(AnyOutput{of_pass.working_set, [result](std::size_t i, const Vec3f& v) { result.set(i, v); }});
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_

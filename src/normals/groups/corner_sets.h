@@ -76,6 +76,6 @@ struct Listing {
   return listing;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_CORNER_SETS_H_

@@ -42,6 +42,6 @@ struct FaceWindow {
   }
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_

@@ -42,6 +42,6 @@ class ControlNormalsSum {
   return sum.without_rounding();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_

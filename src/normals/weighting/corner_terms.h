@@ -61,6 +61,6 @@ inline constexpr double kCrossError = 32 * kUnitRoundoff;
   return angle * (weighting == Weighting::kAngle ? unit(n) : n);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_

@@ -80,6 +80,6 @@ struct Interval {
   return Interval::outwards(angle - error, angle + error);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_

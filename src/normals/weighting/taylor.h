@@ -107,6 +107,6 @@ template <std::size_t M>
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_

@@ -162,7 +162,7 @@ void AdvanceCurves(Formula formula, const CoefficientBlocks& curves, float* stat
   });
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -214,6 +214,6 @@ OperationCounts count_advance(Formula formula, std::span<const float> coefficien
   return Counting::counts();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // HWY_ONCE

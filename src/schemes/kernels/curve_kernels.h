@@ -62,6 +62,6 @@ void advance_curves(Formula formula, const CoefficientBlocks& curves, float* sta
 [[nodiscard]] OperationCounts count_advance(Formula formula, std::span<const float> coefficients,
                                             std::span<const float> state);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_CURVE_KERNELS_H_

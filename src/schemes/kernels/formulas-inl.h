@@ -196,7 +196,7 @@ struct SphericalDeCasteljau {
   }
 };
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_FORMULAS_INL_H_

@@ -178,7 +178,7 @@ HWY_INLINE void set_vector(const State<S>& state, std::size_t k, const Triple<S>
   state.set(3 * k + 2, v.z);
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_SCHEMES_KERNELS_SCALARS_INL_H_

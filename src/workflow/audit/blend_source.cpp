@@ -147,4 +147,4 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::
   return outputs;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

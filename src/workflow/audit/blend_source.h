@@ -67,6 +67,6 @@ class BlendSource {
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
                                                        AuditRule rule);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_

@@ -115,4 +115,4 @@ std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are
   return fault;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

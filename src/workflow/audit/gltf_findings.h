@@ -25,6 +25,6 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_

@@ -109,4 +109,4 @@ Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::
   return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(normal) : normal);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -59,6 +59,6 @@ class JudgedPart {
   std::vector<JudgedOutput> outputs_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_

@@ -141,6 +141,6 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
   subject.vertices = part.outputs().size();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_

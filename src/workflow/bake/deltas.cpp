@@ -139,4 +139,4 @@ TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct&
   return deltas_of_term(source, source.terms.pair_by_element(product.i, product.j));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -52,6 +52,6 @@ struct TargetDeltas {
 /// The deltas of the extra target whose weight is a product of two others.
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct& product);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_H_

@@ -315,4 +315,4 @@ bool FittedLines::find(std::size_t target, std::uint32_t element, Vec3d& delta) 
   return true;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

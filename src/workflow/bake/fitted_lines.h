@@ -43,6 +43,6 @@ class FittedLines {
   std::size_t elements_ = 0;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_FITTED_LINES_H_

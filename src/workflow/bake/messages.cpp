@@ -86,4 +86,4 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -25,6 +25,6 @@ void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std:
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
                    const BakedMesh& baked, std::vector<std::string>& warnings);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_MESSAGES_H_

@@ -366,4 +366,4 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
   return plan;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -41,6 +41,6 @@ struct MeshPlan {
   return !shading.set.targets[target].vertices.empty();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_PLAN_H_

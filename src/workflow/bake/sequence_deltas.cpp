@@ -96,4 +96,4 @@ EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentFor
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

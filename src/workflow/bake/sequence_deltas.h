@@ -41,6 +41,6 @@ struct EndDeltas {
 [[nodiscard]] EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form,
                                    std::span<const double> bounds, const std::vector<Vec3d>& before);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_DELTAS_H_

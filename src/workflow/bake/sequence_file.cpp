@@ -175,4 +175,4 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
   return builder_.finish();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -80,6 +80,6 @@ class SequenceFile {
   std::vector<std::string> names_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FILE_H_

@@ -114,4 +114,4 @@ std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
   return vector_areas(displacements);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

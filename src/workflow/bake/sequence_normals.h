@@ -75,6 +75,6 @@ template <class Body>
   return Success{};
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_NORMALS_H_

@@ -175,4 +175,4 @@ Vec3d VertexTerms::fitted_delta(const Vec3d& delta) const noexcept {
   return (max_abs(base_) > 0 ? length_ : kLongest * length_) * turn(delta);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

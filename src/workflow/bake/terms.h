@@ -120,6 +120,6 @@ class VertexTerms {
   double length_ = 1, scale_ = 0, side_ = 1;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_TERMS_H_

@@ -211,4 +211,4 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightPro
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -34,6 +34,6 @@ struct ExtendedTrack {
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products,
                                            double tolerance);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_

@@ -122,4 +122,4 @@ void MeshWriter::set_mark(const GltfBakeMark& mark) {
   edit_.set(pointer_ + "/extras/chronormal", gltf::bake_mark_json(mark).dump());
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -71,6 +71,6 @@ class MeshWriter {
   std::vector<Attributes> attributes_;            // of each primitive
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_MESH_H_

@@ -195,4 +195,4 @@ Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const
   return std::move(writer).written();
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

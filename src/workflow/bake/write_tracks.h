@@ -29,6 +29,6 @@ struct WrittenTracks {
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
                                                  double tolerance, GltfEdit& edit);
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_

@@ -368,4 +368,4 @@ void fill_extra_weights(const GltfShading& shading, std::span<double> weights) n
   for (const GltfExtraTarget& extra : extras) weights[extra.target] = factor(extra.i) * factor(extra.j);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -89,6 +89,6 @@ struct GltfShading {
 /// weights must have one for each target; those of extra ones are written
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_

@@ -133,4 +133,4 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_
   return result;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

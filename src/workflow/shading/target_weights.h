@@ -69,6 +69,6 @@ class WeightUse {
   std::vector<const WeightTrack*> tracks_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_SHADING_TARGET_WEIGHTS_H_

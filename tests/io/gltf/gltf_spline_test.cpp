@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/gltf_motion.h"
 #include "chronormal/motion/motion.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/gltf_motion.h"
 #include "chronormal/normals/control_normals.h"
+#include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_weights.h"
 

@@ -17,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/bytes/file.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
+#include "io/bytes/file.h"
 #include "io/mesh/obj.h"
 #include "tests/support/fixtures.h"
 

@@ -24,6 +24,6 @@ struct alignas(64) ControlTile {
   std::int32_t degree[kTile];
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_

@@ -38,4 +38,4 @@ void set_without_rounding(const Segment& segment, const std::uint32_t* corners, 
   if (!std::isfinite(tile.magnitude[lane])) tile.magnitude[lane] = magnitude_above(triangle.magnitude);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

@@ -29,6 +29,6 @@ void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, Exa
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_

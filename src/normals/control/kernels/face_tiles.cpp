@@ -46,7 +46,7 @@ void TriangleControlNormals(const Segment& segment, IndexRange faces, double* re
   }
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -67,5 +67,5 @@ void triangle_control_normals(const Segment& segment, IndexRange faces, std::spa
   HWY_DYNAMIC_DISPATCH(TriangleControlNormals)(segment, faces, reinterpret_cast<double*>(result.data()));
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

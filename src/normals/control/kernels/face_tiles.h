@@ -20,6 +20,6 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
 /// face_control_normals() of a mesh of triangles.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_

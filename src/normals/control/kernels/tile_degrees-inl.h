@@ -58,7 +58,7 @@ HWY_NOINLINE inline void SetDegrees(const ExactTile& exact, ControlTile& tile) {
   }
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_TILE_DEGREES_INL_H_

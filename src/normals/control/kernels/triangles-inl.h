@@ -246,7 +246,7 @@ HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
 #endif
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_TRIANGLES_INL_H_

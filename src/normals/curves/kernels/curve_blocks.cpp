@@ -57,4 +57,4 @@ CurveWeights CurveWeights::at(double t, bool compact) noexcept {
   return weights;
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal

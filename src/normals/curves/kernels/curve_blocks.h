@@ -81,6 +81,6 @@ struct CurveWeights {
 /// The sum of the absolute errors of the int16 weights stays below this share of their sum, at every t.
 inline constexpr double kWeightError = 1.5 / 32767;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_

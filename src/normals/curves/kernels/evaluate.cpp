@@ -367,7 +367,7 @@ void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -396,5 +396,5 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2
   HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(span, weights, result);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

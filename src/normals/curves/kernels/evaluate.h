@@ -64,6 +64,6 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2
 /// Makes what this thread has streamed visible to the others: once, after the last span, for it waits for the memory.
 void flush_stream() noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_

@@ -92,7 +92,7 @@ std::size_t ExactUnitNormals(const ControlNormals* normals, std::size_t count, d
   return without_direction;
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -105,5 +105,5 @@ std::size_t exact_unit_normals(std::span<const ControlNormals> normals, double t
   return HWY_DYNAMIC_DISPATCH(ExactUnitNormals)(normals.data(), normals.size(), t, result.data());
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

@@ -14,6 +14,6 @@ namespace chronormal::inline internal {
 /// where there is none. Returns the number of (0, 0, 0). t in [0, 1]; result must have as many vectors as normals
 std::size_t exact_unit_normals(std::span<const ControlNormals> normals, double t, std::span<Vec3f> result) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_EXACT_NORMALS_H_

@@ -330,7 +330,7 @@ void PackTiles(const ControlTile* tiles, std::size_t count, BlockKind kind, std:
   for (std::size_t i = 0; i < count; ++i) PackTile(tiles[i], kind, blocks + i * kTile * bytes_of(kind));
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -366,5 +366,5 @@ void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* b
   HWY_DYNAMIC_DISPATCH(PackTiles)(tiles.data(), tiles.size(), kind, blocks);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

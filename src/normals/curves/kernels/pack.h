@@ -42,6 +42,6 @@ void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& 
 /// zero. blocks must have 16 * bytes_of(kind) bytes for each tile, aligned to 64
 void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* blocks) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_

@@ -57,7 +57,7 @@ void PlayPlanes(float* state, std::size_t block_count, int degree, PlanesResult 
   }
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -74,5 +74,5 @@ void play_blocks(float* state, std::size_t block_count, int degree, PlanesResult
   HWY_DYNAMIC_DISPATCH(PlayPlanes)(state, block_count, degree, result);
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

@@ -14,6 +14,6 @@ namespace chronormal::inline internal {
 void play_blocks(float* state, std::size_t block_count, int degree, PackedResult result) noexcept;
 void play_blocks(float* state, std::size_t block_count, int degree, PlanesResult result) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CURVES_KERNELS_PLAY_H_

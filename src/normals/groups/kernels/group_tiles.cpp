@@ -38,7 +38,7 @@ inline constexpr float kSumErrorAbove = 0x1p-43f;
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               SumRows& sums, ControlTile& tile) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -360,7 +360,7 @@ void GroupTilesOf(const Segment& segment, const NormalGroups& groups, RowWindow&
   }
 }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -411,5 +411,5 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) noexce
   HWY_DYNAMIC_DISPATCH(GroupTilesOf)(segment_, *groups_, window_, elements, tiles.data());
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

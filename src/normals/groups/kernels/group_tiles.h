@@ -65,6 +65,6 @@ class GroupTiles {
   RowWindow window_;
 };
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_

@@ -396,7 +396,7 @@ std::size_t RecomputeGroupNormals(const NormalGroups& groups, IndexRange element
 
 IndexRange RangeOfIndices(const std::uint32_t* indices, std::size_t count) { return RangeOf(indices, count); }
 
-}  // namespace chronormal::internal::HWY_NAMESPACE
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -430,5 +430,5 @@ IndexRange range_of(std::span<const std::uint32_t> values) noexcept {
   return HWY_DYNAMIC_DISPATCH(RangeOfIndices)(values.data(), values.size());
 }
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

@@ -63,6 +63,6 @@ std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange eleme
 /// From the smallest to the largest of some values.
 [[nodiscard]] IndexRange range_of(std::span<const std::uint32_t> values) noexcept;
 
-}  // namespace chronormal::internal
+}  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
