@@ -6,7 +6,7 @@
 #include "schemes/counting.h"
 #include "schemes/makers.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 class PolynomialPlayback final : public SchemePlayback {
@@ -64,4 +64,4 @@ class Polynomial final : public Scheme {
 
 std::unique_ptr<Scheme> make_polynomial() { return std::make_unique<Polynomial>(); }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -49,6 +49,8 @@ void MotionError::add(const MotionError& other) noexcept {
   }
 }
 
+inline namespace internal {
+
 Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept {
   if (rule == AuditRule::kStep) return to_float(unit(t < 1 ? from : to));
   if (rule == AuditRule::kLerp) return to_float(unit(lerp(from, to, t)));
@@ -131,4 +133,5 @@ void finish(Audit& result) {
                         [](const AuditFinding& finding) { return finding.is_fault(); });
 }
 
+}  // namespace internal
 }  // namespace chronormal
