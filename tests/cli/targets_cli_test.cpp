@@ -21,7 +21,7 @@ class TargetsCli : public testing::Test {
   TargetsCli() {
     folder_.write("base.obj", test::kSquareObj);
     std::filesystem::create_directories(folder_ / "targets/mouth");
-    folder_.write("targets/mouth/lift.target", test::kLift);
+    folder_.write("targets/mouth/lift.target", test::kLiftTarget);
     folder_.write("targets/mouth/packed.target.gz", test::gzip("2 0 0 1\n"));
     folder_.write("smile.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 2\nf 1 2 3\nf 1 3 4\n");
   }

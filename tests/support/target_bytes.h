@@ -18,7 +18,7 @@ inline const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 inline const std::string kSquareObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 
 /// Lifts the vertices 1 and 3 of the square.
-inline const std::string kLift = "# made for a test\n\n3 0 0 .5\n1 -.25 +0.125 1e-1 # a corner\n";
+inline const std::string kLiftTarget = "# made for a test\n\n3 0 0 .5\n1 -.25 +0.125 1e-1 # a corner\n";
 
 /// One gzip member: header, deflated text, checksum and length.
 [[nodiscard]] inline std::string gzip(const std::string& text) {

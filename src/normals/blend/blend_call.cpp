@@ -113,7 +113,7 @@ class Finish {
 
 class Call {
  public:
-  Call(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch, VectorView<float> result,
+  Call(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch, VectorView<float> result,
        Threads threads)
       : source_(source), weights_(weights), scratch_(scratch), result_(result), threads_(threads) {}
 
@@ -319,7 +319,7 @@ class Call {
     ++zeros;
   }
 
-  const BlendSource& source_;
+  const BlendInput& source_;
   std::span<const double> weights_;
   BlendScratch& scratch_;
   VectorView<float> result_;
@@ -330,7 +330,7 @@ class Call {
 
 }  // namespace
 
-BlendChoice choose_path(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch) noexcept {
+BlendChoice choose_path(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch) noexcept {
   const auto targets = source.storage.targets();
   scratch.active.clear();
   scratch.touched.clear();
@@ -384,7 +384,7 @@ BlendChoice choose_path(const BlendSource& source, std::span<const double> weigh
   return choice;
 }
 
-BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch,
+BlendEvaluation evaluate(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch,
                          VectorView<float> result, Threads threads) {
   return Call(source, weights, scratch, result, threads).run();
 }

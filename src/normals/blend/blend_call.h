@@ -15,7 +15,7 @@
 namespace chronormal::inline internal {
 
 /// What an evaluation reads.
-struct BlendSource {
+struct BlendInput {
   const BlendSet& set;
   const NormalGroups* groups;  ///< nothing: faces
   const BlendStorage& storage;
@@ -25,9 +25,9 @@ struct BlendSource {
 
 /// Which path the weights take. Leaves the active targets, the touched elements, and those without their terms in the
 /// scratch.
-BlendChoice choose_path(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch) noexcept;
+BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendScratch& scratch) noexcept;
 
-BlendEvaluation evaluate(const BlendSource& source, std::span<const double> weights, BlendScratch& scratch,
+BlendEvaluation evaluate(const BlendInput& input, std::span<const double> weights, BlendScratch& scratch,
                          VectorView<float> result, Threads threads);
 
 }  // namespace chronormal::inline internal

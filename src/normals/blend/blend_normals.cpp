@@ -44,7 +44,7 @@ struct BlendNormals::Parts {
   [[nodiscard]] BlendShape shape() const {
     return {storage.terms().size(), set.topology.face_count(), set.topology.vertex_count(), set.targets.size()};
   }
-  [[nodiscard]] BlendSource source() const { return {set, groups ? &*groups : nullptr, storage, base, options.forced}; }
+  [[nodiscard]] BlendInput source() const { return {set, groups ? &*groups : nullptr, storage, base, options.forced}; }
 
   BlendSet set;
   std::optional<NormalGroups> groups;  // nothing: faces
@@ -77,7 +77,7 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
   const std::size_t targets = set().targets.size();
   assert(weights.size() == results.size() * targets);
   std::vector<BlendEvaluation> done(results.size());
-  const BlendSource source = parts_->source();
+  const BlendInput source = parts_->source();
   // Each thread takes every so many rows, with scratch of its own.
   const std::size_t hands = threads == Threads::kOne ? 1 : std::min(thread_count(), results.size());
   std::vector<BlendScratch> scratch;

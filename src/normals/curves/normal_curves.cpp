@@ -112,9 +112,13 @@ std::size_t evaluate_many(const CurveData& curves, std::span<const double> times
 
 }  // namespace
 
+inline namespace internal {
+
 std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept {
   return write_flagged_range(curves, {0, curves.size}, t, PlanesOutput(result, MemoryAccess{}));
 }
+
+}  // namespace internal
 
 NormalCurves::NormalCurves() noexcept = default;
 NormalCurves::NormalCurves(NormalCurves&&) noexcept = default;

@@ -19,7 +19,7 @@
 namespace chronormal::make_human_target_test {
 namespace {
 
-using test::gzip, test::kLift, test::kSquare;
+using test::gzip, test::kLiftTarget, test::kSquare;
 
 Result<MakeHumanTarget> read(const std::string& bytes, const std::vector<float>& base = kSquare) {
   return read_make_human_target(bytes, "a.target", VectorView<const float>::packed(base.data(), base.size() / 3));
@@ -69,21 +69,21 @@ bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
 }
 
 TEST(MakeHumanTarget, deltas_are_read_whatever_the_line_ends_and_comments) {
-  expect_lift(kLift);
-  expect_lift(replaced(kLift, "\n", "\r\n"));
-  expect_lift(replaced(kLift, "\n", "\r"));
-  expect_lift("\xEF\xBB\xBF" + kLift);
-  expect_lift(kLift.substr(0, kLift.size() - 1));
+  expect_lift(kLiftTarget);
+  expect_lift(replaced(kLiftTarget, "\n", "\r\n"));
+  expect_lift(replaced(kLiftTarget, "\n", "\r"));
+  expect_lift("\xEF\xBB\xBF" + kLiftTarget);
+  expect_lift(kLiftTarget.substr(0, kLiftTarget.size() - 1));
   expect_lift(" \t3\t0  0 .5 \n\n\n  # in between\n001 -.25 .125 .1");
 }
 
 TEST(MakeHumanTarget, gzip_is_known_by_its_first_bytes_and_may_have_several_members) {
-  expect_lift(gzip(kLift));
-  for (std::size_t cut = 0; cut <= kLift.size(); ++cut) {
+  expect_lift(gzip(kLiftTarget));
+  for (std::size_t cut = 0; cut <= kLiftTarget.size(); ++cut) {
     SCOPED_TRACE(cut);
-    expect_lift(gzip(kLift.substr(0, cut)) + gzip(kLift.substr(cut)));
+    expect_lift(gzip(kLiftTarget.substr(0, cut)) + gzip(kLiftTarget.substr(cut)));
   }
-  std::string long_text = kLift;
+  std::string long_text = kLiftTarget;
   for (int line = 0; line < 1500; ++line) long_text += "# comment " + std::to_string(line * 7919 % 1000) + "\n";
   expect_lift(gzip(long_text));
 }
@@ -137,21 +137,21 @@ TEST(MakeHumanTarget, delta_must_not_take_a_coordinate_out_of_float32) {
 }
 
 TEST(MakeHumanTarget, text_cut_off_anywhere_is_an_error_or_the_lines_before_it) {
-  for (std::size_t size = 0; size < kLift.size(); ++size) {
+  for (std::size_t size = 0; size < kLiftTarget.size(); ++size) {
     SCOPED_TRACE(size);
-    (void)check(kLift.substr(0, size));
-    const Result<MakeHumanTarget> target = read(kLift.substr(0, size));
-    if (size <= kLift.find("3 0") && size > 0) {
+    (void)check(kLiftTarget.substr(0, size));
+    const Result<MakeHumanTarget> target = read(kLiftTarget.substr(0, size));
+    if (size <= kLiftTarget.find("3 0") && size > 0) {
       EXPECT_TRUE(target.ok() && target.value().vertices.empty());
     }
-    if (size >= kLift.find("1 -.25") + 1 && size < kLift.find("1e-1")) {
+    if (size >= kLiftTarget.find("1 -.25") + 1 && size < kLiftTarget.find("1e-1")) {
       EXPECT_FALSE(target.ok());
     }
   }
 }
 
 TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
-  const std::string bytes = gzip(kLift);
+  const std::string bytes = gzip(kLiftTarget);
   for (std::size_t size = 2; size < bytes.size(); ++size)
     EXPECT_EQ(error_text(bytes.substr(0, size)),
               "a.target, byte " + std::to_string(size) + ": the gzip data end early");
@@ -162,7 +162,7 @@ TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
 }
 
 TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobody_looks) {
-  const std::string bytes = gzip(kLift);
+  const std::string bytes = gzip(kLiftTarget);
   std::size_t harmless = 0;
   for (std::size_t at = 2; at < bytes.size(); ++at) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -200,7 +200,7 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
   // Many members of nothing, and members that are large together.
   std::string members;
   for (int i = 0; i < 1000; ++i) members += gzip("");
-  expect_lift(members + gzip(kLift));
+  expect_lift(members + gzip(kLiftTarget));
   for (int i = 0; i < 8; ++i) members += gzip(std::string(16384, '\n'));
   EXPECT_FALSE(check(members));
 
@@ -212,17 +212,17 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
 TEST(MakeHumanTarget, boundary_numbers_everywhere_are_errors_or_targets) {
   const auto is_part = [](char c) { return c != ' ' && c != '\n' && c != '#'; };
   std::size_t cases = 0;
-  for (std::size_t at = 0; at < kLift.size(); ++at) {
-    if (!is_part(kLift[at]) || (at > 0 && is_part(kLift[at - 1]))) continue;
+  for (std::size_t at = 0; at < kLiftTarget.size(); ++at) {
+    if (!is_part(kLiftTarget[at]) || (at > 0 && is_part(kLiftTarget[at - 1]))) continue;
     std::size_t end = at;
-    while (end < kLift.size() && is_part(kLift[end])) ++end;
+    while (end < kLiftTarget.size() && is_part(kLiftTarget[end])) ++end;
     for (const char* const value :
          {"",     "0",   "-0",       "1",          "3",          "4",        "-1",         "+1",
           "++1",  "1.",  ".",        "-",          "1e",         "1e-400",   "1e400",      "3.4028235e38",
           "0x10", "nan", "infinity", "2147483648", "4294967296", "1e-46",    "-1e-46",     "9223372036854775808",
           "#",    "1#2", "\"1\"",    "1,5",        "\x01",       "\xFF\xFF", "4294967299", "-9223372036854775808"}) {
       SCOPED_TRACE("byte " + std::to_string(at) + " := " + value);
-      const std::string bytes = std::string(kLift).replace(at, end - at, value);
+      const std::string bytes = std::string(kLiftTarget).replace(at, end - at, value);
       EXPECT_EQ(check(bytes), check(gzip(bytes)));
       ++cases;
     }
@@ -232,8 +232,8 @@ TEST(MakeHumanTarget, boundary_numbers_everywhere_are_errors_or_targets) {
 
 TEST(MakeHumanTarget, random_edits_are_errors_or_targets) {
   std::mt19937 random(20240601);
-  const std::string packed = gzip(kLift);
-  for (const std::string& original : {kLift, packed}) {
+  const std::string packed = gzip(kLiftTarget);
+  for (const std::string& original : {kLiftTarget, packed}) {
     for (int round = 0; round < 8000; ++round) {
       SCOPED_TRACE(round);
       (void)check(test::with_random_edits(original, random));
