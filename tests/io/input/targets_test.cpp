@@ -15,7 +15,7 @@
 namespace chronormal::targets_test {
 namespace {
 
-using test::gzip, test::kLift, test::kSquare, test::kSquareObj, test::TemporaryFolder;
+using test::gzip, test::kLiftTarget, test::kSquare, test::kSquareObj, test::TemporaryFolder;
 using Names = std::vector<std::string>;
 
 // The square with its last vertex higher.
@@ -55,7 +55,8 @@ class Targets : public ::testing::Test {
 };
 
 TEST_F(Targets, are_a_star_from_the_base_with_names_and_times) {
-  const std::string lift = folder_.write("lift.target", kLift), packed = folder_.write("packed.target.gz", gzip(kLift)),
+  const std::string lift = folder_.write("lift.target", kLiftTarget),
+                    packed = folder_.write("packed.target.gz", gzip(kLiftTarget)),
                     raised = folder_.write("raised.v2.obj", kRaisedObj);
   Names steps;
   const Result<Motion> result = read_over(base_, Names{raised, lift, packed}, [&](std::size_t done, std::size_t total) {
@@ -81,14 +82,14 @@ TEST_F(Targets, are_a_star_from_the_base_with_names_and_times) {
 }
 
 TEST_F(Targets, one_target_is_a_motion) {
-  const Result<Motion> motion = read({folder_.write("lift.target", kLift)});
+  const Result<Motion> motion = read({folder_.write("lift.target", kLiftTarget)});
   ASSERT_TRUE(motion.ok()) << motion.error().text();
   EXPECT_EQ(motion.value().segments.size(), 1U);
 }
 
 TEST_F(Targets, names_lose_their_extensions_in_upper_and_lower_case) {
-  EXPECT_EQ(names_of(read({folder_.write("a.TARGET", kLift), folder_.write("b.Target.GZ", gzip(kLift)),
-                           folder_.write("c.d.target", kLift), folder_.write("e.target.target", kLift),
+  EXPECT_EQ(names_of(read({folder_.write("a.TARGET", kLiftTarget), folder_.write("b.Target.GZ", gzip(kLiftTarget)),
+                           folder_.write("c.d.target", kLiftTarget), folder_.write("e.target.target", kLiftTarget),
                            folder_.write("f.target.obj", kRaisedObj)})),
             (Names{"base", "a", "b", "c.d", "e.target", "f.target"}));
 }
@@ -97,10 +98,10 @@ TEST_F(Targets, folder_is_read_with_all_folders_in_it_by_path_and_number) {
   make_folder("t/10");
   make_folder("t/9/deep");
   make_folder("t/.hidden");
-  folder_.write("t/10/a.target", kLift);
-  folder_.write("t/9/b_10.target.gz", gzip(kLift));
-  folder_.write("t/9/b_2.target", kLift);
-  folder_.write("t/9/deep/c.target", kLift);
+  folder_.write("t/10/a.target", kLiftTarget);
+  folder_.write("t/9/b_10.target.gz", gzip(kLiftTarget));
+  folder_.write("t/9/b_2.target", kLiftTarget);
+  folder_.write("t/9/deep/c.target", kLiftTarget);
   folder_.write("t/.hidden/d.target", "not a target");
   folder_.write("t/.e.target", "not a target");
   folder_.write("t/notes.txt", "notes");
@@ -125,7 +126,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   // An OBJ base beside MakeHuman targets is not a folder of two formats.
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);
-  folder_.write("mh/lift.target", kLift);
+  folder_.write("mh/lift.target", kLiftTarget);
   EXPECT_EQ(names_of(read_over(base, Names{folder_ / "mh"})), (Names{"base", "lift"}));
 }
 
@@ -136,7 +137,7 @@ TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
   EXPECT_EQ(none.text(),
             folder_ / "t" + ": the folder has no targets (.obj, .ply, .target or .target.gz) besides the base");
   folder_.write("t/a.obj", kRaisedObj);
-  folder_.write("t/in/b.target", kLift);
+  folder_.write("t/in/b.target", kLiftTarget);
   const Error both = error_of(read({folder_ / "t"}));
   EXPECT_EQ(both.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(both.place, folder_ / "t");
@@ -152,7 +153,7 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
     return error.place;
   };
   EXPECT_EQ(place_of("a.target", "0 1 1 1\n9 1 1 1\n"), folder_ / "a.target" + ", line 2");
-  EXPECT_EQ(place_of("b.target.gz", gzip(kLift).substr(0, 30)), folder_ / "b.target.gz" + ", byte 30");
+  EXPECT_EQ(place_of("b.target.gz", gzip(kLiftTarget).substr(0, 30)), folder_ / "b.target.gz" + ", byte 30");
   EXPECT_EQ(place_of("c.obj", "v 0 0 nan\n"), folder_ / "c.obj" + ", line 1");
   EXPECT_EQ(place_of("d.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"), folder_ / "d.obj");
   EXPECT_EQ(place_of("e.stl", "solid\n"), folder_ / "e.stl");
@@ -163,7 +164,7 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
   const Error missing = error_of(read({folder_ / "no.target"}));
   EXPECT_EQ(missing.code, ErrorCode::kFailed);
   EXPECT_TRUE(missing.text().starts_with(folder_ / "no.target")) << missing.text();
-  const std::string lift = folder_.write("lift.target", kLift);
+  const std::string lift = folder_.write("lift.target", kLiftTarget);
   const Error no_base = error_of(read_over(folder_ / "no.obj", Names{lift}));
   EXPECT_EQ(no_base.code, ErrorCode::kFailed);
   EXPECT_EQ(no_base.place, folder_ / "no.obj");
