@@ -50,6 +50,11 @@ class VectorSum {
     return chronormal::without_rounding(value_, 4 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
+  /// How far any component of without_rounding() may be from the sum of the terms as they are.
+  [[nodiscard]] double error() const noexcept {
+    return 8 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);
+  }
+
  private:
   Vec3d value_, magnitude_;
   std::size_t terms_ = 0;
@@ -71,6 +76,12 @@ class CrossSum {
 
   [[nodiscard]] Vec3d without_rounding() const noexcept {
     return chronormal::without_rounding(value_, 8 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
+  }
+
+  /// How far any component of without_rounding() may be from the exact sum: 4 u of rounding, and 8 u where that set it
+  /// to zero.
+  [[nodiscard]] double error() const noexcept {
+    return 12 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);
   }
 
  private:

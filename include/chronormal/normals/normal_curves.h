@@ -105,6 +105,9 @@ class NormalCurves {
   [[nodiscard]] bool keeps_lengths() const noexcept;
   /// How many elements have true degree 0, 1 and 2.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
+  /// How many elements at t are uncertain: n(t) is so small a part of what it is the sum of, in double, that 1e-6 rad is
+  /// not promised there. Only where control normals are all that is known; curves made from positions have none.
+  [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
   /// How many elements are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
   /// Memory that is kept, in bytes, but for what fills up the last block, and what is kept for the next `reuse`.

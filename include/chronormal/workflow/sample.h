@@ -122,8 +122,11 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
-  // Anew.
-  [[nodiscard]] std::vector<float> weighted_normals(const Segment& segment, double t) const;
+  // Anew, and for this moment only.
+  [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, double t) const;
+  [[nodiscard]] bool are_exact_units() const noexcept {
+    return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
+  }
 
   const Motion* motion_;
   SampleOptions options_;

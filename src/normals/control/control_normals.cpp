@@ -6,7 +6,9 @@
 #include "chronormal/core/polynomial.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
+#include "normals/control/exact_curve.h"
 #include "normals/control/kernels/face_tiles.h"
+#include "normals/control/local_time.h"
 #include "normals/control/polygon_normals.h"
 
 namespace chronormal {
@@ -19,6 +21,13 @@ constexpr double kEvaluationError = 16 * kUnitRoundoff;
 struct Edge {
   Vec3d from, to;
 };
+
+// At an end of the segment, where nothing is rounded: the first control normal from there that is not zero.
+UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
+  if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
+  if (middle != Vec3d{}) return {unit(middle), Direction::kLimit};
+  return {unit(other), other != Vec3d{} ? Direction::kLimit : Direction::kNone};
+}
 
 }  // namespace
 
@@ -36,8 +45,20 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
     m.add(e.from, f.to);
     m.add(e.to, f.from);
   });
-  return {{n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()},
-          std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude())))};
+  PolygonNormals result{{n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()},
+                        std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude()))),
+                        std::fmax(n0.error(), std::fmax(0.5 * m.error(), n1.error()))};
+  const auto is_rounding = [](const Vec3d& v, double error) { return error > kLargestRounding * max_abs(v); };
+  auto& [r0, rm, r1] = result.normals;
+  const bool is_rounding0 = is_rounding(r0, n0.error()), is_rounding_m = is_rounding(rm, 0.5 * m.error()),
+             is_rounding1 = is_rounding(r1, n1.error());
+  if (is_rounding0 || is_rounding_m || is_rounding1) {
+    const ControlNormals exact = ExactCurve::of_polygon(segment, face).rounded();
+    if (is_rounding0) r0 = exact.n0;
+    if (is_rounding_m) rm = exact.m;
+    if (is_rounding1) r1 = exact.n1;
+  }
+  return result;
 }
 
 }  // namespace internal
@@ -68,8 +89,12 @@ Vec3d normal_at(const ControlNormals& normals, double t) noexcept {
   return (s * s) * normals.n0 + (2 * t * s) * normals.m + (t * t) * normals.n1;
 }
 
-UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept {
+UnitNormal unit_normal_at(const ControlNormals& normals, double time) noexcept {
+  const double t = local_time(time);
+  if (std::isnan(t)) return {{}, Direction::kNone};
   const auto& [n0, m, n1] = normals;
+  if (t == 0) return first_direction(n0, m, n1);
+  if (t == 1) return first_direction(n1, m, n0);
   const double s = 1 - t;
   const Vec3d n = normal_at(normals, t);
   const double size = s * s * max_abs(n0) + 2 * t * s * max_abs(m) + t * t * max_abs(n1);
@@ -79,8 +104,7 @@ UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept {
   const double largest = std::fmax(max_abs(n0), std::fmax(max_abs(m), max_abs(n1)));
   const Vec3d half_derivative = s * (m - n0) + t * (n1 - m);
   if (max_abs(half_derivative) > kEvaluationError * largest) {
-    if (t <= 0) return {unit(half_derivative), Direction::kLimit};
-    return {unit(-half_derivative), t >= 1 ? Direction::kLimit : Direction::kDiscontinuous};
+    return {unit(-half_derivative), Direction::kDiscontinuous};
   }
   const Vec3d c2 = (n0 - m) + (n1 - m);
   if (max_abs(c2) > kEvaluationError * largest) return {unit(c2), Direction::kLimit};

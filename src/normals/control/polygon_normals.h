@@ -14,9 +14,13 @@ namespace chronormal::inline internal {
 /// below those of float32 evaluation.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
+/// The largest share of a control normal that the rounding of double may be; else it is made of integers.
+inline constexpr double kLargestRounding = 0x1p-26;
+
 struct PolygonNormals {
   ControlNormals normals;  ///< as face_control_normals() writes them
   double magnitude = 0;    ///< the largest sum of absolute products of any component, of both products in m
+  double error = 0;        ///< how far any component may be from the exact one
 };
 
 /// face has the vertices of a polygon.

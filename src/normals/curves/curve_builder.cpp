@@ -7,16 +7,16 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "chronormal/core/polynomial.h"
 #include "core/blocks.h"
 #include "motion/coherence.h"
-#include "normals/control/kernels/face_tiles.h"
 #include "normals/curves/certificate.h"
+#include "normals/curves/curve_sources.h"
 #include "normals/curves/kernels/curve_blocks.h"
 #include "normals/curves/kernels/pack.h"
-#include "normals/groups/group_sum.h"
 #include "normals/groups/kernels/group_tiles.h"
 
 namespace chronormal::inline internal {
@@ -64,13 +64,6 @@ std::optional<Precision> precision_for(const ControlNormals& normals, const Prec
   }
   if (stays_above(n, limits.sum_ratio32, lengths)) return Precision::k32;
   return std::nullopt;
-}
-
-void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) {
-  std::size_t plane = 0;
-  for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
-    for (const double component : {v->x, v->y, v->z}) tile.normals[plane++][lane] = static_cast<float>(component);
-  }
 }
 
 ControlNormals scaled(double scale, const ControlNormals& c) { return {scale * c.n0, scale * c.m, scale * c.n1}; }
@@ -130,56 +123,6 @@ std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// Control normals that are there already.
-class GivenNormals {
- public:
-  explicit GivenNormals(std::span<const ControlNormals> normals) : normals_(normals) {}
-
-  void write(IndexRange elements, std::span<ControlTile> tiles) const {
-    for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
-      const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
-      ControlTile& tile = tiles[i / kTile];
-      put(tile, i % kTile, c);
-      // They are what they are: no products whose rounding would have to be feared.
-      tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
-      tile.degree[i % kTile] = degree(c);
-    }
-  }
-  [[nodiscard]] ControlNormals exact(std::size_t i) const { return normals_[i]; }
-
- private:
-  std::span<const ControlNormals> normals_;
-};
-
-class FaceNormals {
- public:
-  explicit FaceNormals(const Segment& segment) : segment_(segment) {}
-
-  void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
-  [[nodiscard]] ControlNormals exact(std::size_t i) const {
-    ControlNormals result;
-    face_control_normals(segment_, {i, 1}, {&result, 1});
-    return result;
-  }
-
- private:
-  const Segment& segment_;
-};
-
-class GroupNormals {
- public:
-  GroupNormals(const Segment& segment, const NormalGroups& groups, const AllFaceRows* rows = nullptr)
-      : segment_(segment), groups_(groups), tiles_(segment, groups, rows) {}
-
-  void write(IndexRange elements, std::span<ControlTile> tiles) { tiles_.write(elements, tiles); }
-  [[nodiscard]] ControlNormals exact(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
-
- private:
-  const Segment& segment_;
-  const NormalGroups& groups_;
-  GroupTiles tiles_;
-};
-
 // Positions of both ends that a cache near the core holds in any order; looking at the order would take longer.
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 // Up to here the control normals of all faces may be held for a while: half a gigabyte.
@@ -225,10 +168,34 @@ struct Part {
   std::size_t bytes = 0;
   std::vector<CurveData::Run> runs;  // offsets from begin
   std::vector<std::size_t> flagged;
-  std::vector<ControlNormals> exact;    // of the flagged
+  std::vector<ControlNormals> flagged_normals;
+  std::vector<CurveData::ExactElement> exact;
+  std::vector<std::int32_t> exact_digits;
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
   std::array<std::size_t, 3> degree_counts{};
 };
+
+// What a closer look at an element finds.
+struct Examined {
+  ControlNormals normals;              // in double, as right as its direction needs
+  std::optional<Precision> precision;  // nothing: it is flagged
+  bool needs_exact = false;            // flagged, and not even double suffices at every t
+};
+
+template <class Source>
+Examined examined(const Source& source, std::size_t element, const PrecisionLimits& limits) {
+  const auto [normals, error] = source.in_double(element);
+  Examined result{normals, precision_for(normals, limits)};
+  // What is given is the truth; there is nothing more exact.
+  if constexpr (!std::is_same_v<Source, GivenNormals>) {
+    const bool is_certain = (result.precision && is_small_error(normals, error)) || double_suffices(normals, error);
+    if (is_certain) return result;
+    result.normals = source.exact(element).rounded();
+    result.precision = precision_for(result.normals, limits);
+    result.needs_exact = !result.precision && !double_suffices(result.normals, 0);
+  }
+  return result;
+}
 
 class PartBuilder {
  public:
@@ -298,35 +265,51 @@ class PartBuilder {
   // Looks in double at the elements of a tile that a glance cannot judge. Returns those that are flagged, as bits.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, TileSummary& summary, ControlTile& tile, Need& need) {
-    std::uint32_t flagged = 0;
+    std::uint32_t flagged = 0, needs_exact = 0;
     bool out_of_range = false;
+    Examined found[kTile];
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if ((summary.uncertain >> lane & 1) == 0) continue;
       if (lane >= elements.count) {  // a repetition of the last element
         for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
         continue;
       }
-      const ControlNormals exact = source.exact(elements.first + lane);
-      set_degree(summary, lane, degree(exact));
-      const std::optional<Precision> precision = precision_for(exact, limits_);
+      found[lane] = examined(source, elements.first + lane, limits_);
+      const auto& [normals, precision, lane_needs_exact] = found[lane];
+      set_degree(summary, lane, degree(normals));
       if (precision) {
         need.precision = std::max(need.precision, *precision);
-        put(tile, lane, exact);
-        out_of_range |= largest_component(exact) > kLargestComponent || smaller_end(exact) < kSmallestEnd;
+        put(tile, lane, normals);
+        out_of_range |= largest_component(normals) > kLargestComponent || smaller_end(normals) < kSmallestEnd;
       } else {
         flagged |= 1u << lane;
+        needs_exact |= static_cast<std::uint32_t>(lane_needs_exact) << lane;
       }
     }
-    if (out_of_range) flagged |= rescale(source, elements, flagged, tile);
+    if (out_of_range) {
+      for (std::size_t lane = 0; lane < elements.count; ++lane) {
+        if ((summary.uncertain >> lane & 1) == 0) found[lane].normals = source.in_double(elements.first + lane).normals;
+      }
+      flagged |= rescale(found, elements, flagged, tile);
+    }
     for (std::size_t lane = 0; lane < elements.count; ++lane) {
       if ((flagged >> lane & 1) == 0) continue;
       put(tile, lane, kPlaceHolder);
       part_.flagged.push_back(elements.first + lane);
-      part_.exact.push_back(source.exact(elements.first + lane));
+      part_.flagged_normals.push_back(found[lane].normals);
+      if ((needs_exact >> lane & 1) != 0) keep_exact(source, elements.first + lane);
     }
     for (std::size_t lane = elements.count; lane < kTile; ++lane)
       for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
     return flagged;
+  }
+
+  template <class Source>
+  void keep_exact(const Source& source, std::size_t element) {
+    if constexpr (!std::is_same_v<Source, GivenNormals>) {
+      part_.exact.push_back({element, part_.exact_digits.size()});
+      source.exact(element).append_to(part_.exact_digits);
+    }
   }
 
   static void set_degree(TileSummary& summary, std::size_t lane, int element_degree) {
@@ -336,23 +319,19 @@ class PartBuilder {
   }
 
   // Gives a tile an exponent of its own. Returns the elements that are too small for it beside the others.
-  template <class Source>
-  std::uint32_t rescale(Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile) {
-    ControlNormals exact[kTile];
+  std::uint32_t rescale(const Examined* found, IndexRange elements, std::uint32_t flagged, ControlTile& tile) {
     double largest = 0;
     for (std::size_t lane = 0; lane < elements.count; ++lane) {
-      if ((flagged >> lane & 1) != 0) continue;
-      exact[lane] = source.exact(elements.first + lane);
-      largest = std::max(largest, largest_component(exact[lane]));
+      if ((flagged >> lane & 1) == 0) largest = std::max(largest, largest_component(found[lane].normals));
     }
     const int exponent = std::ilogb(largest) - kLargestExponent;
     std::uint32_t too_small = 0;
     for (std::size_t lane = 0; lane < elements.count; ++lane) {
       if ((flagged >> lane & 1) != 0) continue;
-      if (!(smaller_end(exact[lane]) >= kSmallestShare * largest)) {
+      if (!(smaller_end(found[lane].normals) >= kSmallestShare * largest)) {
         too_small |= 1u << lane;
       } else {
-        put(tile, lane, scaled(std::ldexp(1.0, -exponent), exact[lane]));
+        put(tile, lane, scaled(std::ldexp(1.0, -exponent), found[lane].normals));
       }
     }
     if (part_.exponents.empty()) part_.exponents.resize((part_.elements.count + kTile - 1) / kTile);
@@ -431,7 +410,11 @@ CurveData build(std::size_t size, const CurveOptions& options, Threads threads, 
     }
     bytes += made.bytes;
     curves.flagged.insert(curves.flagged.end(), made.flagged.begin(), made.flagged.end());
-    curves.exact.insert(curves.exact.end(), made.exact.begin(), made.exact.end());
+    curves.flagged_normals.insert(curves.flagged_normals.end(), made.flagged_normals.begin(),
+                                  made.flagged_normals.end());
+    for (const auto& [element, digits] : made.exact)
+      curves.exact.push_back({element, curves.exact_digits.size() + digits});
+    curves.exact_digits.insert(curves.exact_digits.end(), made.exact_digits.begin(), made.exact_digits.end());
     for (std::size_t d = 0; d < 3; ++d) curves.degree_counts[d] += made.degree_counts[d];
     if (!made.exponents.empty() && curves.keeps_lengths) {
       curves.exponents.resize(whole / kTile);

@@ -38,9 +38,17 @@ struct CurveData {
   AlignedBytes blocks;
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
-  std::vector<std::size_t> flagged;     ///< elements that are evaluated in double, ascending
-  std::vector<ControlNormals> exact;    ///< of these
-  AlignedArray<float> scratch;          ///< of preparing, kept for the next segment
+  /// Elements that are evaluated in double, ascending, and their control normals.
+  std::vector<std::size_t> flagged;
+  std::vector<ControlNormals> flagged_normals;
+  /// Those of them for which double is not enough at every t, ascending, and where their ExactCurve lies in exact_digits.
+  struct ExactElement {
+    std::size_t element = 0;
+    std::size_t digits = 0;
+  };
+  std::vector<ExactElement> exact;
+  std::vector<std::int32_t> exact_digits;
+  AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
 };
 
 /// Writes the unit normals of the flagged elements at t, and returns how many have no direction.

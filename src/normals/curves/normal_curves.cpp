@@ -7,14 +7,18 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "core/blocks.h"
+#include "normals/control/exact_curve.h"
+#include "normals/control/local_time.h"
+#include "normals/curves/certificate.h"
 #include "normals/curves/curve_builder.h"
 #include "normals/curves/curve_data.h"
 #include "normals/curves/kernels/curve_blocks.h"
-#include "normals/curves/kernels/exact_normals.h"
+#include "normals/curves/kernels/flagged_normals.h"
 #include "normals/curves/outputs.h"
 
 namespace chronormal {
@@ -35,22 +39,55 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Writes the flagged elements of a range. Returns how many have no direction.
-template <class Output>
-std::size_t write_flagged_range(const CurveData& curves, IndexRange range, double t, const Output& output) noexcept {
+// The digits of a flagged element for which double is not enough at every t, or nothing.
+const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
+  const auto at = std::lower_bound(curves.exact.begin(), curves.exact.end(), element,
+                                   [](const CurveData::ExactElement& e, std::size_t i) { return e.element < i; });
+  const bool is_exact = at != curves.exact.end() && at->element == element;
+  return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
+}
+
+// Calls write(element, v) for the flagged elements of a range that double can carry at t, and then
+// settle(index, element) for the others; `index` is that among the flagged.
+template <class Write, class Settle>
+void for_flagged(const CurveData& curves, IndexRange range, double t, const Write& write, const Settle& settle) {
   constexpr std::size_t kBatch = 64;
   Vec3f batch[kBatch];
+  std::uint32_t doubtful[kBatch];
   const auto index_of = [&flagged = curves.flagged](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
   const std::size_t end = index_of(range.end());
-  std::size_t without_direction = 0;
   for (std::size_t i = index_of(range.first); i < end; i += kBatch) {
     const std::size_t count = std::min(kBatch, end - i);
-    without_direction += exact_unit_normals(std::span(curves.exact).subspan(i, count), t, std::span(batch, count));
-    for (std::size_t k = 0; k < count; ++k) output.set(curves.flagged[i + k], batch[k]);
+    const std::size_t doubtful_count =
+        flagged_unit_normals(std::span(curves.flagged_normals).subspan(i, count), t, std::span(batch, count), doubtful);
+    for (std::size_t k = 0; k < count; ++k) write(curves.flagged[i + k], batch[k]);
+    for (std::size_t k = 0; k < doubtful_count; ++k) settle(i + doubtful[k], curves.flagged[i + doubtful[k]]);
   }
+}
+
+// Writes the flagged elements of a range. Returns how many have no direction.
+template <class Output>
+std::size_t write_flagged_range(const CurveData& curves, IndexRange range, double t, const Output& output) noexcept {
+  std::size_t without_direction = 0;
+  for_flagged(
+      curves, range, t, [&output](std::size_t element, const Vec3f& v) { output.set(element, v); },
+      [&](std::size_t index, std::size_t element) {
+        const std::int32_t* const digits = digits_of(curves, element);
+        const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
+                                               : unit_normal_at(curves.flagged_normals[index], t);
+        output.set(element, to_float(u.vector));
+        if (u.direction == Direction::kNone) ++without_direction;
+      });
   return without_direction;
+}
+
+// There is no normal at a time that is none.
+template <class Output>
+std::size_t write_zeros(std::size_t size, const Output& output) {
+  for (std::size_t i = 0; i < size; ++i) output.set(i, {});
+  return size;
 }
 
 // One pass over the elements of a range, at one t. Returns how many have no direction.
@@ -86,8 +123,10 @@ std::size_t over_pieces(std::size_t size, Threads threads, Body body) {
 }
 
 template <class Output>
-std::size_t evaluate_all(const CurveData& curves, double t, const Output& output, Threads threads) {
+std::size_t evaluate_all(const CurveData& curves, double time, const Output& output, Threads threads) {
   if (curves.size == 0) return 0;
+  if (std::isnan(time)) return write_zeros(curves.size, output);
+  const double t = local_time(time);
   const CurveWeights weights = CurveWeights::at(t, !curves.keeps_lengths);
   return over_pieces(curves.size, threads,
                      [&](IndexRange range) { return evaluate_range(curves, range, t, weights, output); });
@@ -97,17 +136,30 @@ template <class Output>
 std::size_t evaluate_many(const CurveData& curves, std::span<const double> times, const std::vector<Output>& outputs,
                           std::size_t step, Threads threads) {
   if (curves.size == 0) return 0;
-  std::vector<CurveWeights> weights;
-  for (const double t : times) weights.push_back(CurveWeights::at(t, !curves.keeps_lengths));
-  return over_pieces(curves.size, threads, [&](IndexRange piece) {
+  struct AtTime {
+    double t;
+    CurveWeights weights;
+    const Output* output;
+  };
+  std::vector<AtTime> all;
+  std::size_t without_time = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double t = local_time(times[k]);
+    if (std::isnan(t)) {
+      without_time += write_zeros(curves.size, outputs[k]);
+    } else {
+      all.push_back({t, CurveWeights::at(t, !curves.keeps_lengths), &outputs[k]});
+    }
+  }
+  const std::size_t others = over_pieces(curves.size, threads, [&](IndexRange piece) {
     std::size_t without_direction = 0;
     for (std::size_t first = piece.first; first < piece.end(); first += step) {
       const IndexRange range{first, std::min(step, piece.end() - first)};
-      for (std::size_t k = 0; k < times.size(); ++k)
-        without_direction += evaluate_range(curves, range, times[k], weights[k], outputs[k]);
+      for (const AtTime& at : all) without_direction += evaluate_range(curves, range, at.t, at.weights, *at.output);
     }
     return without_direction;
   });
+  return without_time + others;
 }
 
 }  // namespace
@@ -115,7 +167,7 @@ std::size_t evaluate_many(const CurveData& curves, std::span<const double> times
 inline namespace internal {
 
 std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept {
-  return write_flagged_range(curves, {0, curves.size}, t, PlanesOutput(result, MemoryAccess{}));
+  return write_flagged_range(curves, {0, curves.size}, local_time(t), PlanesOutput(result, MemoryAccess{}));
 }
 
 }  // namespace internal
@@ -207,9 +259,29 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
   return evaluate_many(curves, times, outputs, many_times_step(access), threads);
 }
 
-void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
+std::size_t NormalCurves::uncertain_count(double time) const noexcept {
+  const CurveData& curves = data();
+  const double t = local_time(time);
+  // At both ends, n(t) is a control normal and nothing is rounded.
+  if (!(0 < t && t < 1)) return 0;
+  std::size_t count = 0;
+  for_flagged(
+      curves, {0, curves.size}, t, [](std::size_t, const Vec3f&) {},
+      [&](std::size_t index, std::size_t element) {
+        const bool is_zero = largest_component(curves.flagged_normals[index]) == 0;
+        if (!is_zero && digits_of(curves, element) == nullptr) ++count;
+      });
+  return count;
+}
+
+void NormalCurves::normals(double time, VectorView<float> result) const noexcept {
   const CurveData& curves = data();
   assert(result.count == curves.size && curves.keeps_lengths);
+  if (std::isnan(time)) {
+    for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
+    return;
+  }
+  const double t = local_time(time);
   const CurveWeights weights = CurveWeights::at(t, !curves.keeps_lengths);
   for (const CurveData::Run& run : curves.runs) {
     const IndexRange elements = run.elements(curves.size);
@@ -234,8 +306,11 @@ void NormalCurves::normals(double t, VectorView<float> result) const noexcept {
       result.set(i, exponent == 0 ? n : clamped_to_float(std::ldexp(1.0, exponent) * to_double(n)));
     }
   }
-  for (std::size_t k = 0; k < curves.flagged.size(); ++k)
-    result.set(curves.flagged[k], clamped_to_float(normal_at(curves.exact[k], t)));
+  for (std::size_t k = 0; k < curves.flagged.size(); ++k) {
+    const std::int32_t* const digits = digits_of(curves, curves.flagged[k]);
+    result.set(curves.flagged[k], clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
+                                                                     : normal_at(curves.flagged_normals[k], t)));
+  }
 }
 
 std::size_t NormalCurves::size() const noexcept { return data().size; }
@@ -249,7 +324,8 @@ std::size_t NormalCurves::bytes() const noexcept {
   const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(curves.runs.back().kind);
   return curves.blocks.size() - unused + curves.runs.size() * sizeof(CurveData::Run) +
          curves.exponents.size() * sizeof(std::int16_t) +
-         curves.flagged.size() * (sizeof(std::size_t) + sizeof(ControlNormals));
+         curves.flagged.size() * (sizeof(std::size_t) + sizeof(ControlNormals)) +
+         curves.exact.size() * sizeof(CurveData::ExactElement) + curves.exact_digits.size() * sizeof(std::int32_t);
 }
 
 std::vector<NormalCurves::ByteCount> NormalCurves::byte_counts() const {

@@ -7,6 +7,7 @@
 
 #include "core/rounding.h"
 #include "core/vector_area.h"
+#include "normals/control/local_time.h"
 
 namespace chronormal {
 namespace {
@@ -112,7 +113,9 @@ void polynomial_group_normals(const NormalGroups& groups, std::span<const Polyno
 }
 
 template <std::size_t N>
-UnitNormal unit_normal_at(const std::array<Vec3d, N>& normals, double t) noexcept {
+UnitNormal unit_normal_at(const std::array<Vec3d, N>& normals, double time) noexcept {
+  const double t = local_time(time);
+  if (std::isnan(t)) return {{}, Direction::kNone};
   const auto [before, after] = split(normals, t);
   Bernstein<double, N - 1> sizes;
   for (std::size_t k = 0; k < N; ++k) sizes[k] = max_abs(normals[k]);

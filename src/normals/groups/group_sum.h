@@ -3,6 +3,7 @@
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,6 +11,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/rounding.h"
+#include "normals/control/polygon_normals.h"
 
 namespace chronormal::inline internal {
 
@@ -25,21 +27,29 @@ class ControlNormalsSum {
   [[nodiscard]] ControlNormals without_rounding() const noexcept {
     return {n0_.without_rounding(), m_.without_rounding(), n1_.without_rounding()};
   }
+  [[nodiscard]] double error() const noexcept { return std::max({n0_.error(), m_.error(), n1_.error()}); }
 
  private:
   VectorSum n0_, m_, n1_;
 };
 
-/// As group_control_normals() has them, bit for bit. Pure: no allocation, no throw.
-[[nodiscard]] inline ControlNormals control_normals_of_group(const Segment& segment, const NormalGroups& groups,
+/// Control normals in double, and how far any component may be from the exact one.
+struct BoundedNormals {
+  ControlNormals normals;
+  double error = 0;
+};
+
+/// The normals as group_control_normals() has them, bit for bit. Pure: no allocation, no throw.
+[[nodiscard]] inline BoundedNormals control_normals_of_group(const Segment& segment, const NormalGroups& groups,
                                                              std::size_t element) noexcept {
   ControlNormalsSum sum;
+  double error = 0;
   for (const std::uint32_t f : groups.faces(element)) {
-    ControlNormals face;
-    face_control_normals(segment, {f, 1}, {&face, 1});
-    sum.add(face);
+    const PolygonNormals face = polygon_control_normals(segment, segment.topology->face(f));
+    sum.add(face.normals);
+    error += face.error;
   }
-  return sum.without_rounding();
+  return {sum.without_rounding(), error + sum.error()};
 }
 
 }  // namespace chronormal::inline internal

@@ -12,15 +12,15 @@
 #include <limits>
 #include <span>
 
-#include "chronormal/normals/control_normals.h"
 #include "core/blocks.h"
 #include "core/memory.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "motion/coherence.h"
+#include "normals/control/exact_curve.h"
+#include "normals/control/local_time.h"
 #include "normals/curves/curve_elements.h"
 #include "normals/groups/face_window.h"
-#include "normals/groups/group_sum.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
 
 namespace chronormal {
@@ -114,16 +114,18 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, double t) {
   return rounded(normal_at_time(segment, f, t));
 }
 
-// In double, as finely as it takes.
+// The direction of a sum of faces: in double where the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and else
+// without any.
+UnitNormal unit_normal_of(const NormalAtTime& normal, const Segment& segment, std::span<const std::uint32_t> faces,
+                          double t) {
+  constexpr double kLargestAngle = 0x1p-23;
+  if (normal.error < kLargestAngle * max_abs(normal.n)) return {unit(normal.n), Direction::kRegular};
+  return ExactCurve::of_faces(segment, faces).unit_normal_at(t);
+}
+
 UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, double t) {
-  const NormalAtTime normal = normal_at_time(segment, f, t);
-  constexpr double kSmallestAngle = 0x1p-23;  // 1.2e-7 rad
-  constexpr double kSmallestNormal = 0x1p-900;
-  const double size = max_abs(normal.n);
-  if (normal.error <= kSmallestAngle * size && size >= kSmallestNormal) return {unit(normal.n), Direction::kRegular};
-  ControlNormals control;
-  face_control_normals(segment, {f, 1}, {&control, 1});
-  return unit_normal_at(control, t);
+  const auto face = static_cast<std::uint32_t>(f);
+  return unit_normal_of(normal_at_time(segment, f, t), segment, {&face, 1}, t);
 }
 
 UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) {
@@ -135,7 +137,17 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) 
 }
 
 UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element, double t) {
-  return unit_normal_at(control_normals_of_group(segment, groups, element), t);
+  NormalAtTime sum;
+  double magnitude = 0;
+  for (const std::uint32_t f : groups.faces(element)) {
+    const NormalAtTime normal = normal_at_time(segment, f, t);
+    sum.n = sum.n + normal.n;
+    sum.error += normal.error;
+    magnitude += sum_abs(normal.n);
+  }
+  // Each addition rounds by at most u of what is added up.
+  sum.error += kUnitRoundoff * static_cast<double>(groups.faces(element).size()) * magnitude;
+  return unit_normal_of(sum, segment, groups.faces(element), t);
 }
 
 // The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
@@ -341,11 +353,18 @@ class Call {
   std::size_t window_ = 0;
 };
 
+// There is no normal at a time that is none.
+std::size_t write_zeros(VectorView<float> result) {
+  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
+  return result.count;
+}
+
 }  // namespace
 
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept {
   assert(result.count == faces.count && faces.end() <= segment.topology->face_count());
-  return Call(segment, t, result, faces.first).faces(faces);
+  if (std::isnan(t)) return write_zeros(result);
+  return Call(segment, local_time(t), result, faces.first).faces(faces);
 }
 
 Result<std::vector<float>> unit_normals_at(const Motion& motion, double time) {
@@ -443,7 +462,8 @@ NormalRecompute::NormalRecompute(const Segment& segment, const NormalGroups& gro
 
 std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Threads threads) {
   assert(result.count == size());
-  return parts_ ? parts_->unit_normals(t, result, threads) : 0;
+  if (!parts_) return 0;
+  return std::isnan(t) ? write_zeros(result) : parts_->unit_normals(local_time(t), result, threads);
 }
 
 std::size_t NormalRecompute::size() const noexcept { return parts_ ? parts_->size() : 0; }

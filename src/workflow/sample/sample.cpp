@@ -128,7 +128,13 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, double t,
   return normals;
 }
 
-std::vector<float> NormalSampler::weighted_normals(const Segment& segment, double t) const {
+std::vector<float> NormalSampler::normals_anew(const Segment& segment, double t) const {
+  if (are_exact_units()) {
+    std::vector<float> normals(3 * element_count());
+    NormalRecompute recompute = are_faces() ? NormalRecompute(segment) : NormalRecompute(segment, *groups_);
+    recompute.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
+    return normals;
+  }
   const std::vector<Vec3d> exact =
       are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, *groups_, options_.weighting, t);
   std::vector<float> normals;
@@ -145,9 +151,8 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   if (!instant) return instant.error();
   const Segment segment = motion_->segment(instant.value().segment);
   const double t = instant.value().t;
-  const bool are_units = options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   return Pose{positions_at(segment, t),
-              are_units ? unit_normals(segment, t, evaluations) : weighted_normals(segment, t)};
+              are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
@@ -174,12 +179,12 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   }
   const Segment segment{&motion_->topology, VectorView<const float>::packed(pose.from.data(), base.count),
                         VectorView<const float>::packed(pose.to.data(), base.count)};
-  result.normals = weighted_normals(segment, DoublePositions::kMiddle);
+  result.normals = normals_anew(segment, DoublePositions::kMiddle);
   return result;
 }
 
 Pose NormalSampler::at_rest() const {
-  return {motion_->keyframes[0].positions, weighted_normals(standing_still(*motion_), 0)};
+  return {motion_->keyframes[0].positions, normals_anew(standing_still(*motion_), 0)};
 }
 
 }  // namespace chronormal

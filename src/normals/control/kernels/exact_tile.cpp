@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rounding.h"
 #include "normals/control/polygon_normals.h"
 
 namespace chronormal::inline internal {
@@ -28,7 +29,8 @@ float magnitude_above(double magnitude) noexcept {
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept {
   const PolygonNormals polygon = polygon_control_normals(segment, segment.topology->face(face));
   set_normals(polygon.normals, lane, tile);
-  tile.magnitude[lane] = magnitude_above(polygon.magnitude);
+  // A long fan rounds more often than a triangle.
+  tile.magnitude[lane] = magnitude_above(std::fmax(polygon.magnitude, polygon.error / (12 * kUnitRoundoff)));
 }
 
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,

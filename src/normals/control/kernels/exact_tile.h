@@ -25,7 +25,11 @@ inline constexpr double kErrorAbove = 0x1p-47;
 /// Writes one face into one lane, whatever its corners.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// Writes one triangle into one lane, with zero for what is nothing but rounding. Keeps the magnitude where it is finite.
+/// Of the magnitude of a triangle as well: a control normal above it is hardly touched by rounding (kLargestRounding).
+inline constexpr double kCertainAbove = 0x1p-22;
+
+/// Writes one triangle into one lane, with zero for what is nothing but rounding, and control normals made of integers
+/// where double is not enough. Keeps the magnitude where it is finite.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

@@ -117,7 +117,7 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Of half of the lanes, into tile. Whether one of the values may be noise, or a zero.
+// Of half of the lanes, into tile. Whether one of the values may be noise, or a zero, or a vector hardly more than noise.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);
@@ -134,21 +134,29 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
     k += 3;
   }
   const Doubles smallest = SmallerAbs(SmallerAbs(MinAbs(n0), MinAbs(m)), MinAbs(n1));
-  const Doubles noise = hn::Mul(hn::Set(kDoubles, kErrorAbove), ToDouble<kHalf>(magnitude));
-  return !hn::AllTrue(kDoubles, hn::Gt(smallest, noise));
+  const Doubles certain = hn::Mul(hn::Set(kDoubles, kCertainAbove), ToDouble<kHalf>(magnitude));
+  return !hn::AllTrue(kDoubles, hn::Gt(smallest, certain));
 }
 
-// Makes -0 a 0, and asks for every triangle with a component that may be noise in another way.
+// Makes -0 a 0, and asks for every triangle with a component that may be noise, or a vector of which noise may be more
+// than a little, in another way.
 HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
     const auto magnitude = hn::PromoteTo(kDoubles, hn::LoadU(HalfFloatTag(), tile.magnitude + lane));
     const Doubles noise = hn::Mul(hn::Set(kDoubles, kErrorAbove), magnitude);
+    const Doubles certain = hn::Mul(hn::Set(kDoubles, kCertainAbove), magnitude);
+    const auto nothing = hn::Eq(magnitude, zero);
     auto settled = hn::Lt(noise, hn::Set(kDoubles, std::numeric_limits<double>::infinity()));
-    for (auto& plane : tile.normals) {
-      const Doubles v = hn::Load(kDoubles, plane + lane);
-      hn::Store(hn::Add(v, zero), kDoubles, plane + lane);
-      settled = hn::And(settled, hn::Or(hn::Eq(v, zero), hn::Gt(hn::Abs(v), noise)));
+    for (std::size_t k = 0; k < 9; k += 3) {
+      Doubles largest = zero;
+      for (double* plane : {tile.normals[k], tile.normals[k + 1], tile.normals[k + 2]}) {
+        const Doubles v = hn::Load(kDoubles, plane + lane);
+        hn::Store(hn::Add(v, zero), kDoubles, plane + lane);
+        settled = hn::And(settled, hn::Or(hn::Eq(v, zero), hn::Gt(hn::Abs(v), noise)));
+        largest = LargerAbs(largest, v);
+      }
+      settled = hn::And(settled, hn::Or(nothing, hn::Gt(largest, certain)));
     }
     if (hn::AllTrue(kDoubles, settled)) continue;
     const std::uint32_t bits = BitsOf(kDoubles, settled);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 
 #include "core/blocks.h"
 #include "normals/control/kernels/exact_tile.h"
@@ -346,8 +347,10 @@ void GroupTilesOf(const Segment& segment, const NormalGroups& groups, RowWindow&
     std::uint32_t doubtful = RoundSums(sums, tile);
     if (HWY_UNLIKELY(list.count > kMostFaces)) {
       for (std::size_t i = 0; i < kTile; ++i) {
-        const bool many = groups.faces(first + std::min(i, count - 1)).size() > kMostFaces;
-        doubtful |= static_cast<std::uint32_t>(many) << i;
+        if (groups.faces(first + std::min(i, count - 1)).size() <= kMostFaces) continue;
+        doubtful |= 1u << i;
+        // Whoever reads the tile shall not trust it either.
+        tile.magnitude[i] = std::numeric_limits<float>::infinity();
       }
     }
     if (HWY_UNLIKELY(doubtful != 0)) {
@@ -371,7 +374,7 @@ HWY_EXPORT(FaceRows);
 
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               SumRows& sums, ControlTile& tile) noexcept {
-  const auto [n0, m, n1] = control_normals_of_group(segment, groups, element);
+  const auto [n0, m, n1] = control_normals_of_group(segment, groups, element).normals;
   std::size_t k = 0;
   for (const Vec3d& v : {n0, m, n1}) {
     for (const double component : {v.x, v.y, v.z}) {

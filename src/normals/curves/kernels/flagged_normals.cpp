@@ -1,14 +1,15 @@
-#include "normals/curves/kernels/exact_normals.h"
+#include "normals/curves/kernels/flagged_normals.h"
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "normals/curves/kernels/exact_normals.cpp"
+#define HWY_TARGET_INCLUDE "normals/curves/kernels/flagged_normals.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "normals/curves/certificate.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,8 +50,7 @@ std::uint32_t RegularUnitNormals(const double* planes, std::size_t stride, doubl
   const Doubles size =
       hn::Add(hn::Add(hn::Mul(w0, LargestOf(n0)), hn::Mul(w1, LargestOf(m))), hn::Mul(w2, LargestOf(n1)));
   const Doubles largest = LargestOf(n);
-  // As unit_normal_at() tells n(t) from zero.
-  const auto regular = hn::Gt(largest, hn::Mul(hn::Set(kDoubles, 8 * std::numeric_limits<double>::epsilon()), size));
+  const auto regular = hn::Gt(largest, hn::Mul(hn::Set(kDoubles, kDoubleShare), size));
 
   // Against the largest component, so that squares stay in range.
   const Doubles divisor = hn::IfThenElse(regular, largest, hn::Set(kDoubles, 1.0));
@@ -65,8 +65,9 @@ std::uint32_t RegularUnitNormals(const double* planes, std::size_t stride, doubl
   return bits[0] & ((1u << kDoubleLanes) - 1);
 }
 
-std::size_t ExactUnitNormals(const ControlNormals* normals, std::size_t count, double t, Vec3f* result) {
-  std::size_t without_direction = 0;
+std::size_t FlaggedUnitNormals(const ControlNormals* normals, std::size_t count, double t, Vec3f* result,
+                               std::uint32_t* doubtful) {
+  std::size_t doubtful_count = 0;
   for (std::size_t first = 0; first < count; first += kDoubleLanes) {
     const std::size_t part = std::min(kDoubleLanes, count - first);
     alignas(64) double planes[9][kDoubleLanes], units[3][kDoubleLanes];
@@ -83,13 +84,10 @@ std::size_t ExactUnitNormals(const ControlNormals* normals, std::size_t count, d
     for (std::size_t lane = 0; lane < part; ++lane) {
       Vec3f& to = result[first + lane];
       to = {static_cast<float>(units[0][lane]), static_cast<float>(units[1][lane]), static_cast<float>(units[2][lane])};
-      if ((regular >> lane & 1) != 0) continue;
-      const UnitNormal u = unit_normal_at(normals[first + lane], t);
-      to = to_float(u.vector);
-      if (u.direction == Direction::kNone) ++without_direction;
+      if ((regular >> lane & 1) == 0) doubtful[doubtful_count++] = static_cast<std::uint32_t>(first + lane);
     }
   }
-  return without_direction;
+  return doubtful_count;
 }
 
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
@@ -98,11 +96,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace chronormal::inline internal {
 
-HWY_EXPORT(ExactUnitNormals);
+HWY_EXPORT(FlaggedUnitNormals);
 
-std::size_t exact_unit_normals(std::span<const ControlNormals> normals, double t, std::span<Vec3f> result) noexcept {
-  assert(result.size() == normals.size());
-  return HWY_DYNAMIC_DISPATCH(ExactUnitNormals)(normals.data(), normals.size(), t, result.data());
+std::size_t flagged_unit_normals(std::span<const ControlNormals> normals, double t, std::span<Vec3f> result,
+                                 std::span<std::uint32_t> doubtful) noexcept {
+  assert(result.size() == normals.size() && doubtful.size() >= normals.size());
+  return HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(normals.data(), normals.size(), t, result.data(), doubtful.data());
 }
 
 }  // namespace chronormal::inline internal

@@ -1,0 +1,133 @@
+/// Integers as wide as it takes, for sums of products of floats that must not round.
+///
+/// Every finite float is an integer times 2^-149, so a product of two is an integer times 2^-298, and so is every sum
+/// of such products. Kept whole, it has no rounding error, whatever cancels, and asks for nothing from the floating
+/// point unit: the result is the same in every rounding mode, and with subnormal numbers flushed to zero.
+///
+///     value = sum of digit(k) 2^(24 k),   24 bits each and signed
+///
+/// so that the product of two digits has 48 bits, and thousands of them add up in 64 before a digit must carry. After
+/// settle() all digits lie in [-2^23, 2^23); the highest that is not zero then has the sign of the value, which is zero
+/// only where all digits are.
+///
+/// Source: Kulisch, Computer Arithmetic and Validity (2008): an accumulator as long as the range of its products.
+#ifndef CHRONORMAL_CORE_WIDE_INTEGER_H_
+#define CHRONORMAL_CORE_WIDE_INTEGER_H_
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace chronormal::inline internal {
+
+inline constexpr int kDigitBits = 24;
+inline constexpr std::int64_t kDigitBase = std::int64_t{1} << kDigitBits;
+
+/// A finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
+struct FloatParts {
+  std::int64_t mantissa = 0;
+  unsigned shift = 0;
+
+  [[nodiscard]] static FloatParts of(float value) noexcept {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t exponent = bits >> 23 & 0xFF, fraction = bits & 0x7FFFFF;
+    const auto size = static_cast<std::int64_t>(exponent == 0 ? fraction : fraction | 0x800000);
+    return {(bits >> 31) != 0 ? -size : size, exponent == 0 ? 0 : exponent - 1};
+  }
+};
+
+/// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale; scale is as small as can be.
+struct UnitFraction {
+  std::array<std::int64_t, 3> digits{};
+  unsigned scale = 0;
+
+  [[nodiscard]] static UnitFraction of(double t) noexcept {
+    assert(t == 0 || (0x1p-200 <= t && t <= 1));
+    if (t == 0) return {};
+    const auto bits = std::bit_cast<std::uint64_t>(t);
+    const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFF) | 0x10000000000000;
+    const auto zeros = static_cast<unsigned>(std::countr_zero(mantissa));
+    const std::uint64_t integer = mantissa >> zeros;
+    constexpr std::uint64_t kMask = kDigitBase - 1;
+    return {{static_cast<std::int64_t>(integer & kMask), static_cast<std::int64_t>(integer >> kDigitBits & kMask),
+             static_cast<std::int64_t>(integer >> 2 * kDigitBits)},
+            1075 - static_cast<unsigned>(bits >> 52) - zeros};
+  }
+};
+
+template <std::size_t kDigits>
+class WideInteger {
+ public:
+  /// Adds sign * a * b, in units of 2^-298. Up to 2^37 products may be added before settle().
+  void add_product(const FloatParts& a, const FloatParts& b, std::int64_t sign = 1) noexcept {
+    const std::int64_t product = sign * (a.mantissa * b.mantissa);
+    const unsigned shift = a.shift + b.shift, k = shift / kDigitBits;
+    constexpr std::int64_t kMask = kDigitBase - 1;
+    const std::int64_t power = std::int64_t{1} << shift % kDigitBits;
+    const std::int64_t low = (product & kMask) * power, high = (product >> kDigitBits) * power;
+    digits_[k] += low & kMask;
+    digits_[k + 1] += (low >> kDigitBits) + (high & kMask);
+    digits_[k + 2] += high >> kDigitBits;
+  }
+
+  /// Adds factor * other. The digits of other must be settled, and |factor| at most 2^24.
+  template <std::size_t kOthers>
+  void add(const WideInteger<kOthers>& other, std::int64_t factor) noexcept {
+    static_assert(kOthers <= kDigits);
+    for (std::size_t k = 0; k < kOthers; ++k) digits_[k] += factor * other.digit(k);
+  }
+
+  /// Adds other * t 2^t.scale, or other * 2^shift. The digits of other must be below 2^26.
+  template <std::size_t kOthers>
+  void add_product(const WideInteger<kOthers>& other, const UnitFraction& t) noexcept {
+    for (std::size_t i = 0; i < t.digits.size(); ++i) {
+      if (t.digits[i] == 0) continue;
+      for (std::size_t k = 0; k < std::min(kOthers, kDigits - i); ++k) digits_[k + i] += t.digits[i] * other.digit(k);
+    }
+  }
+  template <std::size_t kOthers>
+  void add_shifted(const WideInteger<kOthers>& other, unsigned shift) noexcept {
+    const std::size_t by = shift / kDigitBits;
+    const std::int64_t power = std::int64_t{1} << shift % kDigitBits;
+    for (std::size_t k = 0; k < std::min(kOthers, kDigits - by); ++k) digits_[k + by] += power * other.digit(k);
+  }
+
+  /// Brings every digit into [-2^23, 2^23).
+  void settle() noexcept {
+    std::int64_t carry = 0;
+    for (std::int64_t& digit : digits_) {
+      const std::int64_t sum = digit + carry;
+      carry = (sum + kDigitBase / 2) >> kDigitBits;
+      digit = sum - carry * kDigitBase;
+    }
+    assert(carry == 0);
+  }
+
+  [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return digits_[k]; }
+  void set_digit(std::size_t k, std::int64_t value) noexcept { digits_[k] = value; }
+
+  /// value * 2^exponent, within 2^-51 of itself, where that is in the range of normal doubles. Must be settled.
+  [[nodiscard]] double to_double(int exponent) const noexcept {
+    std::size_t top = kDigits;
+    while (top > 0 && digits_[top - 1] == 0) --top;
+    if (top == 0) return 0;
+    // Four digits have at least 72 bits from the highest on, and what is below them is less than their last.
+    double value = 0;
+    constexpr std::size_t kTaken = 4;
+    const std::size_t end = top < kTaken ? 0 : top - kTaken;
+    for (std::size_t k = top; k > end; --k)
+      value = value * static_cast<double>(kDigitBase) + static_cast<double>(digits_[k - 1]);
+    return std::ldexp(value, static_cast<int>(end) * kDigitBits + exponent);
+  }
+
+ private:
+  std::array<std::int64_t, kDigits> digits_{};
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_CORE_WIDE_INTEGER_H_

@@ -1,0 +1,66 @@
+/// n(t) of one element without any rounding: what decides where double cannot.
+///
+/// The control normals of a face are sums of products of its coordinates, which are floats, and those of a group are
+/// sums of them, so all are integers times 2^-298 (core/wide_integer.h). A double t is an integer times a power of two
+/// as well, and by Horner's rule
+///
+///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
+///
+/// is one more such integer. Whether it is zero, and which way it points, is therefore known and not estimated. This
+/// takes about a microsecond for each t, hundreds of times as long as in double, so it stands behind a filter: where a
+/// bound on the rounding error is small against |n(t)|, double has decided already.
+///
+/// No edges are formed: the products of neighbouring corners add up to the vector area (the shoelace formula), and the
+/// distance from the origin does not matter to integers.
+#ifndef CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
+#define CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "core/wide_integer.h"
+
+namespace chronormal::inline internal {
+
+class ExactCurve {
+ public:
+  /// Of one polygon, by its vertices; or of faces, whose normals are added up.
+  [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
+  [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
+
+  /// Reads what append_to() has written.
+  [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
+  /// Appends what this curve is made of, as few numbers as hold it: some 40 for coordinates of one size.
+  void append_to(std::vector<std::int32_t>& kept) const;
+
+  /// The control normals, each component rounded once or twice.
+  [[nodiscard]] ControlNormals rounded() const noexcept;
+  /// n(t), each component rounded once or twice. t is a local_time()
+  [[nodiscard]] Vec3d normal_at(double t) const noexcept;
+  /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
+  [[nodiscard]] UnitNormal unit_normal_at(double t) const noexcept;
+
+ private:
+  void add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
+  void settle() noexcept;
+
+  // Products reach up to digit 23; the rest is for sums of 2^40 of them.
+  static constexpr std::size_t kDigits = 26;
+  using Coefficient = WideInteger<kDigits>;
+  using CoefficientVector = std::array<Coefficient, 3>;
+
+  [[nodiscard]] CoefficientVector linear() const noexcept;  // 2m - 2 n0
+  [[nodiscard]] CoefficientVector bend() const noexcept;    // n0 - 2m + n1
+
+  CoefficientVector n0_, twice_m_, n1_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_

@@ -1,0 +1,20 @@
+/// The one rule of which local t a call stands for.
+#ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
+#define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
+
+#include <cmath>
+
+namespace chronormal::inline internal {
+
+/// Below this t counts as 0. So t^2 times the smallest product of two floats is far above the smallest double.
+inline constexpr double kSmallestTime = 0x1p-200;
+
+/// t in [0, 1]: what lies outside is moved to the nearer end. NaN stays NaN, and stands for no time at all.
+[[nodiscard]] inline double local_time(double t) noexcept {
+  if (std::isnan(t)) return t;
+  return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_

@@ -1,0 +1,92 @@
+/// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
+///
+///     write(elements, tiles)   sixteen by sixteen, in float32
+///     in_double(i)             one element, and how far off that may be
+///     exact(i)                 the same without any rounding, where there are positions to make it from
+#ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
+#define CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/normal_groups.h"
+#include "normals/control/exact_curve.h"
+#include "normals/control/kernels/control_tile.h"
+#include "normals/control/kernels/face_tiles.h"
+#include "normals/control/polygon_normals.h"
+#include "normals/curves/certificate.h"
+#include "normals/groups/group_sum.h"
+#include "normals/groups/kernels/group_tiles.h"
+
+namespace chronormal::inline internal {
+
+/// Rounds an element into a lane of a tile.
+inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) {
+  std::size_t plane = 0;
+  for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
+    for (const double component : {v->x, v->y, v->z}) tile.normals[plane++][lane] = static_cast<float>(component);
+  }
+}
+
+/// Control normals that are there already.
+class GivenNormals {
+ public:
+  explicit GivenNormals(std::span<const ControlNormals> normals) : normals_(normals) {}
+
+  void write(IndexRange elements, std::span<ControlTile> tiles) const {
+    for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
+      const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
+      ControlTile& tile = tiles[i / kTile];
+      put(tile, i % kTile, c);
+      // They are what they are: no products whose rounding would have to be feared.
+      tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
+      tile.degree[i % kTile] = degree(c);
+    }
+  }
+  // They are the truth, whatever they were made from.
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], 0}; }
+
+ private:
+  std::span<const ControlNormals> normals_;
+};
+
+/// The faces of a segment.
+class FaceNormals {
+ public:
+  explicit FaceNormals(const Segment& segment) : segment_(segment) {}
+
+  void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
+    const PolygonNormals face = polygon_control_normals(segment_, segment_.topology->face(i));
+    return {face.normals, face.error};
+  }
+  [[nodiscard]] ExactCurve exact(std::size_t i) const {
+    return ExactCurve::of_polygon(segment_, segment_.topology->face(i));
+  }
+
+ private:
+  const Segment& segment_;
+};
+
+/// The elements of groups.
+class GroupNormals {
+ public:
+  GroupNormals(const Segment& segment, const NormalGroups& groups, const AllFaceRows* rows = nullptr)
+      : segment_(segment), groups_(groups), tiles_(segment, groups, rows) {}
+
+  void write(IndexRange elements, std::span<ControlTile> tiles) { tiles_.write(elements, tiles); }
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
+  [[nodiscard]] ExactCurve exact(std::size_t i) const { return ExactCurve::of_faces(segment_, groups_.faces(i)); }
+
+ private:
+  const Segment& segment_;
+  const NormalGroups& groups_;
+  GroupTiles tiles_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
