@@ -14,7 +14,6 @@
 #ifndef CHRONORMAL_CORE_WIDE_INTEGER_H_
 #define CHRONORMAL_CORE_WIDE_INTEGER_H_
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -59,73 +58,86 @@ struct UnitFraction {
   }
 };
 
-template <std::size_t kDigits>
+/// At most kMost digits; as many as it takes are in use.
+template <std::size_t kMost>
 class WideInteger {
  public:
-  /// Adds sign * a * b, in units of 2^-298. Up to 2^37 products may be added before settle().
+  /// Adds sign * a * b. Up to 2^37 products may be added before settle().
   void add_product(const FloatParts& a, const FloatParts& b, std::int64_t sign = 1) noexcept {
     const std::int64_t product = sign * (a.mantissa * b.mantissa);
+    if (product == 0) return;
     const unsigned shift = a.shift + b.shift, k = shift / kDigitBits;
     constexpr std::int64_t kMask = kDigitBase - 1;
     const std::int64_t power = std::int64_t{1} << shift % kDigitBits;
     const std::int64_t low = (product & kMask) * power, high = (product >> kDigitBits) * power;
+    grow(k + 3);
     digits_[k] += low & kMask;
     digits_[k + 1] += (low >> kDigitBits) + (high & kMask);
     digits_[k + 2] += high >> kDigitBits;
   }
 
   /// Adds factor * other. The digits of other must be settled, and |factor| at most 2^24.
-  template <std::size_t kOthers>
-  void add(const WideInteger<kOthers>& other, std::int64_t factor) noexcept {
-    static_assert(kOthers <= kDigits);
-    for (std::size_t k = 0; k < kOthers; ++k) digits_[k] += factor * other.digit(k);
+  template <std::size_t kOther>
+  void add(const WideInteger<kOther>& other, std::int64_t factor) noexcept {
+    grow(other.size());
+    for (std::size_t k = 0; k < other.size(); ++k) digits_[k] += factor * other.digit(k);
   }
 
   /// Adds other * t 2^t.scale, or other * 2^shift. The digits of other must be below 2^26.
-  template <std::size_t kOthers>
-  void add_product(const WideInteger<kOthers>& other, const UnitFraction& t) noexcept {
+  template <std::size_t kOther>
+  void add_product(const WideInteger<kOther>& other, const UnitFraction& t) noexcept {
     for (std::size_t i = 0; i < t.digits.size(); ++i) {
       if (t.digits[i] == 0) continue;
-      for (std::size_t k = 0; k < std::min(kOthers, kDigits - i); ++k) digits_[k + i] += t.digits[i] * other.digit(k);
+      grow(other.size() + i);
+      for (std::size_t k = 0; k < other.size(); ++k) digits_[k + i] += t.digits[i] * other.digit(k);
     }
   }
-  template <std::size_t kOthers>
-  void add_shifted(const WideInteger<kOthers>& other, unsigned shift) noexcept {
+  template <std::size_t kOther>
+  void add_shifted(const WideInteger<kOther>& other, unsigned shift) noexcept {
     const std::size_t by = shift / kDigitBits;
     const std::int64_t power = std::int64_t{1} << shift % kDigitBits;
-    for (std::size_t k = 0; k < std::min(kOthers, kDigits - by); ++k) digits_[k + by] += power * other.digit(k);
+    grow(other.size() + by);
+    for (std::size_t k = 0; k < other.size(); ++k) digits_[k + by] += power * other.digit(k);
   }
 
-  /// Brings every digit into [-2^23, 2^23).
+  /// Brings every digit into [-2^23, 2^23), and forgets leading zeros.
   void settle() noexcept {
     std::int64_t carry = 0;
-    for (std::int64_t& digit : digits_) {
-      const std::int64_t sum = digit + carry;
+    for (std::size_t k = 0; k < size_ || carry != 0; ++k) {
+      grow(k + 1);
+      const std::int64_t sum = digits_[k] + carry;
       carry = (sum + kDigitBase / 2) >> kDigitBits;
-      digit = sum - carry * kDigitBase;
+      digits_[k] = sum - carry * kDigitBase;
     }
-    assert(carry == 0);
+    while (size_ > 0 && digits_[size_ - 1] == 0) --size_;
   }
 
-  [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return digits_[k]; }
-  void set_digit(std::size_t k, std::int64_t value) noexcept { digits_[k] = value; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return k < size_ ? digits_[k] : 0; }
+  void set_digit(std::size_t k, std::int64_t value) noexcept {
+    grow(k + 1);
+    digits_[k] = value;
+  }
 
   /// value * 2^exponent, within 2^-51 of itself, where that is in the range of normal doubles. Must be settled.
   [[nodiscard]] double to_double(int exponent) const noexcept {
-    std::size_t top = kDigits;
-    while (top > 0 && digits_[top - 1] == 0) --top;
-    if (top == 0) return 0;
-    // Four digits have at least 72 bits from the highest on, and what is below them is less than their last.
-    double value = 0;
+    // Four digits have at least 71 bits from the highest on, and what is below them is less than their last.
     constexpr std::size_t kTaken = 4;
-    const std::size_t end = top < kTaken ? 0 : top - kTaken;
-    for (std::size_t k = top; k > end; --k)
+    const std::size_t end = size_ < kTaken ? 0 : size_ - kTaken;
+    double value = 0;
+    for (std::size_t k = size_; k > end; --k)
       value = value * static_cast<double>(kDigitBase) + static_cast<double>(digits_[k - 1]);
     return std::ldexp(value, static_cast<int>(end) * kDigitBits + exponent);
   }
 
  private:
-  std::array<std::int64_t, kDigits> digits_{};
+  void grow(std::size_t size) noexcept {
+    assert(size <= kMost);
+    while (size_ < size) digits_[size_++] = 0;
+  }
+
+  std::array<std::int64_t, kMost> digits_;  // of which the first size_ count
+  std::size_t size_ = 0;
 };
 
 }  // namespace chronormal::inline internal

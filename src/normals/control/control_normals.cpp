@@ -32,6 +32,23 @@ UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d
 }  // namespace
 
 inline namespace internal {
+namespace {
+
+// Makes those control normals of integers that are hardly more than the rounding of double.
+void settle_rounding(const Segment& segment, std::span<const std::uint32_t> face, PolygonNormals& result) noexcept {
+  constexpr double kExactError = 0x1p-50;
+  const ControlNormals exact = ExactCurve::of_polygon(segment, face).rounded();
+  const auto settle = [](const Vec3d& from, Vec3d& to, double& error) {
+    if (error <= kLargestRounding * max_abs(to)) return;
+    to = from;
+    error = kExactError * max_abs(from);
+  };
+  settle(exact.n0, result.normals.n0, result.errors[0]);
+  settle(exact.m, result.normals.m, result.errors[1]);
+  settle(exact.n1, result.normals.n1, result.errors[2]);
+}
+
+}  // namespace
 
 PolygonNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) noexcept {
   CrossSum n0, m, n1;
@@ -45,19 +62,11 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
     m.add(e.from, f.to);
     m.add(e.to, f.from);
   });
-  PolygonNormals result{{n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()},
-                        std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude()))),
-                        std::fmax(n0.error(), std::fmax(0.5 * m.error(), n1.error()))};
-  const auto is_rounding = [](const Vec3d& v, double error) { return error > kLargestRounding * max_abs(v); };
-  auto& [r0, rm, r1] = result.normals;
-  const bool is_rounding0 = is_rounding(r0, n0.error()), is_rounding_m = is_rounding(rm, 0.5 * m.error()),
-             is_rounding1 = is_rounding(r1, n1.error());
-  if (is_rounding0 || is_rounding_m || is_rounding1) {
-    const ControlNormals exact = ExactCurve::of_polygon(segment, face).rounded();
-    if (is_rounding0) r0 = exact.n0;
-    if (is_rounding_m) rm = exact.m;
-    if (is_rounding1) r1 = exact.n1;
-  }
+  PolygonNormals result;
+  result.normals = {n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()};
+  result.errors = {n0.error(), 0.5 * m.error(), n1.error()};
+  result.magnitude = std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude())));
+  if (!(result.largest_share() <= kLargestRounding)) settle_rounding(segment, face, result);
   return result;
 }
 

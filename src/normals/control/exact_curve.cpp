@@ -5,15 +5,24 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr int kUnit = -298;  // the exponent of a product of two floats
-
 struct PointParts {
   std::array<FloatParts, 3> at;
 
-  [[nodiscard]] static PointParts of(const Vec3f& p) noexcept {
-    return {{FloatParts::of(p.x), FloatParts::of(p.y), FloatParts::of(p.z)}};
+  [[nodiscard]] static PointParts of(const Vec3f& p, unsigned base) noexcept {
+    PointParts parts{{FloatParts::of(p.x), FloatParts::of(p.y), FloatParts::of(p.z)}};
+    for (FloatParts& part : parts.at) part.shift = part.mantissa == 0 ? 0 : part.shift - base;
+    return parts;
   }
 };
+
+// The smallest shift of a coordinate that is not zero.
+unsigned lowest_shift(const Vec3f& p, unsigned lowest) noexcept {
+  for (const float x : {p.x, p.y, p.z}) {
+    const FloatParts parts = FloatParts::of(x);
+    if (parts.mantissa != 0) lowest = std::min(lowest, parts.shift);
+  }
+  return lowest;
+}
 
 template <std::size_t kDigits>
 void add_cross(const PointParts& p, const PointParts& q, std::array<WideInteger<kDigits>, 3>& sum) noexcept {
@@ -36,9 +45,12 @@ Vec3d to_doubles(const std::array<WideInteger<kDigits>, 3>& v, int exponent) noe
 }  // namespace
 
 void ExactCurve::add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept {
-  PointParts from = PointParts::of(segment.from[vertices.back()]), to = PointParts::of(segment.to[vertices.back()]);
+  const auto at = [this](const VectorView<const float>& points, std::uint32_t vertex) {
+    return PointParts::of(points[vertex], base_);
+  };
+  PointParts from = at(segment.from, vertices.back()), to = at(segment.to, vertices.back());
   for (const std::uint32_t vertex : vertices) {
-    const PointParts next_from = PointParts::of(segment.from[vertex]), next_to = PointParts::of(segment.to[vertex]);
+    const PointParts next_from = at(segment.from, vertex), next_to = at(segment.to, vertex);
     add_cross(from, next_from, n0_);
     add_cross(from, next_to, twice_m_);
     add_cross(to, next_from, twice_m_);
@@ -48,59 +60,68 @@ void ExactCurve::add_polygon(const Segment& segment, std::span<const std::uint32
   }
 }
 
-void ExactCurve::settle() noexcept {
+template <class Body>
+void ExactCurve::for_components(const Body& body) {
   for (CoefficientVector* const v : {&n0_, &twice_m_, &n1_}) {
-    for (Coefficient& component : *v) component.settle();
+    for (Coefficient& component : *v) body(component);
   }
 }
 
-ExactCurve ExactCurve::of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept {
+template <class Body>
+void ExactCurve::for_components(const Body& body) const {
+  for (const CoefficientVector* const v : {&n0_, &twice_m_, &n1_}) {
+    for (const Coefficient& component : *v) body(component);
+  }
+}
+
+template <class Body>
+ExactCurve ExactCurve::of(const Segment& segment, const Body& for_polygons) noexcept {
+  constexpr unsigned kHighest = 253;
   ExactCurve curve;
-  curve.add_polygon(segment, vertices);
-  curve.settle();
+  unsigned lowest = kHighest;
+  for_polygons([&](std::span<const std::uint32_t> vertices) {
+    for (const std::uint32_t vertex : vertices)
+      lowest = lowest_shift(segment.to[vertex], lowest_shift(segment.from[vertex], lowest));
+  });
+  curve.base_ = lowest;
+  for_polygons([&](std::span<const std::uint32_t> vertices) { curve.add_polygon(segment, vertices); });
+  curve.for_components([](Coefficient& component) { component.settle(); });
   return curve;
 }
 
+ExactCurve ExactCurve::of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept {
+  return of(segment, [vertices](const auto& body) { body(vertices); });
+}
+
 ExactCurve ExactCurve::of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept {
-  ExactCurve curve;
-  for (const std::uint32_t f : faces) curve.add_polygon(segment, segment.topology->face(f));
-  curve.settle();
-  return curve;
+  return of(segment, [&](const auto& body) {
+    for (const std::uint32_t f : faces) body(segment.topology->face(f));
+  });
+}
+
+void ExactCurve::append_to(std::vector<std::int32_t>& kept) const {
+  std::size_t size = 0;
+  for_components([&size](const Coefficient& component) { size = std::max(size, component.size()); });
+  kept.push_back(static_cast<std::int32_t>(base_));
+  kept.push_back(static_cast<std::int32_t>(size));
+  for_components([&](const Coefficient& component) {
+    for (std::size_t k = 0; k < size; ++k) kept.push_back(static_cast<std::int32_t>(component.digit(k)));
+  });
 }
 
 ExactCurve ExactCurve::of_kept(const std::int32_t* kept) noexcept {
   ExactCurve curve;
-  const auto first = static_cast<std::size_t>(*kept++), end = static_cast<std::size_t>(*kept++);
-  for (CoefficientVector* const v : {&curve.n0_, &curve.twice_m_, &curve.n1_}) {
-    for (Coefficient& component : *v) {
-      for (std::size_t k = first; k < end; ++k) component.set_digit(k, *kept++);
-    }
-  }
+  curve.base_ = static_cast<unsigned>(*kept++);
+  const auto size = static_cast<std::size_t>(*kept++);
+  curve.for_components([&](Coefficient& component) {
+    for (std::size_t k = 0; k < size; ++k) component.set_digit(k, *kept++);
+    component.settle();
+  });
   return curve;
 }
 
-void ExactCurve::append_to(std::vector<std::int32_t>& kept) const {
-  std::size_t first = kDigits, end = 0;
-  for (const CoefficientVector* const v : {&n0_, &twice_m_, &n1_}) {
-    for (const Coefficient& component : *v) {
-      for (std::size_t k = 0; k < kDigits; ++k) {
-        if (component.digit(k) == 0) continue;
-        first = std::min(first, k);
-        end = std::max(end, k + 1);
-      }
-    }
-  }
-  kept.push_back(static_cast<std::int32_t>(first));
-  kept.push_back(static_cast<std::int32_t>(end));
-  for (const CoefficientVector* const v : {&n0_, &twice_m_, &n1_}) {
-    for (const Coefficient& component : *v) {
-      for (std::size_t k = first; k < end; ++k) kept.push_back(static_cast<std::int32_t>(component.digit(k)));
-    }
-  }
-}
-
 ControlNormals ExactCurve::rounded() const noexcept {
-  return {to_doubles(n0_, kUnit), to_doubles(twice_m_, kUnit - 1), to_doubles(n1_, kUnit)};
+  return {to_doubles(n0_, unit()), to_doubles(twice_m_, unit() - 1), to_doubles(n1_, unit())};
 }
 
 ExactCurve::CoefficientVector ExactCurve::linear() const noexcept {
@@ -131,12 +152,12 @@ Vec3d ExactCurve::normal_at(double t) const noexcept {
     value[k].add_shifted(n0_[k], 2 * fraction.scale);
     value[k].settle();
   }
-  return to_doubles(value, kUnit - 2 * static_cast<int>(fraction.scale));
+  return to_doubles(value, unit() - 2 * static_cast<int>(fraction.scale));
 }
 
 UnitNormal ExactCurve::unit_normal_at(double t) const noexcept {
   const Vec3d n = normal_at(t);
-  if (n != Vec3d{}) return {unit(n), Direction::kRegular};
+  if (n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
 
   // n(t) = 0: near t the curve is (x - t) n'(t) + (x - t)^2 bend.
   const UnitFraction fraction = UnitFraction::of(t);
@@ -149,14 +170,14 @@ UnitNormal ExactCurve::unit_normal_at(double t) const noexcept {
     derivative[k].add_shifted(c1[k], fraction.scale);
     derivative[k].settle();
   }
-  const Vec3d slope = to_doubles(derivative, kUnit - static_cast<int>(fraction.scale));
+  const Vec3d slope = to_doubles(derivative, unit() - static_cast<int>(fraction.scale));
   if (slope != Vec3d{}) {
-    if (t <= 0) return {unit(slope), Direction::kLimit};
-    return {unit(-slope), t >= 1 ? Direction::kLimit : Direction::kDiscontinuous};
+    if (t <= 0) return {chronormal::unit(slope), Direction::kLimit};
+    return {chronormal::unit(-slope), t >= 1 ? Direction::kLimit : Direction::kDiscontinuous};
   }
   for (Coefficient& component : c2) component.settle();
-  const Vec3d curvature = to_doubles(c2, kUnit);
-  return {unit(curvature), curvature != Vec3d{} ? Direction::kLimit : Direction::kNone};
+  const Vec3d curvature = to_doubles(c2, unit());
+  return {chronormal::unit(curvature), curvature != Vec3d{} ? Direction::kLimit : Direction::kNone};
 }
 
 }  // namespace chronormal::inline internal

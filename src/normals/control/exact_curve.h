@@ -47,8 +47,17 @@ class ExactCurve {
   [[nodiscard]] UnitNormal unit_normal_at(double t) const noexcept;
 
  private:
+  template <class Body>
+  [[nodiscard]] static ExactCurve of(const Segment& segment, const Body& for_polygons) noexcept;
   void add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
-  void settle() noexcept;
+
+  // All control normals in the order of ControlNormals, x y z of each.
+  template <class Body>
+  void for_components(const Body& body);
+  template <class Body>
+  void for_components(const Body& body) const;
+
+  [[nodiscard]] int unit() const noexcept { return 2 * static_cast<int>(base_) - 298; }
 
   // Products reach up to digit 23; the rest is for sums of 2^40 of them.
   static constexpr std::size_t kDigits = 26;
@@ -59,6 +68,7 @@ class ExactCurve {
   [[nodiscard]] CoefficientVector bend() const noexcept;    // n0 - 2m + n1
 
   CoefficientVector n0_, twice_m_, n1_;
+  unsigned base_ = 0;  // all coordinates are multiples of 2^(base - 149)
 };
 
 }  // namespace chronormal::inline internal

@@ -2,6 +2,8 @@
 #ifndef CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -17,10 +19,21 @@ inline constexpr double kDegreeTolerance = 0x1p-28;
 /// The largest share of a control normal that the rounding of double may be; else it is made of integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
-struct PolygonNormals {
-  ControlNormals normals;  ///< as face_control_normals() writes them
-  double magnitude = 0;    ///< the largest sum of absolute products of any component, of both products in m
-  double error = 0;        ///< how far any component may be from the exact one
+/// Control normals in double, and how far any component of each may be from the exact one.
+struct BoundedNormals {
+  ControlNormals normals;
+  std::array<double, 3> errors{};  ///< of n0, m, n1
+
+  /// The largest error against its own control normal.
+  [[nodiscard]] double largest_share() const noexcept {
+    const auto share = [](double error, const Vec3d& v) { return error == 0 ? 0 : error / max_abs(v); };
+    return std::fmax(share(errors[0], normals.n0),
+                     std::fmax(share(errors[1], normals.m), share(errors[2], normals.n1)));
+  }
+};
+
+struct PolygonNormals : BoundedNormals {  ///< the normals as face_control_normals() writes them
+  double magnitude = 0;  ///< the largest sum of absolute products of any component, of both products in m
 };
 
 /// face has the vertices of a polygon.

@@ -3,6 +3,7 @@
 #define CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "chronormal/core/polynomial.h"
@@ -33,33 +34,31 @@ inline constexpr int kCertificateDepth = 4;
   return certainly_not_negative(slack);
 }
 
-/// How much an error in the control normals may turn n(t), beside what float32 does: 2^-25 = 3e-8 rad.
-inline constexpr double kErrorShare = 0x1p-26;
+/// Control normals in double whose components are off by at most this share of each are good enough for float32.
+inline constexpr double kLargestShare = 0x1p-30;
 
-/// n(t) in double has a direction where its largest component is above this share of sum w_k max_abs(c_k): seven
-/// rounded operations turn it by less than 1.3e-7 rad then.
-inline constexpr double kDoubleShare = 0x1p-26;
+/// n(t) in double has a direction where its largest component is above this share of sum w_k max_abs(c_k): what the
+/// control normals are off by, and ten roundings of 2^-53, turn it by less than 2e-7 rad then.
+[[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
-/// Whether such an error, of any component, is small at every t: where float32 suffices, which shows that
-/// |n(t)| >= (1-t)^2 |n0| / 3 + t^2 |n1| / 3, at least a sixth of the shorter end.
-[[nodiscard]] inline bool is_small_error(const ControlNormals& c, double error) {
-  return error <= kErrorShare / 6 * std::min(max_abs(c.n0), max_abs(c.n1));
-}
-
-/// Whether double has the direction at every t, from control normals whose components are off by `error` at most. That
-/// n(t) stays above 2^-20 of sum w_k |c_k|, where kDoubleShare is enough, leaves room for the rounding of the proof.
-[[nodiscard]] inline bool double_suffices(const ControlNormals& c, double error) {
-  constexpr double kShare = 0x1p-20;
-  constexpr double kSmallest = 0x1p-400;  // of the largest, so that squares stay in range
+/// Whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant knows: n(t) never
+/// leaves the plane of the three control normals, nor gets nearer to zero than that plane is.
+[[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
-  if (largest == 0) return error == 0;
-  const double scale = 1 / largest;
+  if (largest == 0) return true;
+  const double scale = 1 / largest, share = 4 * certain;  // 2 between norms, and 2 to be safe
   const Bernstein<Vec3d, 2> n = {scale * c.n0, scale * c.m, scale * c.n1};
+  constexpr double kRounding = 0x1p-44;  // of the determinant
+  if (std::fabs(dot(n[0], cross(n[1], n[2]))) >= share * length(cross(n[1] - n[0], n[2] - n[0])) + kRounding)
+    return true;
+
+  constexpr double kSmallest = 0x1p-400;      // so that squares stay in range
+  constexpr double kSmallestShare = 0x1p-20;  // whose square is far above the rounding of the proof
   Bernstein<double, 2> limit;
   for (std::size_t k = 0; k < limit.size(); ++k) {
     const double size = length(n[k]);
     if (0 < size && size < kSmallest) return false;
-    limit[k] = kShare * size + scale * error / kErrorShare;
+    limit[k] = std::max(share, kSmallestShare) * size;
   }
   return stays_above(n, 1, limit);
 }

@@ -168,7 +168,7 @@ struct Part {
   std::size_t bytes = 0;
   std::vector<CurveData::Run> runs;  // offsets from begin
   std::vector<std::size_t> flagged;
-  std::vector<ControlNormals> flagged_normals;
+  std::vector<FlaggedNormals> flagged_normals;
   std::vector<CurveData::ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
@@ -179,21 +179,27 @@ struct Part {
 struct Examined {
   ControlNormals normals;              // in double, as right as its direction needs
   std::optional<Precision> precision;  // nothing: it is flagged
-  bool needs_exact = false;            // flagged, and not even double suffices at every t
+  double certain = 0;                  // where it is flagged: the share above which double has a direction
+  bool needs_exact = false;            // flagged, and n(t) is not above that share at every t
 };
 
 template <class Source>
 Examined examined(const Source& source, std::size_t element, const PrecisionLimits& limits) {
-  const auto [normals, error] = source.in_double(element);
-  Examined result{normals, precision_for(normals, limits)};
-  // What is given is the truth; there is nothing more exact.
-  if constexpr (!std::is_same_v<Source, GivenNormals>) {
-    const bool is_certain = (result.precision && is_small_error(normals, error)) || double_suffices(normals, error);
-    if (is_certain) return result;
-    result.normals = source.exact(element).rounded();
-    result.precision = precision_for(result.normals, limits);
-    result.needs_exact = !result.precision && !double_suffices(result.normals, 0);
+  const BoundedNormals rounded = source.in_double(element);
+  Examined result;
+  result.normals = rounded.normals;
+  double share = rounded.largest_share();
+  // What is given is the truth, and there is nothing more exact.
+  constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
+  if constexpr (kHasExact) {
+    if (!(share <= kLargestShare)) {
+      result.normals = source.exact(element).rounded();
+      share = 0;
+    }
   }
+  result.precision = precision_for(result.normals, limits);
+  result.certain = smallest_certain(share);
+  result.needs_exact = kHasExact && !result.precision && !stays_certain(result.normals, result.certain);
   return result;
 }
 
@@ -275,7 +281,7 @@ class PartBuilder {
         continue;
       }
       found[lane] = examined(source, elements.first + lane, limits_);
-      const auto& [normals, precision, lane_needs_exact] = found[lane];
+      const auto& [normals, precision, certain, lane_needs_exact] = found[lane];
       set_degree(summary, lane, degree(normals));
       if (precision) {
         need.precision = std::max(need.precision, *precision);
@@ -288,7 +294,9 @@ class PartBuilder {
     }
     if (out_of_range) {
       for (std::size_t lane = 0; lane < elements.count; ++lane) {
-        if ((summary.uncertain >> lane & 1) == 0) found[lane].normals = source.in_double(elements.first + lane).normals;
+        if ((summary.uncertain >> lane & 1) != 0) continue;
+        const BoundedNormals rounded = source.in_double(elements.first + lane);
+        found[lane] = {rounded.normals, std::nullopt, smallest_certain(rounded.largest_share())};
       }
       flagged |= rescale(found, elements, flagged, tile);
     }
@@ -296,20 +304,16 @@ class PartBuilder {
       if ((flagged >> lane & 1) == 0) continue;
       put(tile, lane, kPlaceHolder);
       part_.flagged.push_back(elements.first + lane);
-      part_.flagged_normals.push_back(found[lane].normals);
-      if ((needs_exact >> lane & 1) != 0) keep_exact(source, elements.first + lane);
+      part_.flagged_normals.push_back({found[lane].normals, found[lane].certain});
+      if constexpr (!std::is_same_v<Source, GivenNormals>) {
+        if ((needs_exact >> lane & 1) == 0) continue;
+        part_.exact.push_back({elements.first + lane, part_.exact_digits.size()});
+        source.exact(elements.first + lane).append_to(part_.exact_digits);
+      }
     }
     for (std::size_t lane = elements.count; lane < kTile; ++lane)
       for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
     return flagged;
-  }
-
-  template <class Source>
-  void keep_exact(const Source& source, std::size_t element) {
-    if constexpr (!std::is_same_v<Source, GivenNormals>) {
-      part_.exact.push_back({element, part_.exact_digits.size()});
-      source.exact(element).append_to(part_.exact_digits);
-    }
   }
 
   static void set_degree(TileSummary& summary, std::size_t lane, int element_degree) {

@@ -14,6 +14,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "core/memory.h"
 #include "normals/curves/kernels/curve_blocks.h"
+#include "normals/curves/kernels/flagged_normals.h"
 
 namespace chronormal::inline internal {
 
@@ -38,9 +39,9 @@ struct CurveData {
   AlignedBytes blocks;
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
-  /// Elements that are evaluated in double, ascending, and their control normals.
+  /// Elements that are evaluated in double, ascending, and what from.
   std::vector<std::size_t> flagged;
-  std::vector<ControlNormals> flagged_normals;
+  std::vector<FlaggedNormals> flagged_normals;
   /// Those of them for which double is not enough at every t, ascending, and where their ExactCurve lies in exact_digits.
   struct ExactElement {
     std::size_t element = 0;

@@ -47,7 +47,7 @@ class GivenNormals {
     }
   }
   // They are the truth, whatever they were made from.
-  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], 0}; }
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:
   std::span<const ControlNormals> normals_;
@@ -60,8 +60,7 @@ class FaceNormals {
 
   void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
-    const PolygonNormals face = polygon_control_normals(segment_, segment_.topology->face(i));
-    return {face.normals, face.error};
+    return polygon_control_normals(segment_, segment_.topology->face(i));
   }
   [[nodiscard]] ExactCurve exact(std::size_t i) const {
     return ExactCurve::of_polygon(segment_, segment_.topology->face(i));

@@ -76,7 +76,7 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, doubl
       [&](std::size_t index, std::size_t element) {
         const std::int32_t* const digits = digits_of(curves, element);
         const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
-                                               : unit_normal_at(curves.flagged_normals[index], t);
+                                               : unit_normal_at(curves.flagged_normals[index].normals, t);
         output.set(element, to_float(u.vector));
         if (u.direction == Direction::kNone) ++without_direction;
       });
@@ -268,7 +268,7 @@ std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   for_flagged(
       curves, {0, curves.size}, t, [](std::size_t, const Vec3f&) {},
       [&](std::size_t index, std::size_t element) {
-        const bool is_zero = largest_component(curves.flagged_normals[index]) == 0;
+        const bool is_zero = largest_component(curves.flagged_normals[index].normals) == 0;
         if (!is_zero && digits_of(curves, element) == nullptr) ++count;
       });
   return count;
@@ -308,8 +308,9 @@ void NormalCurves::normals(double time, VectorView<float> result) const noexcept
   }
   for (std::size_t k = 0; k < curves.flagged.size(); ++k) {
     const std::int32_t* const digits = digits_of(curves, curves.flagged[k]);
-    result.set(curves.flagged[k], clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
-                                                                     : normal_at(curves.flagged_normals[k], t)));
+    result.set(curves.flagged[k],
+               clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
+                                                  : normal_at(curves.flagged_normals[k].normals, t)));
   }
 }
 
@@ -324,7 +325,7 @@ std::size_t NormalCurves::bytes() const noexcept {
   const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(curves.runs.back().kind);
   return curves.blocks.size() - unused + curves.runs.size() * sizeof(CurveData::Run) +
          curves.exponents.size() * sizeof(std::int16_t) +
-         curves.flagged.size() * (sizeof(std::size_t) + sizeof(ControlNormals)) +
+         curves.flagged.size() * (sizeof(std::size_t) + sizeof(FlaggedNormals)) +
          curves.exact.size() * sizeof(CurveData::ExactElement) + curves.exact_digits.size() * sizeof(std::int32_t);
 }
 

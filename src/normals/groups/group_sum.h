@@ -3,7 +3,7 @@
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,29 +27,25 @@ class ControlNormalsSum {
   [[nodiscard]] ControlNormals without_rounding() const noexcept {
     return {n0_.without_rounding(), m_.without_rounding(), n1_.without_rounding()};
   }
-  [[nodiscard]] double error() const noexcept { return std::max({n0_.error(), m_.error(), n1_.error()}); }
+  [[nodiscard]] std::array<double, 3> errors() const noexcept { return {n0_.error(), m_.error(), n1_.error()}; }
 
  private:
   VectorSum n0_, m_, n1_;
-};
-
-/// Control normals in double, and how far any component may be from the exact one.
-struct BoundedNormals {
-  ControlNormals normals;
-  double error = 0;
 };
 
 /// The normals as group_control_normals() has them, bit for bit. Pure: no allocation, no throw.
 [[nodiscard]] inline BoundedNormals control_normals_of_group(const Segment& segment, const NormalGroups& groups,
                                                              std::size_t element) noexcept {
   ControlNormalsSum sum;
-  double error = 0;
+  std::array<double, 3> of_faces{};
   for (const std::uint32_t f : groups.faces(element)) {
     const PolygonNormals face = polygon_control_normals(segment, segment.topology->face(f));
     sum.add(face.normals);
-    error += face.error;
+    for (std::size_t k = 0; k < 3; ++k) of_faces[k] += face.errors[k];
   }
-  return {sum.without_rounding(), error + sum.error()};
+  BoundedNormals result{sum.without_rounding(), sum.errors()};
+  for (std::size_t k = 0; k < 3; ++k) result.errors[k] += of_faces[k];
+  return result;
 }
 
 }  // namespace chronormal::inline internal

@@ -9,7 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "normals/curves/certificate.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,8 +48,8 @@ std::uint32_t RegularUnitNormals(const double* planes, std::size_t stride, doubl
   const DoubleLanes3 n = Sum(Sum(Weighted(w0, n0), Weighted(w1, m)), Weighted(w2, n1));
   const Doubles size =
       hn::Add(hn::Add(hn::Mul(w0, LargestOf(n0)), hn::Mul(w1, LargestOf(m))), hn::Mul(w2, LargestOf(n1)));
-  const Doubles largest = LargestOf(n);
-  const auto regular = hn::Gt(largest, hn::Mul(hn::Set(kDoubles, kDoubleShare), size));
+  const Doubles largest = LargestOf(n), certain = hn::Load(kDoubles, planes + 9 * stride);
+  const auto regular = hn::Gt(largest, hn::Mul(certain, size));
 
   // Against the largest component, so that squares stay in range.
   const Doubles divisor = hn::IfThenElse(regular, largest, hn::Set(kDoubles, 1.0));
@@ -65,20 +64,21 @@ std::uint32_t RegularUnitNormals(const double* planes, std::size_t stride, doubl
   return bits[0] & ((1u << kDoubleLanes) - 1);
 }
 
-std::size_t FlaggedUnitNormals(const ControlNormals* normals, std::size_t count, double t, Vec3f* result,
+std::size_t FlaggedUnitNormals(const FlaggedNormals* normals, std::size_t count, double t, Vec3f* result,
                                std::uint32_t* doubtful) {
   std::size_t doubtful_count = 0;
   for (std::size_t first = 0; first < count; first += kDoubleLanes) {
     const std::size_t part = std::min(kDoubleLanes, count - first);
-    alignas(64) double planes[9][kDoubleLanes], units[3][kDoubleLanes];
+    alignas(64) double planes[10][kDoubleLanes], units[3][kDoubleLanes];
     for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) {
-      const ControlNormals& c = normals[first + std::min(lane, part - 1)];
+      const auto& [c, certain] = normals[first + std::min(lane, part - 1)];
       std::size_t plane = 0;
       for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
         planes[plane++][lane] = v->x;
         planes[plane++][lane] = v->y;
         planes[plane++][lane] = v->z;
       }
+      planes[plane][lane] = certain;
     }
     const std::uint32_t regular = RegularUnitNormals(planes[0], kDoubleLanes, t, units[0]);
     for (std::size_t lane = 0; lane < part; ++lane) {
@@ -98,7 +98,7 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(FlaggedUnitNormals);
 
-std::size_t flagged_unit_normals(std::span<const ControlNormals> normals, double t, std::span<Vec3f> result,
+std::size_t flagged_unit_normals(std::span<const FlaggedNormals> normals, double t, std::span<Vec3f> result,
                                  std::span<std::uint32_t> doubtful) noexcept {
   assert(result.size() == normals.size() && doubtful.size() >= normals.size());
   return HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(normals.data(), normals.size(), t, result.data(), doubtful.data());

@@ -12,10 +12,15 @@
 
 namespace chronormal::inline internal {
 
-/// Writes n(t) / |n(t)| rounded to float32, and into `doubtful` the places of those for which n(t) is not above
-/// kDoubleShare (certificate.h) of what it is the sum of; returns how many those are.
+struct FlaggedNormals {
+  ControlNormals normals;
+  double certain = 0;  ///< the share of sum w_k max_abs(c_k) above which n(t) has a direction (certificate.h)
+};
+
+/// Writes n(t) / |n(t)| rounded to float32, and into `doubtful` the places of those for which n(t) is not certain;
+/// returns how many those are.
 /// t in [0, 1]; result and doubtful must have as many places as normals
-std::size_t flagged_unit_normals(std::span<const ControlNormals> normals, double t, std::span<Vec3f> result,
+std::size_t flagged_unit_normals(std::span<const FlaggedNormals> normals, double t, std::span<Vec3f> result,
                                  std::span<std::uint32_t> doubtful) noexcept;
 
 }  // namespace chronormal::inline internal
