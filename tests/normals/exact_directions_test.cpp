@@ -9,9 +9,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chronormal/normals/normal_curves.h"
@@ -20,6 +22,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"
+#include "tests/support/read_input.h"
 
 namespace chronormal::exact_directions_test {
 namespace {
@@ -164,6 +167,108 @@ TEST(ExactDirections, are_within_a_millionth_of_a_radian_in_every_family) {
   }
   std::cout << "  " << all << " cases\n";
   EXPECT_GE(all, wanted);
+}
+
+// Judges a whole mesh, faces and vertices.
+Tally judged(const Motion& motion, const std::vector<double>& times) {
+  const Segment segment = motion.segment(0);
+  const IntegerNormals oracle(segment);
+  const NormalGroups groups =
+      NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+  Tally tally;
+  NormalRecompute faces(segment), vertices(segment, groups);
+  judge(NormalCurves::of_faces(segment), faces, oracle, times, "a face", tally,
+        [](const std::vector<IntegerVector>& normals, std::size_t f) { return normals[f]; });
+  judge(NormalCurves::of_groups(segment, groups), vertices, oracle, times, "a vertex", tally,
+        [&groups](const std::vector<IntegerVector>& normals, std::size_t e) {
+          return test::sum_of(normals, groups.faces(e));
+        });
+  return tally;
+}
+
+// Small meshes that were once shown the wrong way by up to half a turn.
+TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
+  struct Found {
+    const char* name;
+    std::vector<fixtures::Point> points;
+    std::vector<std::uint32_t> corners;
+  };
+  const std::vector<Found> all{
+      {"sizes of 1e9 and 1e-9",
+       {{4.98534195e+09, 1.08089114e+09, 1.88841715e+09},
+        {3.17071591e-09, 3.39089778e-09, -1.1170644e-08},
+        {6.27459551e-09, 2.57805421e-09, 9.306238e-10}},
+       {0, 1, 2}},
+      {"sizes of 1e7 and 1e-2",
+       {{24892986, -12788380, 2213886.75},
+        {-11557858, -6513180, 28962818},
+        {0.00630061328, -0.00385841983, -0.0183484964}},
+       {0, 1, 2}},
+      {"a sliver near the origin",
+       {{6.60010241e-13, 3.92661815e-13, -3.48537198e-13},
+        {-1.90513515, -0.342684895, 0.262716949},
+        {-3.81027031, -0.68536979, 0.525433898}},
+       {0, 1, 2}},
+      {"another",
+       {{1e-12, 2e-12, -1e-12},
+        {0.3333333333333333, 0.7, 0.2},
+        {0.6666666865348816, 1.399999976158142, 0.4000000059604645}},
+       {0, 1, 2}},
+      {"huge faces that cancel",
+       {{0, 0, 0}, {10000, 10, 0}, {0, 10000, 30}, {0.0001, 0, 0}, {0, 0.0001, 0.0001}},
+       {0, 1, 2, 0, 2, 1, 0, 3, 4}},
+  };
+  for (const auto& [name, points, corners] : all) {
+    const Motion motion = fixtures::make_motion(fixtures::make_triangles(points.size(), corners), points, points);
+    const Tally tally = judged(motion, {0, 0.3, 1});
+    EXPECT_EQ(tally.violations, 0u) << name << ": " << tally.first_violation;
+  }
+}
+
+TEST(ExactDirections, are_right_in_files_that_broke_them) {
+  const char* const folder = std::getenv("CHRONORMAL_DATA");
+  if (folder == nullptr) GTEST_SKIP() << "CHRONORMAL_DATA does not name a folder";
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(folder) / "attack")) {
+    if (entry.path().extension() != ".obj") continue;
+    SCOPED_TRACE(entry.path().string());
+    InputOptions options = test::files({entry.path().string()});
+    options.allow_mesh = true;
+    Result<Motion> read = test::read_motion(options);
+    ASSERT_TRUE(read) << read.error().text();
+    Motion motion = std::move(read).value();
+    motion.segments = {{0, 0}};
+    const Tally tally = judged(motion, {0, 0.5});
+    EXPECT_EQ(tally.violations, 0u) << tally.first_violation;
+    ++files;
+  }
+  EXPECT_GE(files, 8u);
+}
+
+// What is given in double is all there is: near a zero of n(t) it cannot know, and says how often.
+TEST(UncertainDirections, are_counted_where_there_are_no_positions) {
+  const Vec3d z{0, 0, 1};
+  const ControlNormals turning{z, {}, -z}, steady{z, z, z};
+  const std::vector<ControlNormals> normals{steady, turning, steady, turning, ControlNormals{}};
+  const NormalCurves curves(normals);
+  for (const double t : {0.0, 0.3, 0.49, 1.0}) EXPECT_EQ(curves.uncertain_count(t), 0u) << t;
+  for (const double t : {0.5, 0.5 + 1e-12}) EXPECT_EQ(curves.uncertain_count(t), 2u) << t;
+  EXPECT_EQ(curves.uncertain_count(std::nan("")), 0u);
+}
+
+TEST(UncertainDirections, are_less_than_one_in_a_million_of_ordinary_ones) {
+  fixtures::Random random(21);
+  std::size_t uncertain = 0, all = 0;
+  for (const Motion& motion : {fixtures::smooth_morph(64), fixtures::moderate_soup(20000), fixtures::large_soup(20000),
+                               fixtures::shaken(fixtures::icosphere(5), 0.02, 22), fixtures::needle_soup(20000)}) {
+    const NormalCurves curves(all_face_control_normals(motion.segment(0)));
+    for (int i = 0; i < 20; ++i) {
+      uncertain += curves.uncertain_count(i == 0 ? 0.5 : random.uniform(0, 1));
+      all += curves.size();
+    }
+  }
+  EXPECT_GE(all, 1000000u);
+  EXPECT_LE(uncertain, all / 1000000) << all;
 }
 
 }  // namespace

@@ -9,6 +9,12 @@
 /// polygon, planar or not, is such a sum over a fan of its triangles, and a quadratic too.
 ///
 /// Units      positions: any length L; control normals: L^2; t: fraction of the segment, [0, 1].
+/// Time       Here, and wherever unit normals are made of a segment: t outside [0, 1] is moved to the nearer end, below
+///            2^-200 it counts as 0, and where t is NaN every normal is (0, 0, 0), Direction::kNone.
+/// Host       Results are defined for rounding to nearest, which is how a program starts. In other rounding modes
+///            directions are off by up to twice as much as promised. Flushing subnormal numbers to zero changes no bit,
+///            but that coordinates below 2^-126 = 1.2e-38 may count as 0. Modes belong to a thread: those that calls
+///            with Threads::kAll borrow have their own.
 /// Threads    everything here is pure: no allocation, no throw, the same bits on every compiler.
 #ifndef CHRONORMAL_NORMALS_CONTROL_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_NORMALS_H_
@@ -32,8 +38,8 @@ struct ControlNormals {
 };
 
 /// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle.
-/// A control normal that is smaller than the rounding error of its own products is written as exactly zero, so that
-/// collinear corners give zero and not a direction made of noise.
+/// Each is within 2^-26 of its length of the exact one, so that no direction is made of noise: where the rounding of
+/// double could be more than that, it is computed in integers. It is exactly zero where corners are exactly collinear.
 /// result must have faces.count elements; faces must lie inside the topology
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
@@ -61,7 +67,8 @@ struct UnitNormal {
 };
 
 /// n(t) / |n(t)| in double, with every degenerate case defined as named by Direction. At t = 0 the limit is taken from
-/// after, elsewhere from before. n(t) counts as zero below 8 rounding errors of its control normals.
+/// after, elsewhere from before. Inside a segment n(t) counts as zero below 8 rounding errors of its control normals: who
+/// has positions and must know better asks NormalCurves or unit_normals_at() in recompute.h, which decide it exactly.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 
 }  // namespace chronormal

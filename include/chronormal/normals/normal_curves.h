@@ -14,11 +14,13 @@
 /// Scales are those of the element: a direction needs none, so none is stored. Runs of less than 4 blocks join a
 /// neighbour that can hold them, where both lie within the same 32 blocks.
 ///
-/// Accuracy   The direction of every element is within `tolerance` of that of its control normals in double (which
-///            have 2^-50 of their products, so that a needle keeps fewer digits), by a bound and not by measurement
-///            (docs/theory.md, section 13): where n(t) gets small against its control normals, their rounding counts
-///            more, so each element carries a certificate of how small it can get. Where float32 cannot promise 1e-6
-///            rad the element is *flagged* and evaluated in double; flagged_count() tells how many those are.
+/// Accuracy   The direction of every element is within `tolerance` of the exact n(t) of the float32 positions at the
+///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13): where n(t) gets small
+///            against its control normals, their rounding counts more, so each element carries a certificate of how
+///            small it can get. Where float32 cannot promise 1e-6 rad the element is *flagged* and evaluated in double;
+///            flagged_count() tells how many those are. Where double cannot either, curves that were made from positions
+///            keep the control normals as integers, and know the direction at every t; those that were made of control
+///            normals have the direction of these, and tell by uncertain_count() where even that is not known.
 /// Lengths    |n(t)| is kept where the tolerance is kExactTolerance, and is lost in compact curves.
 /// Ownership  the curves own their memory; results go to the caller's.
 /// Threads    const functions may run at the same time. On one thread and at one t they do not allocate or throw. The
@@ -82,8 +84,9 @@ class NormalCurves {
                                               NormalCurves* reuse = nullptr);
 
   /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
-  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0.
-  /// t in [0, 1]; result must have size() elements
+  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. What other t than those in [0, 1]
+  /// mean is said in control_normals.h.
+  /// result must have size() elements
   std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne) const;
   /// The same in four bytes each; see normals/encodings.h for what becomes of (0, 0, 0).
   std::size_t unit_normals(double t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
@@ -98,7 +101,7 @@ class NormalCurves {
                            Threads threads = Threads::kOne) const;
 
   /// Writes n(t) itself: length = 2 x area. A component beyond the range of float becomes the largest float.
-  /// keeps_lengths() must hold; t in [0, 1]; result must have size() elements
+  /// keeps_lengths() must hold; result must have size() elements
   void normals(double t, VectorView<float> result) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept;

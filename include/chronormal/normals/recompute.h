@@ -3,10 +3,11 @@
 /// The rival of NormalCurves, and what wins for one evaluation or two. Nothing is prepared but scratch memory;
 /// positions and topology are read at every call, must stay alive, and positions may change between calls.
 ///
-/// Accuracy   within 1e-6 rad of exact arithmetic, as NormalCurves: edges in float32 and all that follows in double
-///            where a bound on the rounding shows that it suffices (edges are interpolated, not vertices, so the
-///            distance from the origin does not matter), double throughout elsewhere, the limit direction at a
-///            collapse.
+/// Accuracy   within 1e-6 rad of the exact n(t) of the float32 positions at the double t, whatever they are: edges in
+///            float32 and all that follows in double where a bound on the rounding shows that it suffices (edges are
+///            interpolated, not vertices, so the distance from the origin does not matter), double throughout where
+///            that suffices, and integers behind it (docs/theory.md, section 5). The limit direction where n(t) is
+///            exactly zero. What t outside [0, 1], NaN and the modes of the host mean is said in control_normals.h.
 /// Groups     face normals are made a little ahead of the elements that add them up, in a window that stays in the
 ///            cache; where the faces of neighbouring elements are far apart, in memory for all of them.
 /// Memory     scratch of 16 bytes for each face of the window, or for all; and where vertices lie in no order, or not
@@ -33,7 +34,7 @@ namespace chronormal {
 
 /// Writes the unit normals at t of a range of faces; see NormalRecompute, whose bits they have. Pure: no allocation, no
 /// throw, and no scratch, so that meshes in no order and positions that are not packed are slower.
-/// t in [0, 1]; result must have faces.count elements; faces must lie inside the topology
+/// result must have faces.count elements; faces must lie inside the topology
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept;
 
 /// The easy way from a motion and a time in seconds to normals: finds the segment of the time, and returns the unit
@@ -58,7 +59,7 @@ class NormalRecompute {
 
   /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
   /// where n is zero throughout. Returns the number of (0, 0, 0) written.
-  /// t in [0, 1]; result must have size() elements
+  /// result must have size() elements
   std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne);
 
   /// How many elements there are.

@@ -11,7 +11,8 @@
 /// Model      a pure function of what it is given: no clock, no thread count, nothing read from the machine. Its
 ///            constants were measured on one core of the machine of docs/benchmarks.md; on others both ways get faster
 ///            or slower together, and the choice is wrong only where both cost nearly the same.
-/// Accuracy   recompute within 1e-6 rad, curves within the tolerance that is asked for.
+/// Accuracy   recompute within 1e-6 rad of exact arithmetic, curves within the tolerance that is asked for; both for
+///            every element, at every t.
 /// Ownership  the segment's positions and topology, and the groups, must outlive the object.
 /// Forms      float vectors at one t; for others, and many t, choose_strategy() and NormalCurves.
 /// Moves      what was moved from may only be destroyed or assigned to.
@@ -105,7 +106,7 @@ class SegmentNormals {
 
   /// Writes n(t) / |n(t)| of every element, and the limit or (0, 0, 0) where there is none; returns the number of
   /// (0, 0, 0) written.
-  /// t in [0, 1]; result must have size() elements
+  /// result must have size() elements
   std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne);
 
   [[nodiscard]] std::size_t size() const noexcept;

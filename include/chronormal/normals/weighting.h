@@ -73,8 +73,9 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {{
 /// Finds a weighting by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
 
-/// Writes n of a range of faces at t: twice the vector area, and zero where it is nothing but rounding.
-/// result must have as many elements as the range; t in [0, 1]
+/// Writes n of a range of faces at t: twice the vector area, within 2^-30 of its length, and zero where it is exactly
+/// zero. (What other t than those in [0, 1] mean is said in control_normals.h.)
+/// result must have as many elements as the range
 void face_normals_at(const Segment& segment, double t, IndexRange faces, std::span<Vec3d> result) noexcept;
 
 /// Writes the weighted normals of a range of elements at t, of any length. Pure: no allocation, no throw. The terms are

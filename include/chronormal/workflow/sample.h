@@ -6,10 +6,11 @@
 ///                be negative or more than 1, which extrapolates
 ///     neither    of a mesh that stands still: one keyframe and no segment
 ///
-/// Area-weighted unit normals at times are exact to 1e-6 rad, by curves of the segment or from its positions, whichever
-/// costs less for as many times as are asked for there (normals/segment_normals.h). All others are computed anew, in
-/// double, from positions that are not rounded to float32 before: areas themselves, other weightings, which are no
-/// polynomials, and normals of weights.
+/// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are: at
+/// times by curves of the segment or from its positions, whichever costs less for as many times as are asked for there
+/// (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that holds for
+/// positions that are rounded to 48 bits, and not to float32. Other weightings, which are no polynomials, are computed
+/// anew in double.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those
 ///            that show the same element have the same bits.

@@ -38,7 +38,7 @@ inline constexpr int kCertificateDepth = 4;
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// n(t) in double has a direction where its largest component is above this share of sum w_k max_abs(c_k): what the
-/// control normals are off by, and ten roundings of 2^-53, turn it by less than 2e-7 rad then.
+/// control normals are off by, and ten roundings of 2^-53, turn it by less than 6e-7 rad then.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
 /// Whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant knows: n(t) never

@@ -159,8 +159,8 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
   for (int i = 1; i < 2000; ++i) {
     const float x = 0.1f * static_cast<float>(i), y = 1e-7f * static_cast<float>(i * i),
                 z = 3e5f / static_cast<float>(i);
-    p = {1e-20f, 1e10f, 0, 1e-20f + x, 1e10f + y, z, 1e-20f + 2 * x, 1e10f + 2 * y, 2 * z};
-    // Only where float32 kept them collinear.
+    p = {0, 1e10f, 0, x, 1e10f + y, z, 2 * x, 1e10f + 2 * y, 2 * z};
+    // Only where float32 kept them collinear: these differences are exact.
     if (p[3] - p[0] != p[6] - p[3] || p[4] - p[1] != p[7] - p[4] || p[5] - p[2] != p[8] - p[5]) continue;
     ++tested;
     const auto view = VectorView<const float>::packed(p.data(), 3);
@@ -170,6 +170,18 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
     EXPECT_EQ(normals, ControlNormals{}) << i;
   }
   EXPECT_GT(tested, 100);
+}
+
+TEST(ControlNormalsOfFaces, corners_that_are_not_quite_collinear_give_what_there_is) {
+  // c = 2 b and a hardly off the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding of its products.
+  const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
+  const float p[] = {1e-20f, 0, 0, 0.3f, 0.7f, 0.1f, 2 * 0.3f, 2 * 0.7f, 2 * 0.1f};
+  const auto view = VectorView<const float>::packed(p, 3);
+  ControlNormals normals;
+  face_control_normals({&topology, view, view, 0, 1, 0}, {0, 1}, {&normals, 1});
+  const Vec3d expected = cross(to_double(Vec3f{p[3], p[4], p[5]}), to_double(Vec3f{p[0], p[1], p[2]}));
+  for (const Vec3d& n : {normals.n0, normals.m, normals.n1})
+    EXPECT_LE(max_abs(n - expected), 1e-15 * max_abs(expected));
 }
 
 TEST(NormalCurves, lengths_at_the_limits_of_float_are_finite) {

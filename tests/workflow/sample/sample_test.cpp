@@ -11,6 +11,8 @@
 
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
 #include "tests/support/reference_elements.h"
 
 namespace chronormal::sample_test {
@@ -109,6 +111,50 @@ TEST(NormalSampler, faces_vertices_and_corners_are_exact_at_every_time) {
             const Vector p = reference::position(mesh, v, t);
             for (std::size_t k = 0; k < 3; ++k)
               EXPECT_FLOAT_EQ(pose.positions[3 * v + k], static_cast<float>(p[k])) << v << " at " << t;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Of meshes that move, and of the same that stand still, against whole numbers.
+TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
+  constexpr double kTime = 0.375;
+  fixtures::Random random(71);
+  for (const auto& family : test::hard_motions()) {
+    for (int i = 0; i < 20; ++i) {
+      const Motion motion = family.make(random);
+      Motion mesh = motion;
+      mesh.keyframes.resize(1);
+      mesh.segments.clear();
+      Segment still = motion.segment(0);
+      still.to = still.from;
+      const auto moving_faces = test::IntegerNormals(motion.segment(0)).at(test::IntegerTime::of(kTime)),
+                 standing_faces = test::IntegerNormals(still).at({});
+      const NormalGroups vertices =
+          NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+      for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+        for (const NormalLength length : {NormalLength::kUnit, NormalLength::kArea}) {
+          SampleOptions options = options_of(kind);
+          options.elements.weld = false;
+          options.length = length;
+          NormalSampler sampler = sampler_of(motion, options), at_rest = sampler_of(mesh, options);
+          const std::vector<float> moving = good(sampler.at_time(kTime)).normals, standing = at_rest.at_rest().normals;
+          for (std::size_t e = 0; e < moving.size() / 3; ++e) {
+            for (const bool moves : {true, false}) {
+              const auto& faces = moves ? moving_faces : standing_faces;
+              const auto n = kind == ElementKind::kFaces ? faces[e] : test::sum_of(faces, vertices.faces(e));
+              const std::vector<float>& found = moves ? moving : standing;
+              const Vec3d v{found[3 * e], found[3 * e + 1], found[3 * e + 2]};
+              if (test::is_zero(n)) {
+                if (!moves) {
+                  EXPECT_EQ(v, Vec3d{}) << family.name;
+                }
+              } else if (length == NormalLength::kUnit || max_abs(v) > 1e-30) {  // n itself may underflow in float32
+                EXPECT_LE(test::angle_between(to_float(unit(v)), test::direction_of(n)), 1e-6) << family.name;
+              }
+            }
           }
         }
       }
