@@ -294,9 +294,7 @@ class PartBuilder {
     }
     if (out_of_range) {
       for (std::size_t lane = 0; lane < elements.count; ++lane) {
-        if ((summary.uncertain >> lane & 1) != 0) continue;
-        const BoundedNormals rounded = source.in_double(elements.first + lane);
-        found[lane] = {rounded.normals, std::nullopt, smallest_certain(rounded.largest_share())};
+        if ((summary.uncertain >> lane & 1) == 0) found[lane] = examined(source, elements.first + lane, limits_);
       }
       flagged |= rescale(found, elements, flagged, tile);
     }
