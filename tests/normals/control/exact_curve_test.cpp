@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "tests/support/exact_normal.h"
@@ -50,6 +52,34 @@ TEST(ExactCurve, has_every_component_to_the_last_place) {
       const Vec3d n = curve.normal_at(t);
       expect_rounded(n, exact::normal_at(triangle, t), "n(t)");
       EXPECT_EQ(ExactCurve::of_kept(kept.data() + 1).normal_at(t), n);
+    }
+  }
+}
+
+// Of the kernel, and of one face at a time.
+TEST(FaceControlNormals, are_never_made_of_rounding) {
+  fixtures::Random random(42);
+  for (int i = 0; i < 40; ++i) {
+    std::vector<test::MovingTriangle> triangles;
+    for (int k = 0; k < 10; ++k) {
+      triangles.push_back(test::mixed_scales(random));
+      triangles.push_back(test::sliver_at_origin(random));
+      triangles.push_back(test::collapsed_at_ends(random));
+    }
+    const Motion motion = test::soup_of(triangles);
+    const Segment segment = motion.segment(0);
+    std::vector<ControlNormals> together(triangles.size());
+    face_control_normals(segment, {0, together.size()}, together);
+    for (std::size_t f = 0; f < together.size(); ++f) {
+      ControlNormals alone;
+      face_control_normals(segment, {f, 1}, {&alone, 1});
+      EXPECT_EQ(together[f], alone);
+      const exact::ControlNormals expected = exact::control_normals(exact_triangle(segment, f));
+      for (const auto& [given, right] :
+           {std::pair{&alone.n0, &expected.n0}, std::pair{&alone.m, &expected.m}, std::pair{&alone.n1, &expected.n1}}) {
+        const exact::Vector off = exact::subtract(exact::vector(given->x, given->y, given->z), *right);
+        EXPECT_LE(exact::max_abs(off), exact::max_abs(*right) * exact::Rational(0x1p-26)) << "face " << f;
+      }
     }
   }
 }
