@@ -85,7 +85,7 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
     for (const char* word : {"INPUT", "--quiet", "Examples", "Exit codes"})
       EXPECT_NE(explained.out.find(word), std::string::npos) << word;
     expect_error(run(command), 2, {"chronormal " + command + ": ", command + " --help"});
-    expect_error(run(command + " --no-such-option"), 2, {"--no-such-option", command + " --help"});
+    expect_error(run(command + " x.obj -o y --no-such-option"), 2, {"--no-such-option", command + " --help"});
   }
 }
 
