@@ -176,6 +176,9 @@ Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
+  // This is said before anything is read; for other names it depends on what the input turns out to be.
+  if (!is_stream(options.common.output) && is_motion_file(options.common.output))
+    return misuse(options.common.output, "bake writes glTF: the name must end in .glb, or .gltf for a glTF file");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   InputOptions wanted = options.input;
   if (!wanted.base.empty())

@@ -39,6 +39,9 @@ namespace chronormal {
 /// may be missing where count is at most 1. Errors: kUsage for a pattern of another form.
 [[nodiscard]] Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count);
 
+/// Whether the extension of path names a format that write_motion() writes.
+[[nodiscard]] bool is_motion_file(const std::string& path) noexcept;
+
 /// Writes a motion in the format that the extension of path names:
 ///
 ///     .npz          whole, with its kind

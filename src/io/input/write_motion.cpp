@@ -78,6 +78,11 @@ Result<std::vector<std::string>> numbered_names(const std::string& pattern, std:
   return names;
 }
 
+bool is_motion_file(const std::string& path) noexcept {
+  const Format* const format = find_format(path);
+  return format != nullptr && (format->write_mesh != nullptr || format->write_motion != nullptr);
+}
+
 Status write_motion(const Motion& motion, const std::string& path, bool force) {
   const Format* const format = find_format(path);
   if (format != nullptr && format->write_mesh != nullptr) return write_keyframes(motion, *format, path, force);
