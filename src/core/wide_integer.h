@@ -14,6 +14,7 @@
 #ifndef CHRONORMAL_CORE_WIDE_INTEGER_H_
 #define CHRONORMAL_CORE_WIDE_INTEGER_H_
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -113,7 +114,7 @@ class WideInteger {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return k < size_ ? digits_[k] : 0; }
+  [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return digits_[k]; }
   void set_digit(std::size_t k, std::int64_t value) noexcept {
     grow(k + 1);
     digits_[k] = value;
@@ -133,11 +134,11 @@ class WideInteger {
  private:
   void grow(std::size_t size) noexcept {
     assert(size <= kMost);
-    while (size_ < size) digits_[size_++] = 0;
+    size_ = std::max(size_, size);
   }
 
-  std::array<std::int64_t, kMost> digits_;  // of which the first size_ count
-  std::size_t size_ = 0;
+  std::array<std::int64_t, kMost> digits_{};
+  std::size_t size_ = 0;  // from there on all digits are zero
 };
 
 }  // namespace chronormal::inline internal
