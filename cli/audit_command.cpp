@@ -10,6 +10,8 @@
 #include "chronormal/workflow/audit.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
+#include "cli/format.h"
+#include "cli/table.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -94,6 +96,15 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   return how;
 }
 
+std::string why_beyond(const Audited& audited) {
+  const MotionError& error = audited.audit.error;
+  if (error.unlit > 0)
+    return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
+                     unlit_label(audited));
+  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
+                   *audited.tolerance, worst_label(audited));
+}
+
 Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
@@ -106,8 +117,7 @@ Result<int> run(const Options& options) {
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
   if (audited.value().passed()) return kExitDone;
-  fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
-             audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));
+  fmt::print(stderr, "chronormal audit: {}\n", why_beyond(audited.value()));
   return kExitBeyond;
 }
 

@@ -1,5 +1,3 @@
-#include <fmt/core.h>
-
 #include <memory>
 #include <optional>
 
@@ -9,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/compare_blend.h"
 #include "cli/compare_report.h"
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
@@ -60,7 +59,7 @@ std::string option_of_schemes(const Options& options) {
 std::string footer() {
   std::string text = "Schemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
-    text += fmt::format("  {:<24}{}\n", scheme.name, scheme.summary);
+    text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
   return text +
          "\nExamples:\n"
          "  chronormal compare frames/\n"

@@ -6,10 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
+#include "cli/format.h"
 #include "cli/text.h"
 #include "cli/version.h"
 
@@ -40,6 +43,18 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
+// What is wrong with the value of an option that takes a number. The parser would take an empty text for an option that
+// was not given, and "nan" for a number.
+template <class T>
+std::string fault_of_number(const T*, const std::string& value) {
+  constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
+                           std::is_same_v<T, std::optional<std::string>> || std::is_same_v<T, std::vector<std::string>>;
+  if constexpr (is_text) return "";
+  double number = 0;
+  const bool is_number = CLI::detail::lexical_cast(value, number) && std::isfinite(number);
+  return is_number ? "" : formatted("'{}' is not a number", printable(value));
+}
+
 void add_option(const Option& option, CLI::App& command) {
   const std::size_t blank = option.spelling.find(' ');
   const std::string names = option.spelling.substr(0, blank);
@@ -52,6 +67,11 @@ void add_option(const Option& option, CLI::App& command) {
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
   if (rules.check) added->check(rules.check, "");
+  added->check(
+      [target = option.target](const std::string& value) {
+        return std::visit([&](const auto* of_type) { return fault_of_number(of_type, value); }, target);
+      },
+      "");
 }
 
 void add_command(const Command& command, CLI::App& program) {
@@ -97,7 +117,7 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   CLI::App program("Normals of triangle meshes that deform: exact at every instant.", "chronormal");
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   program.get_formatter()->label("Subcommands", "Commands");
-  program.set_version_flag("--version", fmt::format("chronormal {}", kVersion));
+  program.set_version_flag("--version", formatted("chronormal {}", kVersion));
   program.require_subcommand(1);
   program.footer("chronormal COMMAND --help explains a command.");
   for (const Command& command : commands) add_command(command, program);
@@ -112,7 +132,7 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : " " + parsed.front()->get_name();
     const std::string message =
-        parsed.empty() ? fmt::format("there is no option '{}' before a command", first) : error.what();
+        parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what();
     fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", name, message, name);
     return kExitUsage;
   }

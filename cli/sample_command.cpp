@@ -10,6 +10,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/command.h"
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
@@ -31,7 +32,7 @@ struct Options {
 std::string footer() {
   std::string text = "Weightings:\n";
   for (const WeightingInfo& weighting : kWeightings)
-    text += fmt::format("  {:<12}{}\n", weighting.name, weighting.summary);
+    text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
   return text +
          "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
          "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
@@ -63,13 +64,13 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    return misuse(option, fmt::format("'{}' is not a number", word));
+    return misuse(option, formatted("'{}' is not a number", word));
   return value;
 }
 
 // The times of A:STEP:B, of which the last is B itself if the steps lead there.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
-  const auto wrong = [&](const char* why) { return misuse("--times", fmt::format("'{}': {}", text, why)); };
+  const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
   if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
   double numbers[3] = {};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -189,7 +190,7 @@ std::string range_of(const Motion& motion) {
     first = std::fmin(first, keyframe.time);
     last = std::fmax(last, keyframe.time);
   }
-  return fmt::format("{} to {}", first, last);
+  return formatted("{} to {}", first, last);
 }
 
 // Whether the moments go with the motion. Those of a mesh that stands still become none.
@@ -205,7 +206,7 @@ Status fit_moments(const Motion& motion, Moments& moments) {
   }
   if (motion.kind == MotionKind::kTargets) {
     const std::size_t count = motion.segments.size();
-    const std::string how = fmt::format("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
+    const std::string how = formatted("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
     if (!moments.times.empty()) return misuse("--times", "blend shapes have no times: " + how);
     if (moments.weights.empty()) return misuse("--weights", "the input is blend shapes: " + how);
     return Success{};

@@ -1,9 +1,9 @@
 #include "cli/text.h"
 
-#include <fmt/core.h>
-
 #include <cstdint>
 #include <vector>
+
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
@@ -56,7 +56,7 @@ std::string printable(std::string_view text, std::size_t most) {
     const bool keep = length > 0 && is_safe(character);
     std::string piece(keep ? text.substr(at, length) : "");
     for (std::size_t i = 0; !keep && i < (length == 0 ? 1 : length); ++i)
-      piece += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[at + i]));
+      piece += formatted("\\x{:02x}", static_cast<unsigned char>(text[at + i]));
     pieces.push_back(std::move(piece));
     at += length == 0 ? 1 : length;
   }

@@ -23,11 +23,10 @@ struct Knot {
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// The slope of a piece shorter than any frame may be beyond float32: nobody sees it.
-float to_slope(double slope) { return std::fabs(slope) <= kMost ? static_cast<float>(slope) : 0.0F; }
-float to_weight(double weight) { return static_cast<float>(std::clamp(weight, -kMost, kMost)); }
+// Weights, and slopes: those of a piece that is shorter than 1e-38 seconds may be beyond float32.
+float to_file(double number) { return static_cast<float>(std::clamp(number, -kMost, kMost)); }
 
-// What had to be clamped is no product any more: nothing is known of the normal.
+// What had to be clamped is no product any more, or no straight line: nothing is known of the normal.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
@@ -63,7 +62,7 @@ void append_values(const WeightTrack& track, std::span<const WeightProduct> prod
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
     for (const WeightProduct& product : products)
-      values.push_back(to_weight(track.value(key, product.i) * track.value(key, product.j)));
+      values.push_back(to_file(track.value(key, product.i) * track.value(key, product.j)));
   }
 }
 
@@ -84,9 +83,9 @@ class Spline {
     result.values.reserve(3 * knots_.size());
     for (std::size_t key = 0; key < times_.size(); ++key) {
       const Knot* row = knots_.data() + key * columns_;
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].in));
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_weight(row[c].value));
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].out));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].in));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].value));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].out));
     }
     result.times = std::move(times_);
   }
@@ -206,8 +205,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightPro
     result.values[2 * columns + i] = static_cast<float>(track.tangent(0, true, i));
   }
   for (std::size_t p = 0; p < products.size(); ++p)
-    result.values[columns + track.targets + p] =
-        to_weight(track.value(0, products[p].i) * track.value(0, products[p].j));
+    result.values[columns + track.targets + p] = to_file(track.value(0, products[p].i) * track.value(0, products[p].j));
   return result;
 }
 

@@ -26,7 +26,7 @@ struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::vector<float> times;   ///< empty: as they were
   std::vector<float> values;  ///< of targets + products weights, in the order of the file
-  double error = 0;           ///< a bound, in radians, of what insertions leave
+  double error = 0;           ///< a bound, in radians, of what insertions leave; pi where float32 cannot hold a number
 };
 
 /// Extends a track by products of its weights. Cubic splines get keys until no normal is off by more than tolerance
