@@ -88,6 +88,37 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
   EXPECT_EQ(json_of("hinge.glb")["passed"], Json());
 }
 
+TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {
+  test::ShadedMesh mesh = test::hinge();
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1};
+  folder_.write("zero.glb", mesh.file().glb());
+  mesh.targets[0].normals.assign(12, 3e38F);
+  mesh.targets.push_back({std::vector<float>(12, 0), std::vector<float>(12, -3e38F), {}});
+  test::GltfBuilder huge = mesh.file();
+  huge.add_track(huge.add_animation("huge"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 100, 100});
+  folder_.write("nan.glb", huge.glb());
+  for (const std::string file : {"zero.glb", "nan.glb --animation huge"}) {
+    for (const std::string tolerance : {"1", "180", "1000"}) {
+      const ProcessResult result = run(file + " --tolerance " + tolerance);
+      EXPECT_EQ(result.exit_code, 4);
+      expect_words(result.out,
+                   {"worst 180.00 degrees, ", " cannot be lit, which counts as 180 degrees: the first is at vertex ",
+                    " cannot be lit: what is shown is zero, infinite or no number (vertex "});
+      expect_words(result.err, {" cannot be lit, which no tolerance allows: vertex "});
+    }
+    const Json json = Json::parse(run(file + " --tolerance 180 --json").out);
+    EXPECT_EQ(json["passed"], false);
+    EXPECT_GT(json["unlit"], 0);
+    EXPECT_EQ(json["worst_degrees"], 180.0);
+    EXPECT_TRUE(json["mean_degrees"].is_number());
+    EXPECT_EQ(json["subjects"][0]["unlit"], json["unlit"]);
+    EXPECT_TRUE(json["subjects"][0]["unlit_at"].contains("vertex"));
+    EXPECT_EQ(json["findings"][0]["kind"], "unlit");
+    EXPECT_EQ(json["findings"][0]["fault"], true);
+  }
+  EXPECT_EQ(json_of("hinge.glb")["subjects"][0]["unlit_at"], Json());
+}
+
 TEST_F(AuditCli, json_is_one_object_with_schema_1) {
   const Json json = json_of("hinge.glb --samples 2");
   EXPECT_EQ(json["command"], "audit");

@@ -2,8 +2,8 @@
 //
 // A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
 // command whose output has measured times in it says --no-times, or shows no output. Output "?" is to be filled in. A
-// block ```cpp under a line
-// <!-- examples/NAME.cpp --> is that file, which examples/ builds and the tests run.
+// block ```cpp or ```js under a line
+// <!-- examples/NAME.cpp --> is that file, which the tests run.
 //
 // With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
 
@@ -179,21 +179,22 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
-  int quotes = 0;
+  int quotes_of_cpp = 0, quotes_of_js = 0;
   for (const fs::path& path : documents()) {
     const Lines lines = lines_of(read(path));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i] != "```cpp") continue;
+      if (lines[i] != "```cpp" && lines[i] != "```js") continue;
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
       EXPECT_TRUE(example.starts_with("examples/"))
-          << path << ":" << i + 1 << ": code without <!-- examples/NAME.cpp --> above it";
-      ++quotes;
+          << path << ":" << i + 1 << ": code without <!-- examples/NAME --> above it";
+      ++(lines[i] == "```cpp" ? quotes_of_cpp : quotes_of_js);
       Lines block;
       while (++i < lines.size() && lines[i] != "```") block.push_back(lines[i]);
       EXPECT_EQ(joined(block), read(kRoot / example)) << path;
     }
   }
-  EXPECT_GT(quotes, 0);
+  EXPECT_GT(quotes_of_cpp, 0);
+  EXPECT_GT(quotes_of_js, 0);
 }
 
 TEST(Documents, links_to_files_lead_somewhere) {

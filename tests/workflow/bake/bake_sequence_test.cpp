@@ -447,7 +447,8 @@ TEST(BakeSequence, names_say_what_targets_are) {
       {"target": 2, "linear": [[0, 1.0]], "quadratic": [[0, 0, -1.0], [1, 0, -1.0]]},
       {"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]}]}})"_json;
   EXPECT_EQ(glb.json["meshes"][0]["extras"], expected);
-  EXPECT_EQ(glb.json["nodes"][0]["extras"]["chronormal"], expected["chronormal"]) << "for hosts that hand on only these";
+  EXPECT_EQ(glb.json["nodes"][0]["extras"]["chronormal"], expected["chronormal"])
+      << "for hosts that hand on only these";
   EXPECT_EQ(glb.json["animations"][0]["name"], "motion");
   EXPECT_EQ(glb.json["asset"]["version"], "2.0");
   EXPECT_TRUE(glb.json["asset"]["generator"].get<std::string>().starts_with("chronormal "));

@@ -159,7 +159,9 @@ TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
   EXPECT_EQ(nodes[1]["extras"], "a note");
   EXPECT_EQ(nodes[2]["extras"]["chronormal"], baked.mesh()["extras"]["chronormal"]);
   EXPECT_EQ(baked.report.meshes[0].unmarked_nodes, std::vector<std::size_t>{1});
-  const auto tells = [](const std::string& warning) { return warning.find("extras of node 1 is no object") != std::string::npos; };
+  const auto tells = [](const std::string& warning) {
+    return warning.find("extras of node 1 is no object") != std::string::npos;
+  };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
   // One delta for each target needs no drivers.
   const Baked endpoint = test::bake_document(builder, with(BakeEncoding::kEndpoint));
@@ -179,14 +181,16 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       const Baked baked = test::bake_document(builder, with(encoding));
       ASSERT_EQ(baked.error, "");
       EXPECT_EQ(baked.report.meshes[0].rescaled, 25U);
-      for (const float c : baked.numbers(baked.mesh()["primitives"][0]["attributes"]["NORMAL"])) EXPECT_LE(std::fabs(c), 1);
+      for (const float c : baked.numbers(baked.mesh()["primitives"][0]["attributes"]["NORMAL"]))
+        EXPECT_LE(std::fabs(c), 1);
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
   // Others stay to the bit.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
-  EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"], usual.before->json["meshes"][0]["primitives"][0]["attributes"]);
+  EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
+            usual.before->json["meshes"][0]["primitives"][0]["attributes"]);
 }
 
 TEST(Bake, a_target_that_moves_normals_alone_moves_none_when_it_was_baked) {

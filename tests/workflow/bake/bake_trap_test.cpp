@@ -135,7 +135,8 @@ TEST(BakeTraps, target_names_grow_where_there_are_some) {
   EXPECT_EQ(result.mesh()["extras"]["targetNames"],
             Json({"smile", "blink", "chronormal w0*w0", "chronormal w0*w1", "chronormal w1*w1"}));
   EXPECT_TRUE(result.mesh()["extras"]["mine"].is_null());
-  EXPECT_EQ(result.mesh()["extras"]["chronormal"]["extras"][1], R"({"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]})"_json);
+  EXPECT_EQ(result.mesh()["extras"]["chronormal"]["extras"][1],
+            R"({"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]})"_json);
 }
 
 TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
