@@ -25,10 +25,12 @@
 namespace chronormal {
 
 struct BakeOptions {
-  std::optional<BakeEncoding> encoding = {};  ///< nothing: exact where animations drive the weights, else endpoint
-  Weighting weighting = Weighting::kArea;     ///< others than area are fitted, with a stated error
-  bool smooth = false;                        ///< primitives without NORMAL get normals, instead of staying flat
-  double crease_angle = 180;                  ///< degrees: hard edges of those, and of sequences
+  /// Nothing: exact where animations drive the weights, and these are not so large that float32 cannot hold their
+  /// products; else endpoint.
+  std::optional<BakeEncoding> encoding = {};
+  Weighting weighting = Weighting::kArea;  ///< others than area are fitted, with a stated error
+  bool smooth = false;                     ///< primitives without NORMAL get normals, instead of staying flat
+  double crease_angle = 180;               ///< degrees: hard edges of those, and of sequences
   /// Of sequences: normals of keyframe 0, one for each corner, which say which edges are hard in place of the crease
   /// angle; or empty.
   VectorView<const float> normal_of_corner = {};

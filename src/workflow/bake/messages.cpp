@@ -62,6 +62,12 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
         "no animation drives its targets, so that nothing could drive extra ones: each got the best single delta "
         "(--encode exact writes them all the same)");
   }
+  if (plan.is_driven && !plan.products_fit && !options.encoding) {
+    warn(
+        "weights of its animations are so large that float32 cannot hold their products: each target got the best "
+        "single "
+        "delta");
+  }
   if (baked.undriven > 0) {
     warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
          " driven by no animation and got the best single delta");

@@ -375,7 +375,9 @@ TEST(BlendCompare, pairs_at_which_our_own_normals_fail_count_for_us) {
     EXPECT_EQ(error.quality.count, 32U) << name_of(error.deltas);
     EXPECT_EQ(error.quality.degenerate, 0U);
     if (error.deltas == BlendDeltas::kExact) failed = error.quality.missing;
-    if (error.quality.missing > 0) EXPECT_NEAR(degrees(error.quality.max), 180, 1e-9);
+    if (error.quality.missing > 0) {
+      EXPECT_NEAR(degrees(error.quality.max), 180, 1e-9);
+    }
   }
   RecordProperty("failed", static_cast<int>(failed));
 }
