@@ -66,12 +66,12 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  if (rules.check) added->check(rules.check, "");
   added->check(
       [target = option.target](const std::string& value) {
         return std::visit([&](const auto* of_type) { return fault_of_number(of_type, value); }, target);
       },
       "");
+  if (rules.check) added->check(rules.check, "");
 }
 
 void add_command(const Command& command, CLI::App& program) {
