@@ -85,7 +85,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
       const Vec3d normal = keeps_faces_ ? result.faces[f] : face_normal(positions, f);
       const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
       sum = sum + added;
-      size += length(added);
+      size += max_abs(added);
     }
     result.sizes[e] = size;
     // What is left of terms that cancel is their rounding, and no direction.

@@ -25,7 +25,7 @@ struct JudgedOutput {
 
 struct PartNormals {
   std::vector<Vec3d> faces, elements;
-  std::vector<double> sizes;  ///< of each element, the lengths of the terms that its normal is the sum of, added up
+  std::vector<double> sizes;  ///< of each element, the largest components of the terms of its normal, added up
 };
 
 /// The elements of some outputs, and the faces and vertices that these need, numbered anew.
