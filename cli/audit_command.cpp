@@ -1,5 +1,3 @@
-#include <fmt/core.h>
-
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,6 +8,9 @@
 #include "chronormal/workflow/audit.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
+#include "cli/format.h"
+#include "cli/print.h"
+#include "cli/table.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -83,7 +84,6 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   how.weighting = weighting.value();
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
-  if (options.samples && *options.samples < 2) return misuse("--samples", "there must be 2 or more: both ends");
   if (options.input.world)
     return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -92,6 +92,15 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   how.weld = !options.no_weld;
   how.progress = progress.callback("auditing");
   return how;
+}
+
+std::string why_beyond(const Audited& audited) {
+  const MotionError& error = audited.audit.error;
+  if (error.unlit > 0)
+    return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
+                     unlit_label(audited));
+  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
+                   *audited.tolerance, worst_label(audited));
 }
 
 Result<int> run(const Options& options) {
@@ -106,8 +115,7 @@ Result<int> run(const Options& options) {
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
   if (audited.value().passed()) return kExitDone;
-  fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
-             audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));
+  say("audit", why_beyond(audited.value()));
   return kExitBeyond;
 }
 
@@ -124,9 +132,11 @@ Command audit_command() {
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
         {"--weighting NAME", &options->weighting,
          "of the right normals: area (default), angle, uniform, area-angle, max"},
-        {"--samples N", &options->samples,
+        {"--samples N",
+         &options->samples,
          "per segment, ends included (default 21; 5 in animations of more than\n"
-         "32 key intervals)"},
+         "32 key intervals)",
+         {.check = check_whole(2, kMostAuditSamples)}},
         {"--tolerance DEG", &options->tolerance, "exit with 4 if the worst error is beyond this"},
         {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
         {"--json", &options->json, "one JSON object"}},

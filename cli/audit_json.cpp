@@ -7,9 +7,9 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr const char* kKinds[] = {"missing_normals", "wrong_at_keys",  "wrong_between", "wrong_together",
-                                  "stale_tangents",  "flat_primitive", "skin",          "baked",
-                                  "baked_keyframes"};
+constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",  "wrong_between",
+                                  "wrong_together", "stale_tangents",  "flat_primitive", "skin",
+                                  "baked",          "baked_keyframes"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -32,7 +32,7 @@ void add_error(const MotionError& error, Json& json) {
   json["rms_degrees"] = error.rms();
   json["judged"] = error.judged;
   json["no_normal"] = error.no_normal;
-  json["no_shown"] = error.no_shown;
+  json["unlit"] = error.unlit;
 }
 
 Json histogram_json(const MotionError& error) {
@@ -58,6 +58,7 @@ Json subject_json(const AuditSubject& subject) {
   add_error(subject.error, json);
   json["worst_at_keys_degrees"] = subject.at_keys.worst;
   json["worst_at"] = subject.error.worst > 0 ? place_json(subject.error.worst_at, moment_of(subject)) : Json();
+  json["unlit_at"] = subject.error.unlit > 0 ? place_json(subject.error.unlit_at, moment_of(subject)) : Json();
   json["histogram"] = histogram_json(subject.error);
   return json;
 }

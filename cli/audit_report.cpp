@@ -1,13 +1,12 @@
 #include "cli/audit_report.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "chronormal/normals/weighting.h"
+#include "cli/format.h"
 #include "cli/inspect_trouble.h"
 #include "cli/table.h"
 #include "cli/text.h"
@@ -23,7 +22,7 @@ constexpr double kSeen = 0.005;  // degrees: what two decimals show
 
 // Two decimals, or the power of ten of what would be none of it.
 std::string degrees(double value) {
-  return value == 0 || value >= 0.005 ? fmt::format("{:.2f}", value) : fmt::format("{:.0e}", value);
+  return value == 0 || value >= 0.005 ? formatted("{:.2f}", value) : formatted("{:.0e}", value);
 }
 
 std::string named(std::string what, const std::string& name) {
@@ -31,13 +30,13 @@ std::string named(std::string what, const std::string& name) {
 }
 
 std::string vertex_words(const Audited& input, const AuditPlace& place) {
-  if (!place.mesh || input.document() == nullptr) return fmt::format("vertex {}", place.vertex);
-  return fmt::format("vertex {} of {}, primitive {}", place.vertex, mesh_label(*input.document(), *place.mesh),
-                     place.primitive.value_or(0));
+  if (!place.mesh || input.document() == nullptr) return formatted("vertex {}", place.vertex);
+  return formatted("vertex {} of {}, primitive {}", place.vertex, mesh_label(*input.document(), *place.mesh),
+                   place.primitive.value_or(0));
 }
 
 std::string node_words(const Audited& input, std::size_t node) {
-  return named(fmt::format("node {}", node), input.document()->nodes()[node].name);
+  return named(formatted("node {}", node), input.document()->nodes()[node].name);
 }
 
 std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target) {
@@ -49,11 +48,11 @@ std::string target_words(const Audited& input, std::optional<std::size_t> mesh, 
     for (const AuditSubject& subject : input.audit.subjects)
       if (subject.target == target) name = subject.name;
   }
-  return named(fmt::format("target {}", target), name);
+  return named(formatted("target {}", target), name);
 }
 
 std::string animation_words(const Audited& input, std::size_t animation) {
-  return named(fmt::format("animation {}", animation), input.document()->animations()[animation].name);
+  return named(formatted("animation {}", animation), input.document()->animations()[animation].name);
 }
 
 std::string subject_words(const Audited& input, const AuditSubject& subject) {
@@ -65,7 +64,15 @@ std::string subject_words(const Audited& input, const AuditSubject& subject) {
 }
 
 std::string moment_words(const AuditSubject& subject, double at) {
-  return subject.kind == AuditSubject::Kind::kTarget ? fmt::format("weight {:.4g}", at) : fmt::format("{:.6g} s", at);
+  return subject.kind == AuditSubject::Kind::kTarget ? formatted("weight {:.4g}", at) : formatted("{:.6g} s", at);
+}
+
+// A vertex of a motion at a moment.
+std::string place_words(const Audited& input, const AuditSubject& subject, const AuditPlace& place) {
+  const std::string motion = subject.kind == AuditSubject::Kind::kTarget && subject.mesh
+                                 ? target_words(input, subject.mesh, *subject.target)
+                                 : subject_words(input, subject);
+  return formatted("{}, {} at {}", vertex_words(input, place), motion, moment_words(subject, place.at));
 }
 
 std::string pairs(std::size_t count) { return counted(count, "pair", "pairs"); }
@@ -74,23 +81,25 @@ std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = printable(input.name()) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += fmt::format("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
-                      degrees(audit.error.rms()));
-  if (input.tolerance) text += fmt::format(", {} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  text += formatted("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
+                    degrees(audit.error.rms()));
+  if (input.tolerance) text += formatted(", {} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
   text += '\n';
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
       audit.stored ? "the stored normals" : "normals that a player computes at keyframes, where none are stored";
   if (audit.rule == AuditRule::kFlat) source = "the faces";
-  text += fmt::format("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
-                      pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
+  text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
+                    pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
   if (audit.still > 0)
-    text += fmt::format("  {} nothing that could be judged\n",
-                        counted(audit.still, "target or track moves", "targets or tracks move"));
+    text += formatted("  {} nothing that could be judged\n",
+                      counted(audit.still, "target or track moves", "targets or tracks move"));
   if (audit.error.no_normal > 0)
-    text += fmt::format("  {} not judged: the normal all but vanishes there\n", pairs(audit.error.no_normal));
-  if (audit.error.no_shown > 0)
-    text += fmt::format("  {} not judged: the stored normals add up to zero\n", pairs(audit.error.no_shown));
+    text += formatted("  {} without a right direction: the normal of the geometry all but vanishes there\n",
+                      pairs(audit.error.no_normal));
+  if (audit.error.unlit > 0)
+    text += formatted("  {} cannot be lit, which counts as 180 degrees: the first is at {}\n", pairs(audit.error.unlit),
+                      unlit_label(input));
   return text;
 }
 
@@ -113,21 +122,21 @@ std::string subject_table(const Audited& input) {
     const bool some = subject.error.worst > 0;
     table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),
                    degrees(subject.error.rms()), degrees(subject.at_keys.worst),
-                   some ? fmt::format("{}", subject.error.worst_at.vertex) : "-",
+                   some ? formatted("{}", subject.error.worst_at.vertex) : "-",
                    some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
-                   subject.segments > 1 ? fmt::format("{} x {}", grouped(subject.segments), subject.samples)
-                                        : fmt::format("{}", subject.samples)});
+                   subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
+                                        : formatted("{}", subject.samples)});
   }
   std::string text = table.text();
   if (subjects.size() > kMostRows)
-    text += fmt::format("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostRows));
+    text += formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostRows));
   return text;
 }
 
 std::string bin_words(std::size_t bin) {
-  if (bin == 0) return fmt::format("below {:g}", kAuditBinEdges.front());
-  if (bin == kAuditBinEdges.size()) return fmt::format("{:g} and more", kAuditBinEdges.back());
-  return fmt::format("{:g} to {:g}", kAuditBinEdges[bin - 1], kAuditBinEdges[bin]);
+  if (bin == 0) return formatted("below {:g}", kAuditBinEdges.front());
+  if (bin == kAuditBinEdges.size()) return formatted("{:g} and more", kAuditBinEdges.back());
+  return formatted("{:g} to {:g}", kAuditBinEdges[bin - 1], kAuditBinEdges[bin]);
 }
 
 std::string histogram(const MotionError& error) {
@@ -142,7 +151,7 @@ std::string histogram(const MotionError& error) {
     const auto bar =
         most > 0 ? static_cast<std::size_t>(std::lround(kLongestBar * count / static_cast<double>(most))) : 0;
     const double share = error.judged > 0 ? 100 * count / static_cast<double>(error.judged) : 0;
-    table.add_row({bin_words(bin), grouped(error.histogram[bin]), fmt::format("{:.1f}", share),
+    table.add_row({bin_words(bin), grouped(error.histogram[bin]), formatted("{:.1f}", share),
                    std::string(error.histogram[bin] > 0 ? std::max<std::size_t>(bar, 1) : 0, '#')});
   }
   return table.text();
@@ -157,16 +166,16 @@ std::string offset_lines(const Audited& input) {
       ++more;
       continue;
     }
-    text += fmt::format("  {}: mean {}, worst {} degrees from {}-weighted normals",
-                        offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0",
-                        degrees(offset.mean()), degrees(offset.worst), weighting_name(input.audit.weighting));
+    text += formatted("  {}: mean {}, worst {} degrees from {}-weighted normals",
+                      offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0", degrees(offset.mean()),
+                      degrees(offset.worst), weighting_name(input.audit.weighting));
     if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
     if (offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
-      text += fmt::format("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
-                          degrees(offset.closest_mean), degrees(offset.closest_worst));
+      text += formatted("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
+                        degrees(offset.closest_mean), degrees(offset.closest_worst));
     text += '\n';
   }
-  if (more > 0) text += fmt::format("  ... and {} more (--json has all)\n", grouped(more));
+  if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
   return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
 }
 
@@ -183,34 +192,35 @@ std::string finding_words(const Audited& input, const AuditFinding& found) {
   }
   const std::string worst = degrees(found.degrees);
   switch (found.kind) {
+    case Kind::kUnlit:
+      return formatted("{}: {} cannot be lit: what is shown is zero, infinite or no number", who, pairs(found.count));
     case Kind::kMissingNormals:
-      return fmt::format("{} moves positions and no normals ({}): {}", who,
-                         counted(found.count, "primitive", "primitives"),
-                         found.is_fault() ? "off by up to " + worst + " degrees" : "none has to turn");
+      return formatted("{} moves positions and no normals ({}): {}", who,
+                       counted(found.count, "primitive", "primitives"),
+                       found.is_fault() ? "off by up to " + worst + " degrees" : "none has to turn");
     case Kind::kWrongAtKeys:
-      return fmt::format("{}: {} contradict the geometry at {}, by up to {} degrees", who,
-                         input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals",
-                         found.target ? "weight 1" : "keyframes", worst);
+      return formatted("{}: {} contradict the geometry at {}, by up to {} degrees", who,
+                       input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals",
+                       found.target ? "weight 1" : "keyframes", worst);
     case Kind::kWrongBetween:
-      return fmt::format("{}: right at {}, and off by up to {} degrees on the way", who,
-                         found.target ? "weights 0 and 1" : "keyframes", worst);
+      return formatted("{}: right at {}, and off by up to {} degrees on the way", who,
+                       found.target ? "weights 0 and 1" : "keyframes", worst);
     case Kind::kWrongTogether:
-      return fmt::format("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+      return formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
     case Kind::kStaleTangents:
-      return fmt::format("{}: {} up to {} degrees from perpendicular to the right normal", who,
-                         counted(found.count, "tangent is", "tangents are"), worst);
+      return formatted("{}: {} up to {} degrees from perpendicular to the right normal", who,
+                       counted(found.count, "tangent is", "tangents are"), worst);
     case Kind::kFlat:
-      return fmt::format("{}: {} no normals, and {} shown flat, which is right", who,
-                         counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
+      return formatted("{}: {} no normals, and {} shown flat, which is right", who,
+                       counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
     case Kind::kSkinned:
-      return fmt::format("{}: {} a skin, which turns shown and right normals alike", who,
-                         counted(found.count, "node has", "nodes have"));
+      return formatted("{}: {} a skin, which turns shown and right normals alike", who,
+                       counted(found.count, "node has", "nodes have"));
     case Kind::kBaked:
-      return fmt::format("{}: baked by chronormal, with {}", who,
-                         counted(found.count, "extra target", "extra targets"));
+      return formatted("{}: baked by chronormal, with {}", who, counted(found.count, "extra target", "extra targets"));
     case Kind::kSequenceTargets:
-      return fmt::format("{}: {} baked keyframes: only animations were judged", who,
-                         counted(found.count, "target is one of its", "targets are"));
+      return formatted("{}: {} baked keyframes: only animations were judged", who,
+                       counted(found.count, "target is one of its", "targets are"));
   }
   return "";
 }
@@ -224,7 +234,7 @@ std::string finding_lines(const Audited& input, bool faults) {
     if (found.worst_at) text += " (" + vertex_words(input, *found.worst_at) + ")";
     text += '\n';
   }
-  if (rows > kMostRows) text += fmt::format("  ... and {} more (--json has all)\n", grouped(rows - kMostRows));
+  if (rows > kMostRows) text += formatted("  ... and {} more (--json has all)\n", grouped(rows - kMostRows));
   if (text.empty()) return text;
   return (faults ? "\nFaults:\n" : "\nNotes:\n") + text;
 }
@@ -232,7 +242,7 @@ std::string finding_lines(const Audited& input, bool faults) {
 std::string advice(const Audited& input) {
   if (input.audit.subjects.empty()) return "";
   if (input.audit.error.worst <= kAuditFault)
-    return fmt::format("\nnothing to do: no normal is off by more than {:g} degree\n", kAuditFault);
+    return formatted("\nnothing to do: no normal is off by more than {:g} degree\n", kAuditFault);
   const auto& findings = input.audit.findings;
   const auto is_mark = [](const AuditFinding& found) {
     return found.kind == AuditFinding::Kind::kBaked || found.kind == AuditFinding::Kind::kSequenceTargets;
@@ -246,8 +256,7 @@ std::string advice(const Audited& input) {
            "with --encode exact\n";
   if (input.bake.empty())
     return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
-  return fmt::format("\nto write normals that are right at every instant: chronormal bake {} -o baked.glb\n",
-                     input.bake);
+  return formatted("\nto write normals that are right at every instant: chronormal bake {} -o baked.glb\n", input.bake);
 }
 
 }  // namespace
@@ -255,11 +264,14 @@ std::string advice(const Audited& input) {
 std::string worst_label(const Audited& input) {
   if (!input.audit.worst) return "";
   const AuditSubject& subject = input.audit.subjects[*input.audit.worst];
-  const AuditPlace& place = subject.error.worst_at;
-  std::string motion = subject.kind == AuditSubject::Kind::kTarget && subject.mesh
-                           ? target_words(input, subject.mesh, *subject.target)
-                           : subject_words(input, subject);
-  return fmt::format("{}, {} at {}", vertex_words(input, place), motion, moment_words(subject, place.at));
+  return place_words(input, subject, subject.error.worst_at);
+}
+
+std::string unlit_label(const Audited& input) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  const auto first =
+      std::find_if(subjects.begin(), subjects.end(), [](const AuditSubject& s) { return s.error.unlit > 0; });
+  return first == subjects.end() ? "" : place_words(input, *first, first->error.unlit_at);
 }
 
 std::string audit_text(const Audited& input) {

@@ -20,7 +20,7 @@ struct Audited {
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
-  [[nodiscard]] bool passed() const { return !tolerance || audit.error.worst <= *tolerance; }
+  [[nodiscard]] bool passed() const { return !tolerance || audit.error.is_within(*tolerance); }
 };
 
 /// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.
@@ -31,6 +31,9 @@ struct Audited {
 
 /// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
 [[nodiscard]] std::string worst_label(const Audited& input);
+
+/// The same for the first pair that cannot be lit.
+[[nodiscard]] std::string unlit_label(const Audited& input);
 
 }  // namespace chronormal::cli
 

@@ -1,5 +1,3 @@
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,7 +13,7 @@
 #include "chronormal/workflow/audit.h"
 #include "cli/bake_report.h"
 #include "cli/command.h"
-#include "cli/text.h"
+#include "cli/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -32,6 +30,7 @@ struct Options {
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
   double tolerance = BakeOptions{}.tolerance;
+  std::optional<std::string> drivers;  // where to write them beside the result
   bool json = false, no_audit = false;
 };
 
@@ -56,41 +55,50 @@ Result<BakeOptions> understand(const Options& options) {
   how.tolerance = options.tolerance;
   if (options.json && is_stream(options.common.output))
     return misuse("--json", "it goes to the standard output: write the result to a file");
+  if (options.drivers) {
+    if (options.drivers->empty() || *options.drivers == "-") return misuse("--drivers", "it must name a file");
+    if (*options.drivers == options.common.output) return misuse("--drivers", "it must be another file than OUT");
+  }
   if (const Status status = check_input(options.input); !status) return status.error();
   return how;
 }
 
 // Where the report goes: beside the result, or out of its way.
-void say(const Options& options, const std::string& text, const std::string& json) {
-  if (options.json)
-    fmt::print("{}", json);
-  else if (!is_stream(options.common.output))
-    fmt::print("{}", text);
-  else if (!options.common.quiet)
-    fmt::print(stderr, "{}", text);
+Result<int> report(const Options& options, const std::string& text, const std::string& json) {
+  const bool is_aside = is_stream(options.common.output) && !options.json;
+  if (is_aside && !options.common.quiet) say_raw(text);
+  if (is_aside) return kExitDone;
+  const Status printed = print(options.json ? json : text);
+  if (!printed) return printed.error();
+  return kExitDone;
 }
 
 void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "chronormal bake: {}\n", printable(warning));
+  for (const std::string& warning : warnings) say("bake", warning);
 }
 
-std::string drivers_path(const std::string& output) {
-  return std::filesystem::path(output).replace_extension(".drivers.json").string();
+void warn_if_worse(const BakeReport& report) {
+  if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit)});
 }
 
-// What audit(how) says of what was there before, and audit() of the file that was written.
+// What audit(how) says of what was there before, and audit() of the file that was written; nothing where there is nothing
+// to judge. Errors: kFailed where the file cannot be read.
 template <class AuditBefore>
-std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& options,
-                                         const AuditBefore& audit_before) {
-  if (options.no_audit || is_stream(options.common.output)) return std::nullopt;
+Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const Options& options,
+                                                 const AuditBefore& audit_before) {
+  std::optional<BeforeAndAfter> result;
+  if (options.no_audit || is_stream(options.common.output)) return result;
   AuditOptions audited;
   audited.weighting = how.weighting;
-  const GltfOptions gltf{.allow_external = options.input.allow_external};
+  const GltfOptions gltf{.allow_external = options.input.allow_external, .max_expansion = options.input.max_expansion};
   const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
-  if (!after) return std::nullopt;
-  const Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
-  if (!first || !second || first.value().subjects.empty()) return std::nullopt;
-  return BeforeAndAfter{first.value().error, second.value().error};
+  if (!after) return after.error();
+  Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
+  for (const Result<Audit>* audit : {&first, &second})
+    if (!*audit && audit->error().code == ErrorCode::kFailed) return audit->error();
+  if (first && second && !first.value().subjects.empty())
+    result = BeforeAndAfter{std::move(first).value(), std::move(second).value()};
+  return result;
 }
 
 Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
@@ -111,31 +119,28 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
-  BakeReport told{input.name(), output, std::nullopt, std::nullopt};
-  const bool has_drivers = !baked.value().drivers.empty() && !is_stream(output);
-  if (has_drivers) {
-    told.drivers_file = drivers_path(output);
-    if (const Status free = check_output(*told.drivers_file, options.common.force); !free) return free.error();
-  }
+  BakeReport told{input.name(), output, options.drivers, std::nullopt};
   std::vector<std::string> warnings = baked.value().warnings;
-  if (!baked.value().drivers.empty() && !has_drivers)
-    warnings.emplace_back("what drives the extra targets is written beside a file only: give -o a name");
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  if (const Status written = edit.write(output, options.common.force); !written) return written.error();
-  if (has_drivers) {
-    if (const Status written = write_output(*told.drivers_file, baked.value().drivers, options.common.force); !written)
+  // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.
+  if (options.drivers) {
+    if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
       return written.error();
   }
+  if (const Status written = edit.write(output, options.common.force); !written) return written.error();
   warn(warnings);
   if (baked.value().changed && input.file_size() <= kMostAudited) {
-    told.audit = audit_both(how, options, [&](const AuditOptions& audited) { return audit(document, audited); });
+    auto audited = audit_both(how, options, [&](const AuditOptions& asked) { return audit(document, asked); });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
   }
-  say(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
-  return kExitDone;
+  warn_if_worse(told);
+  return report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
 }
 
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
+  if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
@@ -153,6 +158,7 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
     how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
   }
   how.progress = progress.callback("baking");
+  how.expansion = input.expansion();
   std::string glb;
   const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
   progress.clear();
@@ -162,14 +168,16 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
-    told.audit = audit_both(how, options, [&](AuditOptions audited) {
-      audited.rule = AuditRule::kNlerp;
-      return audit(motion, stored, audited);
+    auto audited = audit_both(how, options, [&](AuditOptions asked) {
+      asked.rule = AuditRule::kNlerp;
+      return audit(motion, stored, asked);
     });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
   }
+  warn_if_worse(told);
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
-  say(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
-  return kExitDone;
+  return report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
 }
 
 Result<int> run(const Options& options) {
@@ -180,6 +188,9 @@ Result<int> run(const Options& options) {
   if (!is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output, "bake writes glTF: the name must end in .glb, or .gltf for a glTF file");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (options.drivers) {
+    if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
+  }
   InputOptions wanted = options.input;
   if (!wanted.base.empty())
     return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
@@ -208,14 +219,16 @@ Command bake_command() {
              "more than this are hard (default 180: none)"},
             {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
             {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
-            {"--max-bytes N:NONNEGATIVE",
+            {"--max-bytes N",
              &options->most_bytes,
              "fail where more bytes of arrays would be added",
-             {.check = check_not_negative}},
+             {.check = check_whole(0)}},
             {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
             {"--tolerance DEG", &options->tolerance,
              "leave out targets that turn no normal by more than this, and cut cubic\n"
              "splines so finely (default 0.001)"},
+            {"--drivers FILE", &options->drivers,
+             "write what drives extra targets, which stands in the result, to a JSON file too"},
             {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
             {"--json", &options->json, "one JSON object"}},
            options->common.table(true)},

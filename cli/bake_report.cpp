@@ -1,7 +1,6 @@
 #include "cli/bake_report.h"
 
-#include <fmt/core.h>
-
+#include "cli/format.h"
 #include "cli/json.h"
 #include "cli/table.h"
 #include "cli/text.h"
@@ -12,33 +11,52 @@ namespace {
 constexpr std::size_t kLongestName = 32;
 
 std::string headline(const BakeReport& report) {
-  return fmt::format("{} -> {}\n", printable(report.input), printable(report.output));
+  return formatted("{} -> {}\n", printable(report.input), printable(report.output));
 }
 
-// The error that a mesh is left with: that of its targets, and of what its animations were brought into.
-double stated_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
+// How far the deltas are from what they stand for, as the bake computes it: of its targets, and of what its animations
+// were brought into. It is no audit, which looks at all that is shown.
+double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
 
-void add_row(const BakedMesh& mesh, Table& table) {
-  const std::string name = mesh.name.empty() ? fmt::format("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
-  if (mesh.already_baked) {
-    table.add_row({name, "baked before", "", "", "", ""});
-  } else if (mesh.elements == 0) {
-    table.add_row({name, "stays flat", "", "", "", ""});
-  } else {
-    table.add_row({name, std::string(name_of(mesh.encoding)), grouped(mesh.elements), grouped(mesh.extras.size()),
-                   grouped(mesh.bytes), four_decimals(stated_error(mesh))});
-  }
+// The worst error of a mesh before and after, or how far its deltas are from what they stand for.
+std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& report) {
+  if (!report.audit) return {mesh.elements == 0 ? "" : four_decimals(fit_error(mesh))};
+  const MotionError before = error_of_mesh(report.audit->before, mesh.mesh),
+                    after = error_of_mesh(report.audit->after, mesh.mesh);
+  return {four_decimals(before.worst), four_decimals(after.worst)};
+}
+
+void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
+  std::vector<std::string> cells = {mesh.name.empty() ? formatted("mesh {}", mesh.mesh)
+                                                      : printable(mesh.name, kLongestName)};
+  if (mesh.already_baked)
+    cells.insert(cells.end(), {"baked before", "", "", ""});
+  else if (mesh.elements == 0)
+    cells.insert(cells.end(), {"stays flat", "", "", ""});
+  else
+    cells.insert(cells.end(), {std::string(name_of(mesh.encoding)), grouped(mesh.elements), grouped(mesh.extras.size()),
+                               grouped(mesh.bytes)});
+  for (std::string& cell : error_cells(mesh, report)) cells.push_back(std::move(cell));
+  table.add_row(std::move(cells));
+}
+
+std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
+
+// "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and what cannot be lit.
+std::string change_words(const BeforeAndAfter& audit) {
+  const MotionError &before = audit.before.error, &after = audit.after.error;
+  std::string text =
+      formatted("worst {}, mean {} degrees", change(before.worst, after.worst), change(before.mean(), after.mean()));
+  if (before.unlit + after.unlit > 0)
+    text += formatted(", {} -> {} that cannot be lit", grouped(before.unlit), counted(after.unlit, "pair", "pairs"));
+  return text;
 }
 
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
-    text += fmt::format("what a host must compute for the extra targets is in {}\n", printable(*report.drivers_file));
-  if (report.audit) {
-    const auto& [before, after] = *report.audit;
-    text += fmt::format("by audit: worst {} -> {}, mean {} -> {} degrees\n", four_decimals(before.worst),
-                        four_decimals(after.worst), four_decimals(before.mean()), four_decimals(after.mean()));
-  }
+    text += formatted("what drives the extra targets is in {} too\n", printable(*report.drivers_file));
+  if (report.audit) text += formatted("by audit: {}\n", change_words(*report.audit));
   return text;
 }
 
@@ -49,10 +67,21 @@ Json common_json(const BakeReport& report) {
   return json;
 }
 
-Json mesh_json(const BakedMesh& mesh) {
+Json audit_json(const MotionError& before, const MotionError& after) {
+  return {{"worst_degrees_before", before.worst}, {"worst_degrees_after", after.worst},
+          {"mean_degrees_before", before.mean()}, {"mean_degrees_after", after.mean()},
+          {"unlit_before", before.unlit},         {"unlit_after", after.unlit},
+          {"worse", is_worse(after, before)}};
+}
+
+Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
   Json extras = Json::array();
-  for (const GltfExtraTarget& extra : mesh.extras)
-    extras.push_back({{"target", extra.target}, {"factors", {extra.i, extra.j}}});
+  for (const GltfExtraTarget& extra : mesh.extras) {
+    Json linear = Json::array(), quadratic = Json::array();
+    for (const auto& term : extra.linear) linear.push_back(Json::array({term.i, term.a}));
+    for (const auto& term : extra.quadratic) quadratic.push_back(Json::array({term.i, term.j, term.q}));
+    extras.push_back({{"target", extra.target}, {"linear", std::move(linear)}, {"quadratic", std::move(quadratic)}});
+  }
   return {{"mesh", mesh.mesh},
           {"name", mesh.name},
           {"encoding", name_of(mesh.encoding)},
@@ -64,21 +93,26 @@ Json mesh_json(const BakedMesh& mesh) {
           {"flat_primitives", mesh.left_flat},
           {"vertices_without_base", mesh.without_base},
           {"vertices_without_stored_normal", mesh.without_stored},
+          {"rescaled_normals", mesh.rescaled},
+          {"stilled_targets", mesh.stilled},
           {"fitted_normals", mesh.fitted_elements},
-          {"target_error_degrees", mesh.largest_error},
-          {"track_error_degrees", mesh.resampling_error}};
+          {"target_fit_degrees", mesh.largest_error},
+          {"track_fit_degrees", mesh.resampling_error},
+          {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
+                                              error_of_mesh(report.audit->after, mesh.mesh))
+                                 : Json()}};
 }
 
 void add_audit(const BakeReport& report, Json& json) {
   if (!report.audit) return;
-  const auto& [before, after] = *report.audit;
-  json["audit"] = {{"worst_degrees_before", before.worst},
-                   {"worst_degrees_after", after.worst},
-                   {"mean_degrees_before", before.mean()},
-                   {"mean_degrees_after", after.mean()}};
+  json["audit"] = audit_json(report.audit->before.error, report.audit->after.error);
 }
 
 }  // namespace
+
+std::string worse_text(const BeforeAndAfter& audit) {
+  return "the result is worse than the input: by audit " + change_words(audit);
+}
 
 std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   std::string text = headline(report);
@@ -100,14 +134,19 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   table.add_column("normals", "", Table::Align::kRight);
   table.add_column("extra targets", "", Table::Align::kRight);
   table.add_column("deltas", "bytes", Table::Align::kRight);
-  table.add_column("error", "degrees", Table::Align::kRight);
-  for (const BakedMesh& mesh : bake.meshes) add_row(mesh, table);
+  if (report.audit) {
+    table.add_column("before", "degrees", Table::Align::kRight);
+    table.add_column("after", "at worst", Table::Align::kRight);
+  } else {
+    table.add_column("fit", "degrees", Table::Align::kRight);
+  }
+  for (const BakedMesh& mesh : bake.meshes) add_row(mesh, report, table);
   text.append("\n").append(table.text()).append("\n");
-  text += fmt::format("{} and {} were added", counted(bake.added_targets, "target", "targets"),
-                      counted(bake.added_bytes, "byte of arrays", "bytes of arrays"));
+  text += formatted("{} and {} were added", counted(bake.added_targets, "target", "targets"),
+                    counted(bake.added_bytes, "byte of arrays", "bytes of arrays"));
   if (bake.converted_tracks > 0)
-    text += fmt::format("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
-                                            "weight tracks are cubic splines"));
+    text += formatted("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
+                                          "weight tracks are cubic splines"));
   text += '\n';
   std::size_t fitted = 0;
   for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
@@ -120,15 +159,15 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
   std::string text = headline(report);
-  text += fmt::format("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
-                      counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
-                      counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
+  text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
+                    counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
+                    counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
   if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
     text += "exact at every instant\n";
   else
     text +=
-        fmt::format("{}: at most {} degrees from the right normals, as far as can be proven\n",
-                    encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error));
+        formatted("{}: at most {} degrees from the right normals, as far as can be proven\n",
+                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error));
   return text + lines_after(report);
 }
 
@@ -136,7 +175,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
   Json json = common_json(report);
   json["changed"] = bake.changed;
   Json meshes = Json::array();
-  for (const BakedMesh& mesh : bake.meshes) meshes.push_back(mesh_json(mesh));
+  for (const BakedMesh& mesh : bake.meshes) meshes.push_back(mesh_json(mesh, report));
   json["meshes"] = std::move(meshes);
   json["added_targets"] = bake.added_targets;
   json["added_bytes"] = bake.added_bytes;
@@ -156,7 +195,7 @@ std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const Bak
   json["targets"] = bake.targets;
   json["extra_targets"] = bake.extra_targets;
   json["bytes"] = bake.bytes;
-  json["error_degrees"] = bake.largest_error;
+  json["bound_degrees"] = bake.largest_error;
   json["without_normals"] = bake.without_normals;
   json["warnings"] = bake.warnings;
   add_audit(report, json);

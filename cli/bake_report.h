@@ -11,9 +11,11 @@
 
 namespace chronormal::cli {
 
-/// The errors of what is shown before and after, by audit.
+/// What audit finds before and after.
 struct BeforeAndAfter {
-  MotionError before, after;
+  Audit before, after;
+
+  [[nodiscard]] bool is_worse() const noexcept { return chronormal::is_worse(after.error, before.error); }
 };
 
 struct BakeReport {
@@ -21,6 +23,9 @@ struct BakeReport {
   std::optional<std::string> drivers_file;
   std::optional<BeforeAndAfter> audit;
 };
+
+/// That the result is worse than the input, and by how much.
+[[nodiscard]] std::string worse_text(const BeforeAndAfter& audit);
 
 /// What was added, a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);

@@ -1,11 +1,10 @@
 #include "cli/blend_report.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "cli/compare_report.h"
+#include "cli/format.h"
 #include "cli/inspect_trouble.h"
 #include "cli/json.h"
 #include "cli/table.h"
@@ -28,13 +27,13 @@ bool is_several_primitives(const BlendSubject& subject) {
 }
 
 std::string headline(const NamedBlendComparison& input, const BlendSubject& subject) {
-  std::string text = input.name;
+  std::string text = printable(input.name);
   if (subject.mesh) {
-    text += fmt::format(", mesh {}", *subject.mesh);
-    if (!subject.name.empty()) text += fmt::format(" '{}'", printable(subject.name, kShownName));
+    text += formatted(", mesh {}", *subject.mesh);
+    if (!subject.name.empty()) text += formatted(" '{}'", printable(subject.name, kShownName));
   }
-  text += fmt::format(": {}, {}, {}\n", counted(subject.vertices, "vertex", "vertices"),
-                      counted(subject.faces, "face", "faces"), counted(subject.targets.size(), "target", "targets"));
+  text += formatted(": {}, {}, {}\n", counted(subject.vertices, "vertex", "vertices"),
+                    counted(subject.faces, "face", "faces"), counted(subject.targets.size(), "target", "targets"));
   const std::size_t rows = subject.errors.empty() ? 0 : subject.errors.front().rows;
   text += subject.mesh ? counted(subject.outputs, "vertex with a normal", "vertices with normals")
                        : counted(subject.outputs, "different normal", "different normals")
@@ -42,17 +41,17 @@ std::string headline(const NamedBlendComparison& input, const BlendSubject& subj
                                          ? ""
                                          : " of " + std::string(element_kind_name(subject.kind)));
   if (input.animation.empty())
-    text += fmt::format(", {} for each number of active targets\n",
-                        counted(rows, "random weight vector", "random weight vectors"));
+    text += formatted(", {} for each number of active targets\n",
+                      counted(rows, "random weight vector", "random weight vectors"));
   else
-    text += fmt::format(", {} of animation {}\n", counted(rows, "weight vector", "weight vectors"),
-                        printable(input.animation, kShownName));
+    text += formatted(", {} of animation {}\n", counted(rows, "weight vector", "weight vectors"),
+                      printable(input.animation, kShownName));
   return text;
 }
 
 std::string target_name(const BlendSubject& subject, std::size_t target) {
   const std::string& name = subject.targets[target];
-  return name.empty() ? fmt::format("{}", target) : name;
+  return name.empty() ? formatted("{}", target) : name;
 }
 
 // The heaviest ones first.
@@ -64,9 +63,9 @@ std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
   std::string text;
   for (std::size_t i = 0; i < std::min(weights.size(), kShownTargets); ++i) {
     if (i > 0) text += ", ";
-    text += fmt::format("{} {:.2f}", printable(target_name(subject, weights[i].target), kShownName), weights[i].weight);
+    text += formatted("{} {:.2f}", printable(target_name(subject, weights[i].target), kShownName), weights[i].weight);
   }
-  if (weights.size() > kShownTargets) text += fmt::format(" and {} more", weights.size() - kShownTargets);
+  if (weights.size() > kShownTargets) text += formatted(" and {} more", weights.size() - kShownTargets);
   return text;
 }
 
@@ -99,13 +98,13 @@ std::string notes(const BlendSubject& subject) {
   std::string text;
   for (const BlendErrors& errors : subject.errors) {
     for (const BlendError& error : errors.deltas) {
-      const std::string pairs = fmt::format(", {} active: ", grouped(errors.active));
+      const std::string pairs = formatted(", {} active: ", grouped(errors.active));
       if (error.quality.missing > 0)
-        text += fmt::format("{}{}{} left out, which the deltas cancel\n", name_of(error.deltas), pairs,
-                            counted(error.quality.missing, "normal", "normals"));
+        text += formatted("{}{}{} without a direction count as 180 degrees\n", name_of(error.deltas), pairs,
+                          counted(error.quality.missing, "normal", "normals"));
       if (error.quality.degenerate > 0 && error.deltas == BlendDeltas::kExact)
-        text += fmt::format("degenerate{}{} left out: the geometry has none\n", pairs,
-                            counted(error.quality.degenerate, "normal", "normals"));
+        text += formatted("degenerate{}{} left out: the geometry has none\n", pairs,
+                          counted(error.quality.degenerate, "normal", "normals"));
     }
   }
   return text;
@@ -114,10 +113,10 @@ std::string notes(const BlendSubject& subject) {
 std::string notes(const BlendComparison& comparison) {
   std::string text;
   if (comparison.still > 0)
-    text += fmt::format("{} left out: no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
+    text += formatted("{} left out: no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
   if (comparison.flat > 0)
-    text += fmt::format("{} left out: without stored normals (flat in hosts; --elements vertices makes smooth ones)\n",
-                        counted(comparison.flat, "mesh", "meshes"));
+    text += formatted("{} left out: without stored normals (flat in hosts; --elements vertices makes smooth ones)\n",
+                      counted(comparison.flat, "mesh", "meshes"));
   return text;
 }
 
@@ -190,15 +189,14 @@ std::string blend_csv(const NamedBlendComparison& input) {
         const Quality& q = error.quality;
         std::string targets;
         for (const BlendError::Weight& w : error.worst_weights)
-          targets += fmt::format("{}{}:{}", targets.empty() ? "" : " ", target_name(subject, w.target), w.weight);
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name),
-                            subject.mesh ? fmt::format("{}", *subject.mesh) : "", subject.vertices, subject.faces,
-                            subject.targets.size(), element_kind_name(subject.kind), errors.active, errors.rows,
-                            name_of(error.deltas), degrees(q.mean()), degrees(q.rms()), degrees(q.max),
-                            q.max > 0 ? fmt::format("{}", q.max_at.segment) : "",
-                            error.worst_primitive ? fmt::format("{}", *error.worst_primitive) : "",
-                            q.max > 0 ? fmt::format("{}", error.worst_output) : "", csv_field(targets), q.count,
-                            q.degenerate, q.missing);
+          targets += formatted("{}{}:{}", targets.empty() ? "" : " ", target_name(subject, w.target), w.weight);
+        text += formatted(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name),
+            subject.mesh ? formatted("{}", *subject.mesh) : "", subject.vertices, subject.faces, subject.targets.size(),
+            element_kind_name(subject.kind), errors.active, errors.rows, name_of(error.deltas), degrees(q.mean()),
+            degrees(q.rms()), degrees(q.max), q.max > 0 ? formatted("{}", q.max_at.segment) : "",
+            error.worst_primitive ? formatted("{}", *error.worst_primitive) : "",
+            q.max > 0 ? formatted("{}", error.worst_output) : "", csv_field(targets), q.count, q.degenerate, q.missing);
       }
     }
   }

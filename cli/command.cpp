@@ -1,17 +1,15 @@
 #include "cli/command.h"
 
-#include <fmt/core.h>
-
 #include "chronormal/io/builtin_morphs.h"
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
 
 std::string morph_list() {
   std::string list = "a built-in morph (compare --each takes several):";
-  for (const BuiltinMorph& morph : builtin_morphs()) list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
-  for (const BuiltinMorph& morph : builtin_blend_shapes())
-    list += fmt::format("\n  {:<9} {}", morph.name, morph.summary);
+  for (const BuiltinMorph& morph : builtin_morphs()) list += formatted("\n  {:<9} {}", morph.name, morph.summary);
+  for (const BuiltinMorph& morph : builtin_blend_shapes()) list += formatted("\n  {:<9} {}", morph.name, morph.summary);
   return list;
 }
 
@@ -49,14 +47,19 @@ std::vector<Option> input_table(InputOptions& input) {
            {.check = check_given("it must be a name or an index")}},
           {"--world", &input.world, "vertices of a glTF file are where its nodes put them"},
           {"--allow-external", &input.allow_external, "a glTF file may name files outside its folder"},
+          {"--max-expansion N",
+           &input.max_expansion,
+           "what is read may ask for N times its bytes of memory and output (default 100;\n"
+           "always for 32 MiB)",
+           {.check = check_whole(0)}},
           {"--sample NAME", &input.samples, morph_list()},
           {"--fps N", &input.frames_per_second, "frames per second of the keyframes (default 1)"}};
 }
 
 std::vector<Option> ElementArguments::table() {
-  const auto marked = [this](const char* name) { return usual == name ? fmt::format("{} (default)", name) : name; };
+  const auto marked = [this](const char* name) { return usual == name ? formatted("{} (default)", name) : name; };
   return {{"--elements KIND", &asked,
-           fmt::format("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners"))},
+           formatted("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners"))},
           {"--crease DEG", &crease_angle,
            "corners: edges between faces that differ by more than this\n"
            "in the first keyframe are hard (default 180: none)"},

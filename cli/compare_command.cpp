@@ -1,5 +1,3 @@
-#include <fmt/core.h>
-
 #include <memory>
 #include <optional>
 
@@ -9,12 +7,12 @@
 #include "cli/command.h"
 #include "cli/compare_blend.h"
 #include "cli/compare_report.h"
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
 
 constexpr std::size_t kMostSamples = 1000000;
-constexpr const char* kSampleRange = "it must be a whole number from 2 to 1,000,000";
 
 struct Options {
   InputOptions input;
@@ -60,7 +58,7 @@ std::string option_of_schemes(const Options& options) {
 std::string footer() {
   std::string text = "Schemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
-    text += fmt::format("  {:<24}{}\n", scheme.name, scheme.summary);
+    text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
   return text +
          "\nExamples:\n"
          "  chronormal compare frames/\n"
@@ -143,7 +141,6 @@ Result<int> run_blend(const Options& options) {
 Result<int> run(const Options& options) {
   if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
-  if (options.sample_count() < 2 || options.sample_count() > kMostSamples) return misuse("--samples", kSampleRange);
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
@@ -185,7 +182,7 @@ Command compare_command() {
             {"--samples N",
              &options->samples,
              "samples per segment, ends included (default 21)",
-             {.check = check_given(kSampleRange)}}},
+             {.check = check_whole(2, kMostSamples)}}},
            options->elements.table(),
            {{"--access KIND",
              &options->access,

@@ -1,11 +1,11 @@
 #include "cli/compare_report.h"
 
-#include <fmt/core.h>
-
 #include "cli/command.h"
+#include "cli/format.h"
 #include "cli/inspect_trouble.h"
 #include "cli/json.h"
 #include "cli/table.h"
+#include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -18,15 +18,15 @@ bool is_of_targets(const Comparison& comparison) { return comparison.motion == M
 
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
-  return fmt::format(
-             "{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
+  return formatted(
+             "{}: {}, {}, {} x {} samples\n", printable(input.name), counted(c.vertices, "vertex", "vertices"),
              counted(c.faces, "face", "faces"),
              counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
              c.samples) +
          (c.kind == ElementKind::kFaces
               ? std::string()
-              : fmt::format("{} of {}\n", counted(c.elements, "different normal", "different normals"),
-                            element_kind_name(c.kind)));
+              : formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
+                          element_kind_name(c.kind)));
 }
 
 Json input_json(const NamedComparison& input) {
@@ -72,7 +72,7 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
 }
 
 std::string sample_pairs(std::size_t count, const std::string& word) {
-  return fmt::format("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
+  return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
 }
 
 // What a table does not show, a line each: shares that were treated otherwise, and what was left out.
@@ -84,8 +84,8 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
                          : pairs == 1 ? word
                                       : std::string(element_kind_name(comparison.kind));
   const auto share = [pairs, &of](std::size_t count) {
-    return fmt::format("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
-                       100 * static_cast<double>(count) / static_cast<double>(pairs));
+    return formatted("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
+                     100 * static_cast<double>(count) / static_cast<double>(pairs));
   };
   std::string text, played;
   std::size_t degenerate = 0;
@@ -93,15 +93,15 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     if (row.sequential) played += (played.empty() ? "" : ", ") + row.scheme;
     degenerate = std::max(degenerate, row.quality.degenerate);
     const auto add = [&](std::size_t count, const std::string& what) {
-      if (count > 0) text += fmt::format("{}{}: {}\n", prefix, row.scheme, what);
+      if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
     };
     add(row.flagged, share(row.flagged) + " evaluated in double");
     add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
     add(row.quality.missing, sample_pairs(row.quality.missing, word) + " without a normal of the scheme left out");
   }
-  if (!played.empty()) text += fmt::format("{}played step by step: {}\n", prefix, played);
+  if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
   if (degenerate > 0)
-    text += fmt::format("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
+    text += formatted("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
   return text;
 }
 
@@ -114,7 +114,8 @@ std::string one_element(ElementKind kind) {
   return kind == ElementKind::kCorners ? "corner" : "face";
 }
 
-std::string csv_field(const std::string& text) {
+std::string csv_field(const std::string& field) {
+  const std::string text = printable(field);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {
@@ -154,11 +155,11 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
                                       four_decimals(degrees(q.max))};
     if (several_segments) cells.push_back(q.max > 0 ? grouped(q.max_at.segment) : "-");
     cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
-    cells.push_back(q.max > 0 ? fmt::format("{:.2f}", q.max_at.t) : "-");
-    cells.push_back(fmt::format("{:.0f}", row.bytes));
+    cells.push_back(q.max > 0 ? formatted("{:.2f}", q.max_at.t) : "-");
+    cells.push_back(formatted("{:.0f}", row.bytes));
     if (with_times) {
-      cells.push_back(fmt::format("{:.0f}", row.prepare_ns));
-      cells.push_back(fmt::format("{:.1f}", row.evaluate_ns));
+      cells.push_back(formatted("{:.0f}", row.prepare_ns));
+      cells.push_back(formatted("{:.1f}", row.evaluate_ns));
     }
     table.add_row(std::move(cells));
   }
@@ -172,7 +173,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   Table table;
   table.add_column("scheme", "", Align::kLeft);
   for (const NamedComparison& input : inputs) {
-    table.add_column(short_name(input.name), "sum, degrees", Align::kRight);
+    table.add_column(printable(short_name(input.name)), "sum, degrees", Align::kRight);
     table.add_column("", "vs linear", Align::kRight);
   }
   const std::size_t rows = inputs.front().comparison.schemes.size();
@@ -186,7 +187,8 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
     table.add_row(std::move(cells));
   }
   std::string remarks;
-  for (const NamedComparison& input : inputs) remarks += notes(input.comparison, short_name(input.name) + ": ");
+  for (const NamedComparison& input : inputs)
+    remarks += notes(input.comparison, printable(short_name(input.name)) + ": ");
   return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
 }
 
@@ -215,15 +217,15 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
       const Quality& q = row.quality;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name),
-                          c.vertices, c.faces, c.segments, element_kind_name(c.kind), c.samples, csv_field(row.scheme),
-                          degrees(q.sum), row.relative_to_linear ? fmt::format("{}", *row.relative_to_linear) : "",
-                          degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
-                          q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
-      if (with_times) text += fmt::format("{},{},", row.prepare_ns, row.evaluate_ns);
+      text += formatted("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name), c.vertices,
+                        c.faces, c.segments, element_kind_name(c.kind), c.samples, csv_field(row.scheme),
+                        degrees(q.sum), row.relative_to_linear ? formatted("{}", *row.relative_to_linear) : "",
+                        degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
+                        q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
+      if (with_times) text += formatted("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
-      text += fmt::format("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
-                          o.trigonometric);
+      text += formatted("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
+                        o.trigonometric);
     }
   }
   return text;

@@ -1,13 +1,12 @@
 #include "cli/inspect_report.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
+#include "cli/format.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
@@ -25,24 +24,24 @@ constexpr double kRoundedTurn = 1e-4;  // radians
 std::string size_in_bytes(std::size_t bytes) {
   const auto value = static_cast<double>(bytes);
   if (value < 1e3) return counted(bytes, "byte", "bytes");
-  if (value < 1e6) return fmt::format("{:.1f} kB", value / 1e3);
-  if (value < 1e9) return fmt::format("{:.1f} MB", value / 1e6);
-  return fmt::format("{:.1f} GB", value / 1e9);
+  if (value < 1e6) return formatted("{:.1f} kB", value / 1e3);
+  if (value < 1e9) return formatted("{:.1f} MB", value / 1e6);
+  return formatted("{:.1f} GB", value / 1e9);
 }
 
-std::string percent(double part, double whole) { return whole > 0 ? fmt::format("{:.1f}", 100 * part / whole) : "-"; }
+std::string percent(double part, double whole) { return whole > 0 ? formatted("{:.1f}", 100 * part / whole) : "-"; }
 
 std::string face_words(const Inspection& found) {
   const Surface& surface = found.surface;
   if (surface.triangles == found.faces) return counted(found.faces, "triangle", "triangles");
   std::string words = counted(found.faces, "face", "faces");
-  words += fmt::format(" of up to {} corners", surface.most_corners);
-  if (surface.triangles > 0) words += fmt::format(", {}", counted(surface.triangles, "triangle", "triangles"));
+  words += formatted(" of up to {} corners", surface.most_corners);
+  if (surface.triangles > 0) words += formatted(", {}", counted(surface.triangles, "triangle", "triangles"));
   return words;
 }
 
 std::string rows_left_out(std::size_t rows, const char* what) {
-  return rows > kMostRows ? fmt::format("... and {} more {} (--json has all)\n", grouped(rows - kMostRows), what) : "";
+  return rows > kMostRows ? formatted("... and {} more {} (--json has all)\n", grouped(rows - kMostRows), what) : "";
 }
 
 std::string headline(const Inspected& input) {
@@ -58,7 +57,7 @@ std::string headline(const Inspected& input) {
          counted(found.segments.size(), "segment", "segments") + '\n';
 }
 
-std::string fact(const char* what, const std::string& value) { return fmt::format("  {:<10}  {}\n", what, value); }
+std::string fact(const char* what, const std::string& value) { return formatted("  {:<10}  {}\n", what, value); }
 
 std::string facts_of(const Inspected& input) {
   const Inspection& found = *input.inspection;
@@ -66,32 +65,31 @@ std::string facts_of(const Inspected& input) {
   std::string text;
   const auto add = [&text](const char* what, const std::string& value) { text += fact(what, value); };
   add("faces", face_words(found));
-  add("surface", fmt::format("{}, {}; {} open", counted(surface.pieces, "piece", "pieces"),
-                             counted(surface.edges, "edge", "edges"),
-                             surface.open_edges.count == 0 ? "none" : grouped(surface.open_edges.count)));
-  add("size", fmt::format("{:.5g}, the diagonal of the box {:.4g} x {:.4g} x {:.4g}", found.diagonal,
-                          found.high.x - found.low.x, found.high.y - found.low.y, found.high.z - found.low.z));
+  add("surface",
+      formatted("{}, {}; {} open", counted(surface.pieces, "piece", "pieces"), counted(surface.edges, "edge", "edges"),
+                surface.open_edges.count == 0 ? "none" : grouped(surface.open_edges.count)));
+  add("size", formatted("{:.5g}, the diagonal of the box {:.4g} x {:.4g} x {:.4g}", found.diagonal,
+                        found.high.x - found.low.x, found.high.y - found.low.y, found.high.z - found.low.z));
   if (!found.segments.empty()) {
-    if (!input.has_targets()) add("time", fmt::format("{:.6g} s to {:.6g} s", found.first_time, found.last_time));
+    if (!input.has_targets()) add("time", formatted("{:.6g} s to {:.6g} s", found.first_time, found.last_time));
     if (input.gltf && input.gltf->curve_error > 0)
-      add("splines",
-          fmt::format("cut into straight pieces, within {:.2g} of the true curves", input.gltf->curve_error));
+      add("splines", formatted("cut into straight pieces, within {:.2g} of the true curves", input.gltf->curve_error));
     add("motion", found.motion.value == 0 ? "nothing moves"
-                                          : fmt::format("up to {:.4g}, {} % of the size ({} in {})", found.motion.value,
-                                                        percent(found.motion.value, found.diagonal),
-                                                        vertex_label(input, found.motion.element),
-                                                        segment_label(input, found.motion.segment)));
+                                          : formatted("up to {:.4g}, {} % of the size ({} in {})", found.motion.value,
+                                                      percent(found.motion.value, found.diagonal),
+                                                      vertex_label(input, found.motion.element),
+                                                      segment_label(input, found.motion.segment)));
     add("turning", found.turn.value < kRoundedTurn
                        ? "no face turns"
-                       : fmt::format("up to {:.1f} degrees ({} in {})", found.turn.value * kDegreesPerRadian,
-                                     face_label(input, found.turn.element), segment_label(input, found.turn.segment)));
+                       : formatted("up to {:.1f} degrees ({} in {})", found.turn.value * kDegreesPerRadian,
+                                   face_label(input, found.turn.element), segment_label(input, found.turn.segment)));
     const std::size_t pairs = found.faces * found.segments.size();
-    add("memory", fmt::format("{} for keyframes, {} for exact normals of faces ({:.1f} bytes a face and segment)",
-                              size_in_bytes(found.keyframe_bytes), size_in_bytes(found.normal_bytes),
-                              static_cast<double>(found.normal_bytes) / static_cast<double>(pairs)));
+    add("memory", formatted("{} for keyframes, {} for exact normals of faces ({:.1f} bytes a face and segment)",
+                            size_in_bytes(found.keyframe_bytes), size_in_bytes(found.normal_bytes),
+                            static_cast<double>(found.normal_bytes) / static_cast<double>(pairs)));
     if (found.flagged > 0)
       add("in double",
-          fmt::format("{} of {} normals, which float would get wrong", grouped(found.flagged), grouped(pairs)));
+          formatted("{} of {} normals, which float would get wrong", grouped(found.flagged), grouped(pairs)));
   } else {
     add("memory", size_in_bytes(found.keyframe_bytes) + " for positions");
   }
@@ -112,15 +110,14 @@ std::string target_table(const Inspected& input) {
   for (const SegmentInspection& segment : found.segments) turns.push_back(segment.turn.value);
   for (const std::size_t s : indices_of_largest(turns, kMostRows)) {
     const SegmentInspection& segment = found.segments[s];
-    table.add_row({fmt::format("{}", s), printable(input.keyframe_names[input.segments[s].to], kLongestCell),
+    table.add_row({formatted("{}", s), printable(input.keyframe_names[input.segments[s].to], kLongestCell),
                    grouped(segment.moved_vertices), percent(segment.motion.value, found.diagonal),
-                   fmt::format("{:.1f}", segment.turn.value * kDegreesPerRadian), grouped(segment.turned_far),
+                   formatted("{:.1f}", segment.turn.value * kDegreesPerRadian), grouped(segment.turned_far),
                    grouped(segment.collapses)});
   }
   std::string text = '\n' + table.text();
   if (found.segments.size() > kMostRows)
-    text +=
-        fmt::format("... and {} more that turn less (--json has all)\n", grouped(found.segments.size() - kMostRows));
+    text += formatted("... and {} more that turn less (--json has all)\n", grouped(found.segments.size() - kMostRows));
   return text;
 }
 
@@ -130,9 +127,7 @@ const char* mode_name(int mode) {
 }
 
 // "12 of 20", for targets that move something besides positions.
-std::string share_of(std::size_t count, std::size_t all) {
-  return all == 0 ? "-" : fmt::format("{} of {}", count, all);
-}
+std::string share_of(std::size_t count, std::size_t all) { return all == 0 ? "-" : formatted("{} of {}", count, all); }
 
 std::string primitive_table(const InspectedGltf& gltf) {
   Table table;
@@ -153,13 +148,12 @@ std::string primitive_table(const InspectedGltf& gltf) {
     const GltfPrimitiveInspection& found = primitives[i];
     const GltfMesh& mesh = gltf.document->meshes()[found.mesh];
     const GltfPrimitive& primitive = mesh.primitives[found.primitive];
-    const std::string name =
-        mesh.name.empty() ? fmt::format("mesh {}", found.mesh) : printable(mesh.name, kLongestCell);
+    const std::string name = mesh.name.empty() ? formatted("mesh {}", found.mesh) : printable(mesh.name, kLongestCell);
     std::string has = primitive.has_normals ? "normals" : "positions";
     if (primitive.has_tangents) has += ", tangents";
     std::string mode = mode_name(primitive.mode);
     if (primitive.has_draco) mode += ", Draco";
-    table.add_row({fmt::format("{} / {}", name, found.primitive), std::move(mode), grouped(found.triangles),
+    table.add_row({formatted("{} / {}", name, found.primitive), std::move(mode), grouped(found.triangles),
                    grouped(primitive.vertex_count), grouped(found.doubled),
                    primitive.has_normals ? grouped(found.split) : "-", std::move(has), grouped(mesh.target_count),
                    share_of(found.moving_normals, found.moving), share_of(found.moving_tangents, found.moving)});
@@ -168,12 +162,12 @@ std::string primitive_table(const InspectedGltf& gltf) {
 }
 
 std::string named_or_numbered(const std::string& name, const char* kind, std::size_t number) {
-  return name.empty() ? fmt::format("{} {}", kind, number) : printable(name, kLongestCell);
+  return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
 // Two decimals: exporters compute weights, and miss 0 and 1 by a little.
 std::string weight_cell(double weight) {
-  std::string text = fmt::format("{:.2f}", weight);
+  std::string text = formatted("{:.2f}", weight);
   return text == "-0.00" ? "0.00" : text;
 }
 
@@ -186,9 +180,8 @@ std::string track_table(const InspectedGltf& gltf) {
                                              [](const GltfAnimation& animation) { return animation.tracks.empty(); }));
   std::string rest;
   if (silent > 0)
-    rest =
-        fmt::format("{}{} without a track of weights: {} what morphs\n", tracks.empty() ? "\n" : "",
-                    counted(silent, "animation", "animations"), silent == 1 ? "it does not move" : "they do not move");
+    rest = formatted("{}{} without a track of weights: {} what morphs\n", tracks.empty() ? "\n" : "",
+                     counted(silent, "animation", "animations"), silent == 1 ? "it does not move" : "they do not move");
   if (tracks.empty()) return rest;
   Table table;
   table.add_column("animation", "", Align::kLeft);
@@ -217,10 +210,10 @@ std::string track_table(const InspectedGltf& gltf) {
     }
     if (++rows > kMostRows) continue;
     std::string nodes = named_or_numbered(document.nodes()[track.node].name, "node", track.node);
-    if (next - first > 1) nodes += fmt::format(" and {} more", grouped(next - first - 1));
+    if (next - first > 1) nodes += formatted(" and {} more", grouped(next - first - 1));
     table.add_row({named_or_numbered(document.animations()[all.animation].name, "animation", all.animation),
                    std::move(nodes), interpolation_name(track.interpolation), grouped(track.key_count),
-                   fmt::format("{:.4g}", all.first_time), fmt::format("{:.4g}", all.last_time), weight_cell(all.lowest),
+                   formatted("{:.4g}", all.first_time), formatted("{:.4g}", all.last_time), weight_cell(all.lowest),
                    weight_cell(all.highest)});
   }
   return '\n' + table.text() + rows_left_out(rows, "rows of tracks") + rest;
@@ -231,9 +224,9 @@ std::string gltf_contents(const InspectedGltf& gltf) {
   std::size_t primitives = 0, carriers = 0;
   for (const GltfMesh& mesh : document.meshes()) primitives += mesh.primitives.size();
   for (const std::size_t instances : gltf.inspection.instances) carriers += instances;
-  return fmt::format("{}, {}, {} with a mesh, {}", counted(document.meshes().size(), "mesh", "meshes"),
-                     counted(primitives, "primitive", "primitives"), counted(carriers, "node", "nodes"),
-                     counted(document.animations().size(), "animation", "animations"));
+  return formatted("{}, {}, {} with a mesh, {}", counted(document.meshes().size(), "mesh", "meshes"),
+                   counted(primitives, "primitive", "primitives"), counted(carriers, "node", "nodes"),
+                   counted(document.animations().size(), "animation", "animations"));
 }
 
 // How many primitives are no part of what is looked at.
@@ -271,7 +264,7 @@ std::string inspect_text(const Inspected& input) {
   text += "\nWhat will trouble you:\n";
   for (const Trouble& trouble : troubles) {
     text += "  " + trouble.what;
-    if (!trouble.where.empty()) text += fmt::format(" ({}{})", trouble.count > 1 ? "first: " : "", trouble.where);
+    if (!trouble.where.empty()) text += formatted(" ({}{})", trouble.count > 1 ? "first: " : "", trouble.where);
     text += "\n    " + trouble.meaning + '\n';
   }
   return text;

@@ -1,9 +1,8 @@
 #include "cli/inspect_trouble.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 
+#include "cli/format.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
@@ -16,7 +15,7 @@ constexpr std::size_t kLongestName = 40;
 constexpr double kRoundedWeight = 1e-3;
 
 std::string with_name(std::string label, const std::string& name) {
-  if (!name.empty() && name != label) label += fmt::format(" ({})", printable(name, kLongestName));
+  if (!name.empty() && name != label) label += formatted(" ({})", printable(name, kLongestName));
   return label;
 }
 
@@ -31,7 +30,7 @@ std::string have(const std::string& counted_things, std::size_t count) {
 
 // ", 30 times in all" where the same faces come more than once.
 std::string in_all(const Places& places) {
-  return places.pairs > places.faces ? fmt::format(", {} times in all", grouped(places.pairs)) : "";
+  return places.pairs > places.faces ? formatted(", {} times in all", grouped(places.pairs)) : "";
 }
 
 class Troubles {
@@ -52,7 +51,7 @@ class Troubles {
                    std::string meaning) {
     if (places.pairs == 0) return;
     const std::string when =
-        has_instant ? fmt::format(" at {} = {:.4f}", input_.has_targets() ? "w" : "t", places.first_t) : "";
+        has_instant ? formatted(" at {} = {:.4f}", input_.has_targets() ? "w" : "t", places.first_t) : "";
     add(std::move(kind), places.faces, faces(places.faces) + what + in_all(places),
         face_label(input_, places.first_face) + " in " + segment_label(input_, places.first_at) + when,
         std::move(meaning));
@@ -116,11 +115,11 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                       "a triangle has no area then; a larger face counts with both corners in a normal per vertex");
   std::string meaning = "a normal per vertex breaks there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
-    meaning = fmt::format("a normal per vertex breaks there; at {} of them so do the stored normals: hard edges",
-                          grouped(split));
+    meaning = formatted("a normal per vertex breaks there; at {} of them so do the stored normals: hard edges",
+                        grouped(split));
   troubles.add("doubled_vertex", found.doubled.count,
                have(vertices(found.doubled.count), found.doubled.count) +
-                   fmt::format(" the place of another throughout, along {}", edges(surface.seam_edges.count)),
+                   formatted(" the place of another throughout, along {}", edges(surface.seam_edges.count)),
                "", std::move(meaning));
   const std::size_t parting = found.doubled_at_start.count - found.doubled.count;
   troubles.add("parting_vertex", parting,
@@ -130,9 +129,9 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
 
 // "Head, primitive 1", and the node where several have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
-  std::string label = fmt::format("{}, primitive {}", mesh_label(*gltf.document, part.mesh), part.primitive);
+  std::string label = formatted("{}, primitive {}", mesh_label(*gltf.document, part.mesh), part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)
-    label += ", " + with_name(fmt::format("node {}", *part.node), gltf.document->nodes()[*part.node].name);
+    label += ", " + with_name(formatted("node {}", *part.node), gltf.document->nodes()[*part.node].name);
   return label;
 }
 
@@ -140,7 +139,7 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
   const InspectedGltf& gltf = *input.gltf;
   const GltfDocument& document = *gltf.document;
   const auto first_label = [&document](const GltfPrimitiveInspection& primitive) {
-    return fmt::format("{}, primitive {}", mesh_label(document, primitive.mesh), primitive.primitive);
+    return formatted("{}, primitive {}", mesh_label(document, primitive.mesh), primitive.primitive);
   };
   std::string flat_at, left_at, tangents_at, length_at;
   std::size_t flat = 0, left = 0, tangents = 0, lengths = 0;
@@ -177,10 +176,10 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
     lowest = std::min(lowest, track.lowest);
     highest = std::max(highest, track.highest);
   }
-  troubles.add("weights_beyond", input.has_targets() ? beyond : 0,
-               fmt::format("{} with weights beyond 0 to 1: {:.4g} to {:.4g}", counted(beyond, "track", "tracks"),
-                           lowest, highest),
-               "", "targets go farther than what is looked at here, w from 0 to 1");
+  troubles.add(
+      "weights_beyond", input.has_targets() ? beyond : 0,
+      formatted("{} with weights beyond 0 to 1: {:.4g} to {:.4g}", counted(beyond, "track", "tracks"), lowest, highest),
+      "", "targets go farther than what is looked at here, w from 0 to 1");
   const std::size_t skinned = gltf.inspection.skinned_nodes;
   troubles.add("skin", skinned, have(counted(skinned, "node", "nodes"), skinned) + " a skin", "",
                "the skeleton is not applied: normals are those before skinning");
@@ -215,32 +214,32 @@ std::vector<Trouble> find_trouble(const Inspected& input) {
 }
 
 std::string keyframe_label(const Inspected& input, std::size_t keyframe) {
-  return with_name(fmt::format("keyframe {}", keyframe), input.keyframe_names[keyframe]);
+  return with_name(formatted("keyframe {}", keyframe), input.keyframe_names[keyframe]);
 }
 
 std::string segment_label(const Inspected& input, std::size_t segment) {
-  if (!input.has_targets()) return fmt::format("segment {}", segment);
-  return with_name(fmt::format("target {}", segment), input.keyframe_names[input.segments[segment].to]);
+  if (!input.has_targets()) return formatted("segment {}", segment);
+  return with_name(formatted("target {}", segment), input.keyframe_names[input.segments[segment].to]);
 }
 
 std::string face_label(const Inspected& input, std::size_t face) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (face >= part.first_face && face - part.first_face < part.face_count)
-        return fmt::format("face {} of {}", face - part.first_face, part_label(*input.gltf, part));
+        return formatted("face {} of {}", face - part.first_face, part_label(*input.gltf, part));
     }
   }
-  return fmt::format("face {}", face);
+  return formatted("face {}", face);
 }
 
 std::string vertex_label(const Inspected& input, std::size_t vertex) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (vertex >= part.first_vertex && vertex - part.first_vertex < part.vertex_count)
-        return fmt::format("vertex {} of {}", vertex - part.first_vertex, part_label(*input.gltf, part));
+        return formatted("vertex {} of {}", vertex - part.first_vertex, part_label(*input.gltf, part));
     }
   }
-  return fmt::format("vertex {}", vertex);
+  return formatted("vertex {}", vertex);
 }
 
 const char* interpolation_name(GltfInterpolation interpolation) {
@@ -250,7 +249,7 @@ const char* interpolation_name(GltfInterpolation interpolation) {
 
 std::string mesh_label(const GltfDocument& document, std::size_t mesh) {
   const std::string& name = document.meshes()[mesh].name;
-  return name.empty() ? fmt::format("mesh {}", mesh) : printable(name, kLongestName);
+  return name.empty() ? formatted("mesh {}", mesh) : printable(name, kLongestName);
 }
 
 }  // namespace chronormal::cli

@@ -2,21 +2,25 @@
 
 #include "cli/options.h"
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <cmath>
+#include <sstream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
+#include "cli/format.h"
+#include "cli/print.h"
+#include "cli/table.h"
 #include "cli/text.h"
 #include "cli/version.h"
 
 namespace chronormal::cli {
 namespace {
 
-constexpr int kExitUsage = 2;
+constexpr int kExitDone = 0, kExitUsage = 2;
 
 CLI::Option* add_target(CLI::App& command, const std::string& names, bool* target, const std::string& help) {
   return command.add_flag(names, *target, help);
@@ -40,6 +44,18 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
+// What is wrong with the value of an option that takes a number. The parser would take an empty text for an option that
+// was not given, and "nan" for a number.
+template <class T>
+std::string fault_of_number(const T*, const std::string& value) {
+  constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
+                           std::is_same_v<T, std::optional<std::string>> || std::is_same_v<T, std::vector<std::string>>;
+  if constexpr (is_text) return "";
+  double number = 0;
+  const bool is_number = CLI::detail::lexical_cast(value, number) && std::isfinite(number);
+  return is_number ? "" : formatted("'{}' is not a number", printable(value));
+}
+
 void add_option(const Option& option, CLI::App& command) {
   const std::size_t blank = option.spelling.find(' ');
   const std::string names = option.spelling.substr(0, blank);
@@ -51,7 +67,14 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  if (rules.check) added->check(rules.check, "");
+  // A check of the table's own says more of what is wanted than that it is a number.
+  added->check(
+      [target = option.target, check = rules.check](const std::string& value) {
+        const std::string wrong = check ? check(value) : "";
+        if (!wrong.empty()) return wrong;
+        return std::visit([&](const auto* of_type) { return fault_of_number(of_type, value); }, target);
+      },
+      "");
 }
 
 void add_command(const Command& command, CLI::App& program) {
@@ -62,10 +85,14 @@ void add_command(const Command& command, CLI::App& program) {
     for (const Option& option : table) add_option(option, *added);
 }
 
-// Prints the error, and returns its exit code.
+void say_where_help_is(std::string_view command) {
+  say_raw(formatted("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
+}
+
+// Says the error, and returns its exit code.
 int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
-  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
+  say(command, error.text());
+  if (error.code == ErrorCode::kUsage) say_where_help_is(command);
   return static_cast<int>(error.code);
 }
 
@@ -78,16 +105,26 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
     names += (names.empty() ? "" : ", ") + command.name;
   }
   if (first.empty())
-    fmt::print(stderr, "chronormal: name a command: {}\n", names);
+    say("", "name a command: " + names);
   else
-    fmt::print(stderr, "chronormal: there is no command '{}'; there are {}\n", first, names);
-  fmt::print(stderr, "Try: chronormal --help\n");
+    say("", formatted("there is no command '{}'; there are {}", first, names));
+  say_where_help_is("");
   return false;
 }
 
 }  // namespace
 
-std::string check_not_negative(const std::string& value) { return CLI::NonNegativeNumber(value); }
+Check check_whole(std::size_t least, std::size_t most) {
+  const std::string range = most == static_cast<std::size_t>(-1)
+                                ? formatted("of {} or more", grouped(least))
+                                : formatted("from {} to {}", grouped(least), grouped(most));
+  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
+    std::size_t number = 0;
+    const char* const last = value.data() + value.size();
+    const auto [end, code] = std::from_chars(value.data(), last, number);
+    return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
+  };
+}
 
 Check check_given(std::string message) {
   return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
@@ -97,7 +134,7 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   CLI::App program("Normals of triangle meshes that deform: exact at every instant.", "chronormal");
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   program.get_formatter()->label("Subcommands", "Commands");
-  program.set_version_flag("--version", fmt::format("chronormal {}", kVersion));
+  program.set_version_flag("--version", formatted("chronormal {}", kVersion));
   program.require_subcommand(1);
   program.footer("chronormal COMMAND --help explains a command.");
   for (const Command& command : commands) add_command(command, program);
@@ -107,13 +144,15 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::Success& request) {  // --help and --version
-    return program.exit(request);
+    std::ostringstream text;
+    (void)program.exit(request, text, text);
+    const Status printed = print(text.str());
+    return printed ? kExitDone : report("", printed.error());
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
-    const std::string name = parsed.empty() ? "" : " " + parsed.front()->get_name();
-    const std::string message =
-        parsed.empty() ? fmt::format("there is no option '{}' before a command", first) : error.what();
-    fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", name, message, name);
+    const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
+    say(name, parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what());
+    say_where_help_is(name);
     return kExitUsage;
   }
   const auto chosen = std::find_if(commands.begin(), commands.end(),

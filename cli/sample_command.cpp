@@ -1,5 +1,3 @@
-#include <fmt/core.h>
-
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -10,6 +8,9 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/command.h"
+#include "cli/format.h"
+#include "cli/print.h"
+#include "cli/table.h"
 
 namespace chronormal::cli {
 namespace {
@@ -31,7 +32,7 @@ struct Options {
 std::string footer() {
   std::string text = "Weightings:\n";
   for (const WeightingInfo& weighting : kWeightings)
-    text += fmt::format("  {:<12}{}\n", weighting.name, weighting.summary);
+    text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
   return text +
          "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
          "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
@@ -63,13 +64,13 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    return misuse(option, fmt::format("'{}' is not a number", word));
+    return misuse(option, formatted("'{}' is not a number", word));
   return value;
 }
 
 // The times of A:STEP:B, of which the last is B itself if the steps lead there.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
-  const auto wrong = [&](const char* why) { return misuse("--times", fmt::format("'{}': {}", text, why)); };
+  const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
   if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
   double numbers[3] = {};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -189,7 +190,7 @@ std::string range_of(const Motion& motion) {
     first = std::fmin(first, keyframe.time);
     last = std::fmax(last, keyframe.time);
   }
-  return fmt::format("{} to {}", first, last);
+  return formatted("{} to {}", first, last);
 }
 
 // Whether the moments go with the motion. Those of a mesh that stands still become none.
@@ -205,7 +206,7 @@ Status fit_moments(const Motion& motion, Moments& moments) {
   }
   if (motion.kind == MotionKind::kTargets) {
     const std::size_t count = motion.segments.size();
-    const std::string how = fmt::format("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
+    const std::string how = formatted("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
     if (!moments.times.empty()) return misuse("--times", "blend shapes have no times: " + how);
     if (moments.weights.empty()) return misuse("--weights", "the input is blend shapes: " + how);
     return Success{};
@@ -239,6 +240,20 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
+// Says how much was asked for, where that is much: it is not refused.
+void announce(const Topology& topology, const Request& request) {
+  constexpr double kMuch = 1e9;
+  const ElementKind kind = request.sample.elements.kind;
+  const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()
+                               : kind == ElementKind::kCorners ? topology.corner_count()
+                                                               : topology.vertex_count();
+  const double bytes =
+      3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(request.moments.count());
+  if (bytes >= kMuch)
+    say("sample", formatted("the normals of {} times {} elements are {:.1f} GB", grouped(request.moments.count()),
+                            grouped(elements), bytes / 1e9));
+}
+
 Result<int> run(const Options& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
@@ -253,6 +268,7 @@ Result<int> run(const Options& options) {
   if (!read) return read.error();
   const Motion& motion = *read.value();
   if (const Status status = fit_moments(motion, request.moments); !status) return status.error();
+  if (!options.common.quiet) announce(motion.topology, request);
   if (!options.hard_edges.empty()) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
@@ -262,8 +278,8 @@ Result<int> run(const Options& options) {
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)
-    fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
-               written.value().zeros, written.value().normals, options.elements.kind());
+    say("sample", formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one",
+                            written.value().zeros, written.value().normals, options.elements.kind()));
   return kExitDone;
 }
 

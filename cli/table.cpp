@@ -1,13 +1,12 @@
 #include "cli/table.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "cli/format.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -51,7 +50,7 @@ std::string Table::text() const {
 }
 
 std::string grouped(std::size_t value) {
-  std::string digits = fmt::format("{}", value);
+  std::string digits = formatted("{}", value);
   for (std::size_t i = digits.size(); i > 3;) {
     i -= 3;
     digits.insert(i, 1, ',');
@@ -60,7 +59,7 @@ std::string grouped(std::size_t value) {
 }
 
 std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
+  return formatted("{} {}", grouped(count), count == 1 ? singular : plural);
 }
 
 std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most) {
@@ -75,16 +74,16 @@ std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, s
 
 std::string four_decimals(double value) {
   if (value == 0) return "0";
-  return value < 5e-4 ? fmt::format("{:.1e}", value) : fmt::format("{:.4f}", value);
+  return value < 5e-4 ? formatted("{:.1e}", value) : formatted("{:.4f}", value);
 }
 
 std::string grouped_sum(double value) {
   if (value == 0) return "0";
-  if (value < 0.1) return fmt::format("{:.1e}", value);
+  if (value < 0.1) return formatted("{:.1e}", value);
   const double tenths = std::round(value * 10);
-  if (!(tenths < 9e15)) return fmt::format("{:.4e}", value);
+  if (!(tenths < 9e15)) return formatted("{:.4e}", value);
   const auto whole = static_cast<std::size_t>(tenths);
-  return fmt::format("{}.{}", grouped(whole / 10), whole % 10);
+  return formatted("{}.{}", grouped(whole / 10), whole % 10);
 }
 
 }  // namespace chronormal::cli

@@ -1,9 +1,10 @@
 #include "cli/text.h"
 
-#include <fmt/core.h>
-
+#include <algorithm>
 #include <cstdint>
 #include <vector>
+
+#include "cli/format.h"
 
 namespace chronormal::cli {
 namespace {
@@ -56,7 +57,7 @@ std::string printable(std::string_view text, std::size_t most) {
     const bool keep = length > 0 && is_safe(character);
     std::string piece(keep ? text.substr(at, length) : "");
     for (std::size_t i = 0; !keep && i < (length == 0 ? 1 : length); ++i)
-      piece += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[at + i]));
+      piece += formatted("\\x{:02x}", static_cast<unsigned char>(text[at + i]));
     pieces.push_back(std::move(piece));
     at += length == 0 ? 1 : length;
   }
@@ -71,6 +72,22 @@ std::string printable(std::string_view text, std::size_t most) {
   }
   std::string result;
   for (const std::string& piece : pieces) result += piece;
+  return result;
+}
+
+std::string escaped_for_json(std::string_view document) {
+  std::string result;
+  for (std::size_t at = 0; at < document.size();) {
+    std::uint32_t character = 0;
+    const std::size_t length = length_of_character(document.substr(at), character);
+    if (length > 1 && !is_safe(character))
+      result += formatted("\\u{:04x}", character);
+    else if (length == 1 && character == 0x7F)
+      result += "\\u007f";
+    else
+      result += document.substr(at, std::max<std::size_t>(length, 1));
+    at += std::max<std::size_t>(length, 1);
+  }
   return result;
 }
 

@@ -88,6 +88,37 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
   EXPECT_EQ(json_of("hinge.glb")["passed"], Json());
 }
 
+TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {
+  test::ShadedMesh mesh = test::hinge();
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1};
+  folder_.write("zero.glb", mesh.file().glb());
+  mesh.targets[0].normals.assign(12, 3e38F);
+  mesh.targets.push_back({std::vector<float>(12, 0), std::vector<float>(12, -3e38F), {}});
+  test::GltfBuilder huge = mesh.file();
+  huge.add_track(huge.add_animation("huge"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 100, 100});
+  folder_.write("nan.glb", huge.glb());
+  for (const std::string file : {"zero.glb", "nan.glb --animation huge"}) {
+    for (const std::string tolerance : {"1", "180", "1000"}) {
+      const ProcessResult result = run(file + " --tolerance " + tolerance);
+      EXPECT_EQ(result.exit_code, 4);
+      expect_words(result.out,
+                   {"worst 180.00 degrees, ", " cannot be lit, which counts as 180 degrees: the first is at vertex ",
+                    " cannot be lit: what is shown is zero, infinite or no number (vertex "});
+      expect_words(result.err, {" cannot be lit, which no tolerance allows: vertex "});
+    }
+    const Json json = Json::parse(run(file + " --tolerance 180 --json").out);
+    EXPECT_EQ(json["passed"], false);
+    EXPECT_GT(json["unlit"], 0);
+    EXPECT_EQ(json["worst_degrees"], 180.0);
+    EXPECT_TRUE(json["mean_degrees"].is_number());
+    EXPECT_EQ(json["subjects"][0]["unlit"], json["unlit"]);
+    EXPECT_TRUE(json["subjects"][0]["unlit_at"].contains("vertex"));
+    EXPECT_EQ(json["findings"][0]["kind"], "unlit");
+    EXPECT_EQ(json["findings"][0]["fault"], true);
+  }
+  EXPECT_EQ(json_of("hinge.glb")["subjects"][0]["unlit_at"], Json());
+}
+
 TEST_F(AuditCli, json_is_one_object_with_schema_1) {
   const Json json = json_of("hinge.glb --samples 2");
   EXPECT_EQ(json["command"], "audit");
@@ -166,6 +197,27 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
   EXPECT_EQ(json_of("many.glb")["subjects"].size(), 20U);
 }
 
+TEST_F(AuditCli, long_tables_show_the_worst) {
+  // 20 targets of which every third folds the hinge by its whole angle, and the others by a tenth of that.
+  test::ShadedMesh mesh = test::hinge();
+  const auto slight = [&] {
+    test::ShadedMesh::Target target = mesh.targets[0];
+    for (float& c : target.positions) c *= 0.1F;
+    return target;
+  }();
+  const auto whole = mesh.targets[0];
+  mesh.targets.clear();
+  for (int i = 0; i < 20; ++i) mesh.targets.push_back(i % 3 == 0 ? whole : slight);
+  folder_.write("many.glb", mesh.file().glb());
+  const std::string text = text_of("many.glb --samples 2");
+  const std::string table = text.substr(0, text.find("... and 4 more"));
+  for (int i = 0; i < 20; ++i) {
+    // The first of equals are shown: all 7 that are off by 90 degrees, and 9 of the rest.
+    const bool is_shown = i % 3 == 0 || i < 14;
+    EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
+  }
+}
+
 TEST_F(AuditCli, errors_say_what_is_wrong) {
   expect_error("", 2, "nothing to read");
   expect_error("missing.glb", 1, "missing.glb");
@@ -174,6 +226,7 @@ TEST_F(AuditCli, errors_say_what_is_wrong) {
   expect_error("a.obj b.obj --rule gltf", 2, "the rule gltf");
   expect_error("hinge.glb --weighting mass", 2, "--weighting");
   expect_error("hinge.glb --samples 1", 2, "--samples");
+  expect_error("hinge.glb --samples 1000002", 2, "samples");
   expect_error("hinge.glb --tolerance -1", 2, "--tolerance");
   expect_error("hinge.glb --tolerance nan", 2, "--tolerance");
   expect_error("hinge.glb --animation walk", 2, "walk");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -95,11 +96,12 @@ TEST_F(BakeCli, json_is_one_object_with_schema_1) {
   EXPECT_EQ(json["output"], "out.glb");
   EXPECT_TRUE(json["changed"]);
   EXPECT_EQ(json["meshes"][0]["encoding"], "exact");
-  EXPECT_EQ(json["meshes"][0]["extra_targets"][1], Json({{"target", 3}, {"factors", {0, 1}}}));
+  EXPECT_EQ(json["meshes"][0]["extra_targets"][1], R"({"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]})"_json);
   EXPECT_EQ(json["added_targets"], 3);
   EXPECT_GT(json["added_bytes"], 0);
   EXPECT_GT(json["audit"]["worst_degrees_before"], 5);
   EXPECT_LT(json["audit"]["worst_degrees_after"], 0.05);
+  EXPECT_EQ(json["audit"]["worse"], false);
   bool names_normal = false;
   for (const Json& pointer : json["pointers"]) names_normal |= pointer == "/meshes/0/primitives/0/targets/0/NORMAL";
   EXPECT_TRUE(names_normal) << json["pointers"];
@@ -142,19 +144,74 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
-TEST_F(BakeCli, without_animations_the_default_is_endpoint_and_exact_writes_formulas) {
+TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
+  for (const char* const how : {"exact", "endpoint"}) {
+    const ProcessResult text = run(std::string("moving.glb -o out.glb --force --encode ") + how);
+    const Json json = Json::parse(run(std::string("moving.glb -o out.glb --force --json --encode ") + how).out);
+    const auto audited = [&](const std::string& name) {
+      return Json::parse(run_shell(std::string(kProgram) + " audit --json " + name, folder_.path()).out);
+    };
+    const Json before = audited("moving.glb"), after = audited("out.glb");
+    for (const Json& audit : {json["audit"], json["meshes"][0]["audit"]}) {
+      EXPECT_EQ(audit["worst_degrees_before"], before["worst_degrees"]);
+      EXPECT_EQ(audit["worst_degrees_after"], after["worst_degrees"]);
+      EXPECT_EQ(audit["mean_degrees_after"], after["mean_degrees"]);
+      EXPECT_EQ(audit["unlit_after"], after["unlit"]);
+    }
+    char worst[32];
+    std::snprintf(worst, sizeof worst, "  %.4f  ", before["worst_degrees"].get<double>());
+    expect_words(text.out, {"before     after\n", "degrees  at worst\n", worst});
+  }
+  // Without an audit the table says by another name what the bake itself knows.
+  expect_words(run("moving.glb -o out.glb --force --no-audit --encode endpoint").out, {"    fit\n"});
+}
+
+TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
+  // Deltas times the squares of weights are beyond float32. Where nobody asks for them they are not written.
+  test::GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{3e38F, 3e38F});
+  folder_.write("huge.glb", builder.glb());
+  const ProcessResult result = run("huge.glb -o out.glb --json --encode exact");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json audit = Json::parse(result.out)["audit"];
+  EXPECT_GT(audit["worst_degrees_after"], audit["worst_degrees_before"]);
+  EXPECT_EQ(audit["worse"], true);
+  expect_words(result.err, {"the result is worse than the input: by audit worst "});
+  const ProcessResult usual = run("huge.glb -o other.glb");
+  expect_words(usual.out, {"hills  endpoint"});
+  expect_words(usual.err, {"float32 cannot hold their products"});
+  EXPECT_EQ(run("moving.glb -o fine.glb").err.find("worse"), std::string::npos);
+}
+
+TEST_F(BakeCli, what_drives_extra_targets_is_in_the_file_and_beside_it_where_that_is_asked_for) {
   const ProcessResult endpoint = run("still.glb -o out.glb");
   EXPECT_EQ(endpoint.exit_code, 0);
   expect_words(endpoint.out, {"hills  endpoint"});
   expect_words(endpoint.err, {"no animation drives"});
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.drivers.json"));
-  const ProcessResult exact = run("still.glb -o face.exact.glb --encode exact");
+  const std::size_t entries = folder_.entry_count();
+  const ProcessResult exact = run("still.glb -o face.glb --encode exact");
   EXPECT_EQ(exact.exit_code, 0) << exact.err;
-  expect_words(exact.out, {"face.exact.drivers.json"});
-  EXPECT_EQ(Json::parse(bytes_of("face.exact.drivers.json"))["meshes"][0]["extras"][0]["formula"], "w0*w0");
-  // The map is not overwritten either.
-  std::filesystem::remove(folder_ / "face.exact.glb");
-  expect_error("still.glb -o face.exact.glb --encode exact", 1, "face.exact.drivers.json");
+  EXPECT_EQ(folder_.entry_count(), entries + 1) << "nothing but the file";
+  const Json mark = test::GltfPlayer(bytes_of("face.glb")).json["meshes"][0]["extras"]["chronormal"];
+  EXPECT_EQ(mark["extras"][0], R"({"target": 1, "linear": [], "quadratic": [[0, 0, 1.0]]})"_json);
+
+  const ProcessResult both = run("still.glb -o other.glb --encode exact --drivers drivers.json");
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  expect_words(both.out, {"what drives the extra targets is in drivers.json too\n"});
+  EXPECT_EQ(Json::parse(bytes_of("drivers.json"))["meshes"][0]["chronormal"], mark);
+  EXPECT_TRUE(bytes_of("other.glb") == bytes_of("face.glb"));
+  // It is not overwritten either; and what was baked before still says what drives it.
+  expect_error("still.glb -o third.glb --encode exact --drivers drivers.json", 1, "drivers.json");
+  ASSERT_EQ(run("face.glb -o copy.glb --drivers again.json").exit_code, 0);
+  EXPECT_EQ(bytes_of("again.json"), bytes_of("drivers.json"));
+}
+
+TEST_F(BakeCli, the_input_stays_where_the_drivers_cannot_be_written) {
+  const std::string before = bytes_of("still.glb");
+  expect_error("still.glb -o still.glb --force --encode exact --drivers /dev/full", 1, "/dev/full");
+  EXPECT_TRUE(bytes_of("still.glb") == before);
+  ASSERT_EQ(run("still.glb -o still.glb --force --encode exact --drivers drivers.json").exit_code, 0);
+  EXPECT_EQ(Json::parse(bytes_of("drivers.json"))["meshes"].size(), 1U);
 }
 
 TEST_F(BakeCli, standard_streams_work) {
@@ -186,6 +243,9 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb -o out.glb --animation move", 2, "--animation");
   expect_error("moving.glb -o out.obj", 2, "out.obj");
   expect_error("moving.glb -o - --json", 2, "--json");
+  expect_error("moving.glb -o out.glb --drivers -", 2, "--drivers");
+  expect_error("moving.glb -o out.glb --drivers out.glb", 2, "--drivers");
+  expect_error("f_0.obj f_1.obj -o out.glb --drivers d.json", 2, "--drivers");
   expect_error("moving.glb", 2, "--output");
   expect_error("moving.glb -o out.glb --max-bytes 100", 3, "at most 100");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");

@@ -108,9 +108,20 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("inspect - --fps 0"), 2, {"--fps"});
   expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --samples x"), 2, {"--samples"});
+  expect_error(run("compare a.obj b.obj --samples 1000001"), 2, {"--samples", "1,000,000"});
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
+  // An empty text, or one that stands for no number, is none, and not an option that was not given.
+  for (const char* const option :
+       {"audit a.obj --tolerance", "audit a.obj --samples", "audit a.obj --fps", "compare a.obj b.obj --samples",
+        "compare a.obj b.obj --blend", "compare a.obj b.obj --crease", "sample a.obj --crease",
+        "bake a.obj -o o.glb --max-bytes", "bake a.obj -o o.glb --tolerance"}) {
+    for (const char* const value : {"''", "x", "nan", "inf", "1e999"}) {
+      const std::string name = std::string(option).substr(std::string(option).rfind("--"));
+      expect_error(run(std::string(option) + ' ' + value), 2, {name, "is not a number"});
+    }
+  }
   expect_error(run("compare a.obj b.obj -o ''"), 2, {"name of the output"});
   expect_error(run("compare --bogus"), 2, {"--bogus", "compare --help"});
   expect_error(run("--bogus"), 2, {"no option '--bogus'"});

@@ -10,6 +10,7 @@ import { Color4 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
+import { driveBabylon } from '../../examples/drive.mjs';
 
 const FRAMES_PER_SECOND = 60;  // what the loader multiplies seconds by
 const SHADED_NORMALS = 5;      // PBRMaterial.debugMode
@@ -41,6 +42,14 @@ export function play(model, animation, time) {
   group.pause();
   group.goToFrame(time * FRAMES_PER_SECOND);
 }
+
+// Sets the weights of the first targets of every mesh; drive() sets those of extra targets.
+export function setWeights({ scene }, weights) {
+  for (const { morphTargetManager } of scene.meshes)
+    if (morphTargetManager)
+      weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
+}
+export const drive = ({ scene }) => driveBabylon(scene);
 
 // World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
 export async function drawNormals({ scene }, { eye, at, degrees, near, far }, size) {

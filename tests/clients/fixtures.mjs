@@ -195,6 +195,14 @@ export const fixtures = {
     }),
 };
 
+// A mesh of one or two primitives with two targets and no animation.
+export function writeStill(path, { parts, weights = null }) {
+  const whole = primitiveOf(grid, straight, [twisted(1.2), waved]);
+  const size = whole.indices.length / parts;
+  const primitives = Array.from({ length: parts }, (_, p) => part(whole, p * size, (p + 1) * size));
+  return writeFile(path, { primitives, weights });
+}
+
 // The keyframes of a sequence, as the text of OBJ files.
 export function sequenceFrames() {
   return [straight, twisted(1.6), waved].map((place) => {

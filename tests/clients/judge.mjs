@@ -1,4 +1,5 @@
 // Holds what a file makes a host show, at many times, against the exact normals of the file that it was baked from.
+import { drive } from '../../examples/drive.mjs';
 import { ExactNormals, angle, exactPositions, length } from './exact.mjs';
 import { nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 
@@ -87,15 +88,14 @@ function stands({ times, values, interpolation }) {
 }
 
 // Meshes that no animation moves, as a host shows them that drives every target by itself, and all of them together.
-// Each of `drivers` is {mesh, extras: [{target, factors}]}: extra targets, and the weights whose product is theirs.
-function compareUndriven(source, shown, drivers) {
+// What drives extra targets stands in the mesh.
+function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));
   const driven = new Set(moving.map(({ node }) => source.nodes[node].mesh));
   const result = nothing();
   source.meshes.forEach((mesh, m) => {
     if (driven.has(m) || !moves(mesh)) return;
     const count = mesh.weights.length;
-    const extras = drivers.find((driver) => driver.mesh === m)?.extras ?? [];
     const steps = Array.from({ length: 11 }, (_, i) => i / 10);
     const onlyOne = (w, k) => mesh.weights.map((_, i) => (i === k ? w : 0));
     const alone = steps.flatMap((w) => Array.from({ length: count }, (_, k) => onlyOne(w, k)));
@@ -103,7 +103,7 @@ function compareUndriven(source, shown, drivers) {
     const states = [...alone, ...together].map((weights) => {
       const shownWeights = new Float32Array(shown.meshes[m].weights.length);
       shownWeights.set(weights);
-      for (const { target, factors } of extras) shownWeights[target] = factors.reduce((w, i) => w * weights[i], 1);
+      if (shown.meshes[m].extras.chronormal) drive(shown.meshes[m].extras.chronormal, shownWeights);
       return { name: `mesh ${m} at weights ${weights}`, weights, shownWeights };
     });
     addMesh(result, mesh, shown.meshes[m], states);
@@ -113,11 +113,11 @@ function compareUndriven(source, shown, drivers) {
 
 // One result for each animation that has weights, and one for the meshes that none moves. An animation whose weights
 // never change is looked at once.
-export function compareFiles(source, shown, drivers = [], count = 101) {
+export function compareFiles(source, shown, count = 101) {
   const results = source.animations.flatMap((animation, a) => {
     if (animation.tracks.length === 0) return [];
     const times = animation.tracks.every(stands) ? [animation.start] : timesOf(animation, count);
     return [compareAnimation(source, shown, a, times)];
   });
-  return [...results, compareUndriven(source, shown, drivers)];
+  return [...results, compareUndriven(source, shown)];
 }

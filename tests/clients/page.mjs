@@ -32,6 +32,24 @@ window.compareInClient = async (client, files, animation, moments, size) => {
   return results;
 };
 
+// What the client draws of a file when a program has set the weights of its own targets, and when it has driven the extra
+// ones too, against the still file of the moment.
+window.compareDriven = async (client, file, weights, { truth, view }, size) => {
+  const { play, drawNormals, setWeights, drive } = clients[client];
+  const [still, model] = [await loaded(client, truth), await loaded(client, file)];
+  play(still, null, 0);
+  play(model, null, 0);
+  const expected = await drawNormals(still, view, size);
+  const results = [];
+  for (const step of [() => setWeights(model, weights), () => drive(model)]) {
+    step();
+    results.push(compareNormals(await drawNormals(model, view, size), expected, size));
+  }
+  still.scene.dispose?.();
+  model.scene.dispose?.();
+  return results;
+};
+
 window.drawPicture = (items, ...others) =>
   drawPicture(items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
 

@@ -39,7 +39,7 @@ function readPrimitive(primitive) {
   };
 }
 
-// {meshes: [{name, primitives, weights}], nodes: [{mesh, weights}], animations: [{name, start, end, tracks}]}.
+// {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end, tracks}]}.
 // Nodes are those with a mesh, in the order of the file; a track names its node by the index in that list.
 export function describe(document) {
   const root = document.getRoot();
@@ -50,7 +50,7 @@ export function describe(document) {
       const primitives = mesh.listPrimitives().map(readPrimitive);
       const count = primitives[0].targets.length;
       const weights = Float32Array.from({ length: count }, (_, k) => mesh.getWeights()[k] ?? 0);
-      return { name: mesh.getName(), primitives, weights };
+      return { name: mesh.getName(), primitives, weights, extras: mesh.getExtras() };
     }),
     nodes: nodes.map((node) => ({
       name: node.getName(),

@@ -1,6 +1,7 @@
 // three.js as a client, in the page: its loader, its animation mixer, its normal material.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { driveThree } from '../../examples/drive.mjs';
 
 let renderer;
 
@@ -29,6 +30,12 @@ export function play(model, animation, time) {
   action.play();
   model.mixer.setTime(time);
 }
+
+// Sets the weights of the first targets of every mesh; drive() sets those of extra targets.
+export function setWeights({ scene }, weights) {
+  scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
+}
+export const drive = ({ scene }) => driveThree(scene);
 
 export function cameraOf({ eye, at, degrees, near, far }, size) {
   const camera = new THREE.PerspectiveCamera(degrees, size.width / size.height, near, far);

@@ -2,23 +2,30 @@
 //
 // A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
 // command whose output has measured times in it says --no-times, or shows no output. Output "?" is to be filled in. A
-// block ```cpp under a line
-// <!-- examples/NAME.cpp --> is that file, which examples/ builds and the tests run.
+// block ```cpp or ```js under a line
+// <!-- examples/NAME.cpp --> is that file, which the tests run.
 //
 // With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "tests/support/cache_bytes.h"
+#include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::docs_test {
@@ -176,24 +183,108 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   return name;
 });
 
+// Files of the names that README speaks of, all small.
+void write_files_of_readme(const test::TemporaryFolder& folder) {
+  const std::string faces = "f 1 2 3\nf 1 3 4\n";
+  const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
+  const std::string moved = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0.5\n" + faces;
+  for (const char* const name : {"frames", "walk", "run", "targets"}) fs::create_directory(folder / name);
+  for (const char* const name : {"frames/1.obj", "frames/3.obj", "walk/1.obj", "run/1.obj", "start.obj", "face.obj"})
+    folder.write(name, still);
+  for (const char* const name : {"frames/2.obj", "walk/2.obj", "run/2.obj", "end.obj", "targets/smile.obj"})
+    folder.write(name, moved);
+  folder.write("body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("walk.pc2", test::small_pc2(0, 1));
+  test::GltfBuilder face = test::random_sheet(1, 5, 2, 0.2).file();
+  face.add_track<float>(face.add_animation("smile"), 0, {0, 1}, {1, 0, 0, 1});
+  folder.write("face.glb", face.glb());
+}
+
+// Those that stand alone, indented; what they print depends on whose files they are given.
+TEST(Documents, every_indented_command_of_README_runs) {
+  const test::TemporaryFolder folder;
+  write_files_of_readme(folder);
+  std::size_t commands = 0;
+  for (const std::string& line : lines_of(read(kRoot / "README.md"))) {
+    if (!line.starts_with("    ./run ")) continue;
+    ++commands;
+    const std::string command = line.substr(4, line.find(" # ") - 4);
+    const ProcessResult result = run_documented(command, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << command << "\n" << result.out;
+  }
+  EXPECT_GE(commands, 14u);
+}
+
+// The rows of docs/blend.md on real faces, as the commands above them print them now.
+class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
+
+TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
+  const char* const data = std::getenv("CHRONORMAL_DATA");
+  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+  const auto& [name, files, mesh] = GetParam();
+  const ProcessResult result = run_shell(std::string(kProgram) + " compare " + files + " --blend 1000 --json", data);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Lines expected;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  for (const auto& one : json["meshes"]) {
+    if (one.contains("mesh") && one["mesh"] != mesh) continue;
+    for (const auto& errors : one["errors"]) {
+      std::map<std::string, std::string> cell = {{"file", "-"}};
+      for (const auto& deltas : errors["deltas"]) {
+        char text[64];
+        const bool exact = deltas["deltas"] == "exact";
+        std::snprintf(text, sizeof text, exact ? "%.0e / %.0e" : "%.2f / %.1f", deltas["mean_degrees"].get<double>(),
+                      deltas["max_degrees"].get<double>());
+        cell[deltas["deltas"]] = text;
+      }
+      expected.push_back("|" + std::to_string(errors["active"].get<int>()) + "|" + cell["file"] + "|" +
+                         cell["end point"] + "|" + cell["least squares"] + "|" + cell["exact"] + "|");
+    }
+  }
+  // The rows of the page without blanks at the rims of cells; a name stands in the first of its rows only.
+  Lines shown;
+  std::string last;
+  for (const std::string& line : lines_of(read(kRoot / "docs/blend.md"))) {
+    if (!line.starts_with("| ")) continue;
+    std::string row = line;
+    while (row.find("  ") != std::string::npos) row = replaced(row, "  ", " ");
+    row = replaced(replaced(row, "| ", "|"), " |", "|");
+    const std::size_t end = row.find('|', 1);
+    if (end > 1) last = row.substr(1, end - 1);
+    const std::size_t digits = row.find_first_not_of("0123456789", end + 1);
+    if (last == name && digits != end + 1 && std::count(row.begin(), row.end(), '/') >= 3)
+      shown.push_back(row.substr(end));
+  }
+  EXPECT_EQ(shown, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Documents, RealFaces,
+    testing::Values(std::tuple{"face", "--base face_mpfb2/base.obj face_mpfb2/targets/", 0},
+                    std::tuple{"RobotExpressive", "gltf/RobotExpressive/RobotExpressive.glb", 5},
+                    std::tuple{"MorphStressTest", "gltf/MorphStressTest/glTF/MorphStressTest.gltf", 0},
+                    std::tuple{"AnimatedMorphSphere", "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf", 0}),
+    [](const auto& tested) { return std::string(std::get<0>(tested.param)); });
+
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
-  int quotes = 0;
+  int quotes_of_cpp = 0, quotes_of_js = 0;
   for (const fs::path& path : documents()) {
     const Lines lines = lines_of(read(path));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i] != "```cpp") continue;
+      if (lines[i] != "```cpp" && lines[i] != "```js") continue;
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
       EXPECT_TRUE(example.starts_with("examples/"))
-          << path << ":" << i + 1 << ": code without <!-- examples/NAME.cpp --> above it";
-      ++quotes;
+          << path << ":" << i + 1 << ": code without <!-- examples/NAME --> above it";
+      ++(lines[i] == "```cpp" ? quotes_of_cpp : quotes_of_js);
       Lines block;
       while (++i < lines.size() && lines[i] != "```") block.push_back(lines[i]);
       EXPECT_EQ(joined(block), read(kRoot / example)) << path;
     }
   }
-  EXPECT_GT(quotes, 0);
+  EXPECT_GT(quotes_of_cpp, 0);
+  EXPECT_GT(quotes_of_js, 0);
 }
 
 TEST(Documents, links_to_files_lead_somewhere) {

@@ -53,6 +53,11 @@ template <class S>
   return std::fmax(std::fabs(a.x), std::fmax(std::fabs(a.y), std::fabs(a.z)));
 }
 
+/// Whether no component is infinite or NaN.
+[[nodiscard]] inline bool is_finite(const Vec3d& a) noexcept {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
 /// Length of a, without overflow or underflow in between.
 [[nodiscard]] inline double length(const Vec3d& a) noexcept {
   const double scale = max_abs(a);

@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/normals/transform.h"
 
 namespace chronormal {
@@ -57,14 +58,30 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
-/// A target that a bake added: it moves no vertex, and its weight is the product of two others.
+/// A target that a bake added. It moves no vertex, and its weight follows from those of the mesh's own targets
+/// (docs/extras.md):
+///
+///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
-  /// As a factor: 1 minus the sum of all weights of targets that are no extra ones, the weight of the base as a
-  /// keyframe.
-  static constexpr std::size_t kBase = static_cast<std::size_t>(-1);
+  struct LinearTerm {
+    std::size_t i = 0;  ///< a target that is no extra one
+    double a = 1;
+    friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
+  };
+  struct QuadraticTerm {
+    std::size_t i = 0, j = 0;  ///< targets that are no extra ones
+    double q = 1;
+    friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
+  };
 
-  std::size_t target = 0;    ///< index among the targets of the mesh
-  std::size_t i = 0, j = 0;  ///< its weight is w_i w_j: indices of targets that are no extra ones, or kBase
+  std::size_t target = 0;  ///< index among the targets of the mesh
+  std::vector<LinearTerm> linear;
+  std::vector<QuadraticTerm> quadratic;
+
+  /// The weight, where those of the mesh's own targets are given; weights has one for each target.
+  [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
+  /// Whether the weight is other than zero where w_i alone is.
+  [[nodiscard]] bool follows(std::size_t i) const noexcept;
 
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
@@ -83,8 +100,9 @@ inline constexpr std::array<BakeEncodingName, 2> kBakeEncodings = {
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
 
-/// What a bake leaves in extras.chronormal of a mesh, for instance
-///     {"version": 1, "encode": "exact", "sequence": false, "extras": [{"target": 2, "factors": [0, "base"]}]}
+/// What a bake leaves in extras.chronormal of a mesh (docs/extras.md), for instance
+///     {"version": 2, "encode": "exact", "sequence": false,
+///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
@@ -155,6 +173,7 @@ struct GltfOptions {
   bool allow_external = false;  ///< read buffers from files outside the folder of the asset
   /// The most memory that the arrays of one primitive may take: a small file can ask for much.
   std::size_t most_bytes = std::size_t{4} << 30;
+  std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
   /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
   FileResolver resolve = {};
 };
@@ -192,6 +211,8 @@ class GltfDocument {
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
+  /// How much the document may ask for, by its size and that of the files that hold its buffers.
+  [[nodiscard]] Expansion expansion() const;
 
   /// The part of a geometry that is wanted beside faces and positions.
   struct Wanted {

@@ -14,8 +14,11 @@
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
 ///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says.
 /// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
-///            Not judged but counted: pairs whose n(t) is below 1e-4 of the largest control normal of its element over
-///            the motion, so that its direction means nothing, and pairs for which the sum of stored normals is zero.
+/// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a pair is off by 180 degrees, the most
+///            that there is, and is counted.
+/// No normal  pairs whose n(t) is below 1e-4 of the largest control normal of its element over the motion have no right
+///            direction, so that no angle is measured there and they are counted apart. What they show must be finite;
+///            and it must not be zero where the faces around have an area, which is drawn.
 /// Units      degrees; weights; seconds.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
@@ -59,6 +62,8 @@ inline constexpr double kAuditFault = 1;  // degrees
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
+inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
+
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals
@@ -83,14 +88,18 @@ struct MotionError {
   double worst = 0;
   AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
-  std::size_t no_normal = 0;  ///< not judged: n(t) too small
-  std::size_t no_shown = 0;   ///< not judged: the stored normals add up to zero
+  std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
+  std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
+  AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
 
   [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
   [[nodiscard]] double rms() const noexcept {
     return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
   }
+  /// Whether every pair can be lit and none is off by more than this.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
   void add(double degrees, const AuditPlace& place) noexcept;
+  void add_unlit(const AuditPlace& place) noexcept;
   void add(const MotionError& other) noexcept;
 };
 
@@ -123,6 +132,7 @@ struct AuthoredOffset {
 
 struct AuditFinding {
   enum class Kind {
+    kUnlit,           ///< what is shown somewhere is zero, infinite or NaN
     kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
     kWrongBetween,    ///< right there, and off on the way
@@ -135,7 +145,7 @@ struct AuditFinding {
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation;
-  std::size_t count = 0;               ///< primitives, targets or nodes, as the kind has it
+  std::size_t count = 0;               ///< pairs, primitives, targets or nodes, as the kind has it
   double degrees = 0;                  ///< the worst
   std::optional<AuditPlace> worst_at;  ///< where there is one
 
@@ -156,8 +166,15 @@ struct Audit {
   std::vector<AuditFinding> findings;  ///< faults first
 };
 
+/// The errors of the subjects of one mesh, added up; none where it has no subject.
+[[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
+
+/// Whether what an audit found after a change is worse than what it found before: more pairs that cannot be lit, or a
+/// worst or mean error that grew by more than what the rounding of float32 may turn.
+[[nodiscard]] bool is_worse(const MotionError& after, const MotionError& before) noexcept;
+
 /// Audits the targets of all meshes, each alone, and all weight tracks. Extra targets of a bake are no subjects: with
-/// each target alone they get the products that they stand for, and a track gives them what the file says. A file in
+/// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
 /// animation that is not there, and fewer than 2 samples.

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/motion/motion.h"
@@ -25,16 +26,19 @@
 namespace chronormal {
 
 struct BakeOptions {
-  std::optional<BakeEncoding> encoding = {};  ///< nothing: exact where animations drive the weights, else endpoint
-  Weighting weighting = Weighting::kArea;     ///< others than area are fitted, with a stated error
-  bool smooth = false;                        ///< primitives without NORMAL get normals, instead of staying flat
-  double crease_angle = 180;                  ///< degrees: hard edges of those, and of sequences
+  /// Nothing: exact where animations drive the weights, and these are not so large that float32 cannot hold their
+  /// products; else endpoint.
+  std::optional<BakeEncoding> encoding = {};
+  Weighting weighting = Weighting::kArea;  ///< others than area are fitted, with a stated error
+  bool smooth = false;                     ///< primitives without NORMAL get normals, instead of staying flat
+  double crease_angle = 180;               ///< degrees: hard edges of those, and of sequences
   /// Of sequences: normals of keyframe 0, one for each corner, which say which edges are hard in place of the crease
   /// angle; or empty.
   VectorView<const float> normal_of_corner = {};
   bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
-  std::optional<std::size_t> most_bytes = {};  ///< refuse to add more than this
+  std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
+  Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
   /// Degrees: pairs whose lack, all together, turns no normal by more are left out; cubic splines are cut to this.
   double tolerance = 0.001;
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -46,18 +50,22 @@ struct BakedMesh {
   std::string name;
   BakeEncoding encoding = BakeEncoding::kExact;
   std::size_t elements = 0;             ///< different normals
-  std::vector<GltfExtraTarget> extras;  ///< targets that were added
+  std::vector<GltfExtraTarget> extras;  ///< targets that were added, now or by the bake before
   std::size_t bytes = 0;                ///< of new arrays, without those that an earlier mesh has too, and tracks
   std::size_t undriven = 0;             ///< of exact: moving targets that no animation drives, baked as endpoint
   std::size_t left_flat = 0;            ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
-  std::size_t without_base = 0;    ///< vertices whose faces have no area in the base: see docs/cli.md
+  std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
+  std::size_t stilled = 0;   ///< targets that moved normals and no position: their deltas are zero now
+  std::size_t without_base = 0;  ///< vertices whose faces have no area in the base: see docs/cli.md
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
   /// active together are held against the weights of the file, at keys and up to fifteen instants between any two.
   double largest_error = 0;
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
   bool already_baked = false;       ///< nothing was changed
+  /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.
+  std::vector<std::size_t> unmarked_nodes;
 };
 
 struct GltfBake {
@@ -67,8 +75,7 @@ struct GltfBake {
   std::size_t added_targets = 0, added_bytes = 0;
   std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
   bool changed = false;
-  /// What a host must compute for extra targets that nothing drives, as JSON; empty where all are driven.
-  std::string drivers;
+  std::string drivers;  ///< what drives the extra targets of all meshes, as JSON of its own (docs/extras.md)
 };
 
 /// Bakes a document into a new edit of it, which the caller writes. Meshes that a bake was at before stay as they are.

@@ -112,7 +112,9 @@ struct BlendError {
     double weight = 0;
   };
   BlendDeltas deltas = BlendDeltas::kFile;
-  Quality quality;                             ///< max_at: the weight vector as segment, the output as element
+  /// max_at: the weight vector as segment, the output as element. count is the same for all deltas: every pair whose
+  /// geometry has a normal. missing are those of them that show zero, infinity or NaN, which count as 180 degrees.
+  Quality quality;
   std::vector<Weight> worst_weights;           ///< where the largest error is: the active targets
   std::optional<std::size_t> worst_primitive;  ///< of a glTF mesh
   std::size_t worst_output = 0;                ///< the vertex (of the primitive), face or corner that shows it

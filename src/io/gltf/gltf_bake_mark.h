@@ -1,4 +1,4 @@
-/// The mark that a bake leaves in extras.chronormal of a mesh: written and read here. Private to io and workflow.
+/// The mark that a bake leaves in extras.chronormal (docs/extras.md): written and read here. Private to io and workflow.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
 #define CHRONORMAL_IO_GLTF_GLTF_BAKE_MARK_H_
 
@@ -14,7 +14,7 @@ namespace chronormal::inline internal::gltf {
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
 
-/// A mark as it is written.
+/// A mark as it is written, by version 2.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
 }  // namespace chronormal::inline internal::gltf

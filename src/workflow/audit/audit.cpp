@@ -24,6 +24,19 @@ Result<AuditRule> make_audit_rule(std::string_view name) {
                std::string("there is no rule '").append(name) + "'; there are gltf, lerp, nlerp, slerp, step, flat"};
 }
 
+MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
+  MotionError error;
+  for (const AuditSubject& subject : audit.subjects)
+    if (subject.mesh == mesh) error.add(subject.error);
+  return error;
+}
+
+bool is_worse(const MotionError& after, const MotionError& before) noexcept {
+  // Degrees: a sum in float32 is off by 1e-7, and a normal may be a hundredth as long as what it is the sum of.
+  constexpr double kWorst = 0.05, kMean = 0.001;
+  return after.unlit > before.unlit || after.worst > before.worst + kWorst || after.mean() > before.mean() + kMean;
+}
+
 void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   ++judged;
   sum += degrees;
@@ -36,12 +49,18 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   }
 }
 
+void MotionError::add_unlit(const AuditPlace& place) noexcept {
+  if (unlit++ == 0) unlit_at = place;
+  add(180, place);
+}
+
 void MotionError::add(const MotionError& other) noexcept {
+  if (unlit == 0) unlit_at = other.unlit_at;
   judged += other.judged;
   sum += other.sum;
   sum_of_squares += other.sum_of_squares;
   no_normal += other.no_normal;
-  no_shown += other.no_shown;
+  unlit += other.unlit;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) histogram[bin] += other.histogram[bin];
   if (other.worst > worst) {
     worst = other.worst;
@@ -67,9 +86,8 @@ std::size_t samples_per_segment(const AuditOptions& options, std::size_t segment
 }
 
 Status check_samples(const AuditOptions& options) {
-  constexpr std::size_t kMost = 1000001;
-  if (options.samples && (*options.samples < 2 || *options.samples > kMost))
-    return Error{ErrorCode::kUsage, "", "there must be from 2 to 1,000,001 samples"};
+  if (options.samples && (*options.samples < 2 || *options.samples > kMostAuditSamples))
+    return Error{ErrorCode::kUsage, "", "there must be from 2 to " + std::to_string(kMostAuditSamples) + " samples"};
   return Success{};
 }
 
@@ -115,12 +133,17 @@ std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject) {
   const MotionError& error = off_at_keys ? subject.at_keys : subject.error;
   AuditFinding finding{};
   finding.kind = off_at_keys ? AuditFinding::Kind::kWrongAtKeys : AuditFinding::Kind::kWrongBetween;
+  if (subject.error.unlit > 0) {
+    finding.kind = AuditFinding::Kind::kUnlit;
+    finding.count = subject.error.unlit;
+  }
   finding.mesh = subject.mesh;
   finding.target = subject.target;
   finding.node = subject.node;
   finding.animation = subject.animation;
   finding.degrees = error.worst;
   finding.worst_at = error.worst_at;
+  if (subject.error.unlit > 0) finding.worst_at = subject.error.unlit_at;
   return finding;
 }
 

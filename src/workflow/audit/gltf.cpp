@@ -70,7 +70,7 @@ bool measure_part(const MeshAudit& mesh, const JudgedPart& part, const Weights& 
   return true;
 }
 
-// Audits a target from weight 0 to 1. Extra targets of a bake get the products that they stand for.
+// Audits a target from weight 0 to 1. Extra targets of a bake get the weights that follow.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   std::vector<bool> involved(shading.set.targets.size());
@@ -78,7 +78,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   if (shading.mark) {
     for (const GltfExtraTarget& extra : shading.mark->extras) {
       if (extra.target == k) return;
-      if (extra.i == k || extra.j == k) involved[extra.target] = true;
+      if (extra.follows(k)) involved[extra.target] = true;
     }
   }
   AuditSubject subject;

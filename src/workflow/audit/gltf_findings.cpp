@@ -92,7 +92,7 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
   };
   const auto lacking = std::count_if(shading.parts.begin(), shading.parts.end(), lacks_normals);
   std::vector<AuditFinding> faults;
-  if (lacking > 0) {
+  if (lacking > 0 && subject.error.unlit == 0) {
     AuditFinding& finding = faults.emplace_back(finding_of(Kind::kMissingNormals, shading.mesh));
     finding.target = k;
     finding.count = static_cast<std::size_t>(lacking);
@@ -106,9 +106,9 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 }
 
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
-  if (are_targets_judged && worst_target > kAuditFault) return std::nullopt;  // said of the targets already
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
-  if (!fault) return std::nullopt;
+  if (!fault || fault->kind == Kind::kUnlit) return fault;
+  if (are_targets_judged && worst_target > kAuditFault) return std::nullopt;  // said of the targets already
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;
   fault->degrees = subject.error.worst;
   fault->worst_at = subject.error.worst_at;

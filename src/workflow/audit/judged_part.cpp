@@ -75,10 +75,11 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
 void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
   result.faces.resize(keeps_faces_ ? face_offsets_.size() - 1 : 0);
   result.elements.resize(elements_.size());
+  result.sizes.resize(elements_.size());
   parallel_each(result.faces.size(), kRange, [&](std::size_t f) { result.faces[f] = face_normal(positions, f); });
   parallel_each(result.elements.size(), kRange, [&](std::size_t e) {
     Vec3d sum;
-    double size = 0;  // of the terms
+    double size = 0;
     for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
       const std::uint32_t f = faces_of_element_[i];
       const Vec3d normal = keeps_faces_ ? result.faces[f] : face_normal(positions, f);
@@ -86,6 +87,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
       sum = sum + added;
       size += max_abs(added);
     }
+    result.sizes[e] = size;
     // What is left of terms that cancel is their rounding, and no direction.
     constexpr double kRounding = 1e-13;
     result.elements[e] = without_rounding(sum, kRounding * size);

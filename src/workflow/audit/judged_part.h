@@ -25,6 +25,7 @@ struct JudgedOutput {
 
 struct PartNormals {
   std::vector<Vec3d> faces, elements;
+  std::vector<double> sizes;  ///< of each element, the largest components of the terms of its normal, added up
 };
 
 /// The elements of some outputs, and the faces and vertices that these need, numbered anew.

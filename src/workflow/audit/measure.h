@@ -39,7 +39,8 @@ inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditMan
                                              std::span<const JudgedOutput> outputs,
                                              const std::function<Vec3d(const JudgedOutput&)>& stored);
 
-/// The fault of a subject whose stored normals are off by more than kAuditFault: at keys, or else between them.
+/// The fault of a subject whose stored normals are off by more than kAuditFault: where they cannot be lit, or else at
+/// keys, or else between them.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
 /// Sums over the subjects, finds the worst of them, and puts faults before notes.
@@ -96,14 +97,19 @@ template <class Source>
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const auto judge = [&](std::size_t i, MotionError& errors) {
     const JudgedOutput& output = outputs[i];
+    const bool is_flat = rule == AuditRule::kFlat;
+    const Vec3d shown = is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
     const Vec3d& normal = placed.normals.elements[output.element];
-    if (!(length(normal) > kVanished * largest[output.element])) {
-      ++errors.no_normal;
+    const double least = kVanished * largest[output.element];
+    const bool has_normal = length(normal) > least;
+    // A face without area is not drawn, whatever its normal.
+    const bool is_drawn = is_flat ? shown != Vec3d{} : placed.normals.sizes[output.element] > least;
+    if (!is_finite(shown) || (is_drawn && shown == Vec3d{})) {
+      errors.add_unlit(source.at(segment, t, output));
       return;
     }
-    const Vec3d shown = rule == AuditRule::kFlat ? placed.normals.faces[output.face] : to_double(source.shown(output));
-    if (shown == Vec3d{}) {
-      ++errors.no_shown;
+    if (!has_normal || !is_drawn) {
+      ++errors.no_normal;
       return;
     }
     const double angle = angle_between(shown, source.right(output, normal)) * kDegreesPerRadian;

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
@@ -30,9 +29,8 @@ namespace {
 // What became of one mesh.
 struct MeshBake {
   BakedMesh report;
-  std::vector<std::string> warnings;
+  std::vector<MeshWarning> warnings;
   std::vector<WeightProduct> extras;
-  std::optional<nlohmann::ordered_json> drivers;  // where nothing in the file drives the extra targets
 };
 
 // The weights that a file gives to a mesh.
@@ -47,8 +45,10 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const auto has_targets = [](const GltfPrimitive& primitive) {
-      return primitive.has_faces() && std::any_of(primitive.targets.begin(), primitive.targets.end(),
-                                                  [](const auto& target) { return target.positions; });
+      return primitive.has_faces() &&
+             std::any_of(primitive.targets.begin(), primitive.targets.end(), [&](const auto& target) {
+               return target.positions || (primitive.has_normals && target.normals);
+             });
     };
     const auto& primitives = document.meshes()[m].primitives;
     if (std::any_of(primitives.begin(), primitives.end(), has_targets)) result.push_back(m);
@@ -56,9 +56,13 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   return result;
 }
 
-bool any_moves(const GltfShading& shading) {
-  return std::any_of(shading.set.targets.begin(), shading.set.targets.end(),
-                     [](const BlendTarget& target) { return !target.vertices.empty(); });
+// Whether a target changes what is shown: by vertices that it moves, or by normals alone.
+bool changes(const GltfShading& shading, std::size_t target) { return moves(shading, target) || shading.turns[target]; }
+
+bool any_changes(const GltfShading& shading) {
+  for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
+    if (changes(shading, i)) return true;
+  return false;
 }
 
 bool any_shaded(const GltfShading& shading) {
@@ -97,7 +101,7 @@ Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading
 }
 
 // The parts whose base normals are made anew.
-std::vector<bool> replaced_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
+std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
     result.push_back(mesh.primitives[part.primitive].has_normals ? options.recompute_base : options.smooth);
@@ -108,7 +112,7 @@ std::vector<bool> replaced_parts(const GltfMesh& mesh, const GltfShading& shadin
 void report_plan(const MeshPlan& plan, std::size_t target_count, BakedMesh& report) {
   report.encoding = plan.encoding;
   for (const WeightProduct& extra : plan.extras)
-    report.extras.push_back({target_count + report.extras.size(), extra.i, extra.j});
+    report.extras.push_back({target_count + report.extras.size(), {}, {{extra.i, extra.j, 1}}});
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
   if (plan.encoding == BakeEncoding::kExact)
     report.undriven = static_cast<std::size_t>(std::count(plan.is_line.begin(), plan.is_line.end(), true));
@@ -133,36 +137,37 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
 
   const std::size_t bytes_before = edit.added_bytes();
   MeshWriter writer(document, shading, options.smooth, zeros, edit);
-  const std::vector<bool> is_replaced = replaced_parts(mesh, shading, options);
-  const bool any_replaced = std::find(is_replaced.begin(), is_replaced.end(), true) != is_replaced.end();
-  const std::vector<float> recomputed =
-      any_replaced ? recomputed_base_normals(shading, terms, is_replaced) : std::vector<float>();
-  if (Status status = writer.write_base(is_replaced, recomputed); !status) return status;
+  const NewBaseNormals base = new_base_normals(shading, terms, recomputed_parts(mesh, shading, options));
+  baked.report.rescaled = base.rescaled;
+  if (Status status = writer.write_base(base.is_replaced, base.normals); !status) return status;
 
-  const DeltaSource source{shading, terms, plan, any_replaced ? recomputed : shading.normals};
+  const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
+  const auto check_size = [&] { return document.expansion().check(edit.added_bytes(), document.name()); };
   for (std::size_t i = 0; i < mesh.target_count; ++i) {
     std::optional<TargetDeltas> deltas;
-    if (moves(shading, i)) {
+    if (changes(shading, i)) {
       deltas = own_target_deltas(source, i);
+      if (!moves(shading, i)) ++baked.report.stilled;
       baked.report.largest_error = std::fmax(baked.report.largest_error, deltas->error * kDegreesPerRadian);
     }
     writer.write_target(i, deltas);
     step();
+    if (Status status = check_size(); !status) return status;
   }
   for (const WeightProduct& extra : plan.extras) {
     writer.append_target(extra_target_deltas(source, extra));
     step();
+    if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras);
-  writer.set_mark({plan.encoding, false, baked.report.extras});
+  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.extras = plan.extras;
   warn_of_baked(mesh, shading, plan, options, baked.report, baked.warnings);
-  if (!plan.is_driven && !plan.extras.empty()) baked.drivers = drivers_of(mesh, baked.report);
   return Success{};
 }
 
@@ -177,12 +182,13 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   if (mesh.mark) {
     baked.report.already_baked = true;
     baked.report.encoding = mesh.mark->encoding;
+    baked.report.extras = mesh.mark->extras;
     return std::optional(std::move(baked));
   }
   Result<GltfShading> shading = read_gltf_shading(document, index, {options.smooth, options.crease_angle, false});
   if (!shading) return shading.error();
   if (options.weighting == Weighting::kArea) shading.value().groups.forget_corners();
-  if (!any_moves(shading.value())) return std::optional<MeshBake>();
+  if (!any_changes(shading.value())) return std::optional<MeshBake>();
   for (const GltfPrimitive& primitive : mesh.primitives) {
     if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;
   }
@@ -209,7 +215,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   ZeroVectors zeros(edit, options.dense_zeros);
   std::vector<GrownMesh> grown;
   std::vector<std::size_t> report_of_grown;
-  std::vector<nlohmann::ordered_json> drivers;
+  std::vector<MeshWarning> warnings;
   for (const std::size_t mesh : candidates) {
     Result<std::optional<MeshBake>> baked = bake_mesh(document, mesh, options, step, zeros, edit);
     if (!baked) return baked.error();
@@ -219,15 +225,17 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
       grown.push_back({mesh, std::move(of_mesh.extras)});
       report_of_grown.push_back(result.meshes.size());
     }
-    result.added_targets += of_mesh.report.extras.size();
+    if (!of_mesh.report.already_baked) result.added_targets += of_mesh.report.extras.size();
     result.meshes.push_back(std::move(of_mesh.report));
-    std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(result.warnings));
-    if (of_mesh.drivers) drivers.push_back(std::move(*of_mesh.drivers));
+    std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(warnings));
   }
   const Result<WrittenTracks> tracks = write_tracks(document, grown, options.tolerance / kDegreesPerRadian, edit);
   if (!tracks) return tracks.error();
-  for (std::size_t n = 0; n < grown.size(); ++n)
-    result.meshes[report_of_grown[n]].resampling_error += tracks.value().errors[n] * kDegreesPerRadian;
+  for (std::size_t n = 0; n < grown.size(); ++n) {
+    BakedMesh& report = result.meshes[report_of_grown[n]];
+    report.resampling_error += tracks.value().errors[n] * kDegreesPerRadian;
+    warn_of_track(document.meshes()[report.mesh], report, tracks.value().errors[n], warnings);
+  }
   result.converted_tracks = tracks.value().converted;
 
   Result<std::vector<std::string>> pointers = edit.pointers();
@@ -240,7 +248,8 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
                                               " bytes, and at most " + std::to_string(*options.most_bytes) +
                                               " are allowed");
   }
-  result.drivers = drivers_file(drivers);
+  result.warnings = said_once(warnings);
+  result.drivers = drivers_file(document, result.meshes);
   return result;
 }
 

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 // Stored base normals must have length 1; hosts can show nothing right with those that are shorter than this.
 constexpr double kShortest = 1e-3;
+// A normal of this length, with deltas of 1e6 times that, can be squared in float32, and so can its inverse.
+constexpr double kLongestStored = 1e10;
 
 Vec3d stored_normal(std::span<const float> normals, std::size_t vertex) {
   const float* const n = normals.data() + 3 * vertex;
@@ -95,23 +97,34 @@ TargetDeltas single_deltas(const DeltaSource& source, std::size_t target) {
 
 }  // namespace
 
-std::vector<float> recomputed_base_normals(const GltfShading& shading, const NormalTerms& terms,
-                                           const std::vector<bool>& is_replaced) {
-  std::vector<float> normals = shading.normals;
-  const auto view = VectorView<float>::packed(normals.data(), normals.size() / 3);
+NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
+                                const std::vector<bool>& is_recomputed) {
+  NewBaseNormals result{{}, std::vector<bool>(shading.parts.size(), false), 0};
+  const auto replace = [&](std::size_t part, std::size_t vertex, const Vec3d& normal) {
+    if (result.normals.empty()) result.normals = shading.normals;
+    VectorView<float>::packed(result.normals.data(), result.normals.size() / 3).set(vertex, to_float(normal));
+    result.is_replaced[part] = true;
+  };
   for (std::size_t p = 0; p < shading.parts.size(); ++p) {
     const GltfPart& part = shading.parts[p];
-    if (!is_replaced[p]) continue;
+    result.is_replaced[p] = is_recomputed[p];
     for (std::size_t v = part.first_vertex; v < part.first_vertex + part.vertex_count; ++v) {
       const std::uint32_t element = shading.element_of_vertex[v];
-      const Vec3d normal = element == GltfShading::kNoElement ? Vec3d{} : unit(terms.base_of(element));
-      if (max_abs(normal) > 0)
-        view.set(v, to_float(normal));
-      else if (view[v] == Vec3f{})
-        view.set(v, {0, 0, 1});
+      const Vec3d stored = stored_normal(shading.normals, v);
+      if (is_recomputed[p]) {
+        const Vec3d normal = element == GltfShading::kNoElement ? Vec3d{} : unit(terms.base_of(element));
+        if (max_abs(normal) > 0)
+          replace(p, v, normal);
+        else
+          replace(p, v, stored == Vec3d{} ? Vec3d{0, 0, 1} : stored);
+      } else if (element != GltfShading::kNoElement && stored != Vec3d{} &&
+                 (max_abs(stored) > kLongestStored || max_abs(stored) < 1 / kLongestStored)) {
+        replace(p, v, unit(stored));
+        ++result.rescaled;
+      }
     }
   }
-  return normals;
+  return result;
 }
 
 BaseFaults find_base_faults(const DeltaSource& source) {
@@ -129,6 +142,7 @@ BaseFaults find_base_faults(const DeltaSource& source) {
 }
 
 TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target) {
+  if (!moves(source.shading, target)) return {std::vector<std::vector<float>>(source.shading.parts.size()), 0};
   TargetDeltas deltas = source.plan.is_line[target] ? single_deltas(source, target)
                                                     : deltas_of_term(source, source.terms.linear_by_element(target));
   deltas.error += source.terms.bound(target);

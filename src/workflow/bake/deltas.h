@@ -24,11 +24,19 @@ struct DeltaSource {
   std::span<const float> base_normals;  ///< (V, 3), as the file will store them
 };
 
-/// Base normals with those of some parts replaced by the normals of the geometry: (V, 3). A vertex without one keeps
-/// what is stored, or gets (0, 0, 1) where that is zero: a file cannot say that there is none. is_replaced has one
-/// entry for each part.
-[[nodiscard]] std::vector<float> recomputed_base_normals(const GltfShading& shading, const NormalTerms& terms,
-                                                         const std::vector<bool>& is_replaced);
+/// The base normals of a file that are not as they were.
+struct NewBaseNormals {
+  std::vector<float> normals;     ///< (V, 3), those that stay among them; empty where all stay
+  std::vector<bool> is_replaced;  ///< of each part: some of its normals are new
+  std::size_t rescaled = 0;       ///< vertices whose normal was brought to length 1
+};
+
+/// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps what is stored, or gets
+/// (0, 0, 1) where that is zero: a file cannot say that there is none. Elsewhere only normals that are longer than 1e10,
+/// or shorter than 1e-10, are brought to length 1: no host can square those in float32, nor add deltas to them.
+/// is_recomputed has one entry for each part.
+[[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
+                                              const std::vector<bool>& is_recomputed);
 
 /// Vertices to which no right delta can be added.
 struct BaseFaults {
@@ -45,8 +53,8 @@ struct TargetDeltas {
   double error = 0;  ///< a bound of the angle that is left, over the weights of the file, in radians
 };
 
-/// The deltas of one of the mesh's own targets, which must move: the linear term, or the best single delta where the
-/// plan says so. The error does not cover fitted lines, which state their own.
+/// The deltas of one of the mesh's own targets: the linear term, or the best single delta where the plan says so; none
+/// where it moves no vertex. The error does not cover fitted lines, which state their own.
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
 /// The deltas of the extra target whose weight is a product of two others.

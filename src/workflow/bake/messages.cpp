@@ -1,6 +1,11 @@
 #include "workflow/bake/messages.h"
 
+#include <map>
+#include <numbers>
+#include <string_view>
 #include <utility>
+
+#include "io/gltf/gltf_bake_mark.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -13,56 +18,102 @@ constexpr std::size_t kMorphedAttributes = 8;
 // More extra targets than these make a file large.
 constexpr std::size_t kManyExtras = 64;
 
-std::string start_of(const GltfMesh& mesh, const BakedMesh& baked) {
-  return (mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name) + ": ";
-}
-
-// The weight of an extra target: "w0*w1".
-std::string formula_of(const GltfExtraTarget& extra) {
-  return std::string("w").append(std::to_string(extra.i)).append("*w").append(std::to_string(extra.j));
+std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
+  return mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name;
 }
 
 }  // namespace
 
-std::string name_of_extra(const GltfExtraTarget& extra) { return "chronormal " + formula_of(extra); }
+std::string name_of_extra(const GltfExtraTarget& extra) {
+  const auto& [i, j, q] = extra.quadratic.front();
+  return std::string("chronormal w").append(std::to_string(i)).append("*w").append(std::to_string(j));
+}
 
-Json drivers_of(const GltfMesh& mesh, const BakedMesh& baked) {
-  Json extras = Json::array();
-  for (const GltfExtraTarget& extra : baked.extras) {
-    Json entry = {{"target", extra.target}};
-    if (!mesh.target_names.empty()) entry["targetName"] = name_of_extra(extra);
-    entry["formula"] = formula_of(extra);
-    entry["factors"] = {extra.i, extra.j};
-    extras.push_back(std::move(entry));
+std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes) {
+  Json of_meshes = Json::array();
+  for (const BakedMesh& baked : meshes) {
+    if (baked.extras.empty()) continue;
+    const GltfMesh& mesh = document.meshes()[baked.mesh];
+    const GltfBakeMark mark{baked.encoding, mesh.mark && mesh.mark->sequence, baked.extras};
+    of_meshes.push_back({{"mesh", baked.mesh}, {"name", mesh.name}, {"chronormal", gltf::bake_mark_json(mark)}});
   }
-  return {{"mesh", baked.mesh}, {"name", mesh.name}, {"extras", std::move(extras)}};
+  return Json({{"meshes", std::move(of_meshes)}}).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::string drivers_file(const std::vector<Json>& of_meshes) {
-  if (of_meshes.empty()) return "";
-  return Json({{"version", 1}, {"meshes", of_meshes}}).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings) {
+  constexpr std::size_t kMostNamed = 4;
+  struct Meshes {
+    std::string names;
+    std::size_t count = 0;
+  };
+  std::map<std::string_view, Meshes> meshes_of;
+  for (const MeshWarning& warning : warnings) {
+    Meshes& meshes = meshes_of[warning.sentence];
+    if (++meshes.count <= kMostNamed) meshes.names.append(meshes.count == 1 ? "" : ", ").append(warning.mesh);
+  }
+  std::vector<std::string> texts;
+  for (const MeshWarning& warning : warnings) {
+    const auto meshes = meshes_of.extract(warning.sentence);
+    if (meshes.empty()) continue;  // said already
+    const auto& [names, count] = meshes.mapped();
+    const std::string more = count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "";
+    texts.push_back(names + more + ": " + warning.sentence);
+  }
+  return texts;
 }
 
-void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std::string>& warnings) {
+void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
   if (baked.left_flat == 0) return;
-  warnings.push_back(start_of(mesh, baked) + std::to_string(baked.left_flat) +
-                     (baked.left_flat == 1 ? " primitive has" : " primitives have") +
-                     " no normals and stays flat, as hosts shade it by the specification "
-                     "(--smooth gives it normals)");
+  warnings.push_back({label_of(mesh, baked),
+                      baked.left_flat == 1
+                          ? "1 primitive has no normals and stays flat, as hosts shade it by the specification "
+                            "(--smooth gives it normals)"
+                          : std::to_string(baked.left_flat) +
+                                " primitives have no normals and stay flat, as hosts shade them by the specification "
+                                "(--smooth gives them normals)"});
+}
+
+void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings) {
+  if (error < std::numbers::pi) return;
+  warnings.push_back({label_of(mesh, baked),
+                      "keys of a track are so near to each other, or weights so large, that float32 cannot hold the "
+                      "products of weights between them: normals may be anything there"});
 }
 
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
-                   const BakedMesh& baked, std::vector<std::string>& warnings) {
-  const auto warn = [&](const std::string& sentence) { warnings.push_back(start_of(mesh, baked) + sentence); };
+                   const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
+  const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
   if (!plan.is_driven && !options.encoding) {
     warn(
         "no animation drives its targets, so that nothing could drive extra ones: each got the best single delta "
         "(--encode exact writes them all the same)");
   }
+  if (plan.is_driven && !plan.products_fit && !options.encoding) {
+    warn(
+        "weights of its animations are so large that float32 cannot hold their products: each target got the best "
+        "single "
+        "delta");
+  }
   if (baked.undriven > 0) {
     warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
          " driven by no animation and got the best single delta");
+  }
+  if (!baked.unmarked_nodes.empty()) {
+    warn("extras of node " + std::to_string(baked.unmarked_nodes.front()) +
+         (baked.unmarked_nodes.size() == 1
+              ? " is"
+              : " and of " + std::to_string(baked.unmarked_nodes.size() - 1) + " more are") +
+         " no object: what drives the extra targets stands in the mesh alone");
+  }
+  if (baked.rescaled > 0) {
+    warn(std::to_string(baked.rescaled) +
+         " stored base normals are longer than 1e10 or shorter than 1e-10, which no host can add to: they were brought "
+         "to length 1");
+  }
+  if (baked.stilled > 0) {
+    warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
+         " normals and moves no position: where the surface stays its normals stay, and these deltas are zero now");
   }
   if (baked.without_stored > 0) {
     warn(std::to_string(baked.without_stored) +

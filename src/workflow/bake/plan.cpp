@@ -52,6 +52,15 @@ struct MeshUse {
   }
 };
 
+// Whether float32 can hold the products of weights, and deltas of any size that these multiply.
+bool products_fit(const MeshUse& mesh) {
+  constexpr double kLargestProduct = 1e30;
+  double largest = 0;
+  for (std::size_t i = 0; i < mesh.use.targets(); ++i)
+    if (moves(mesh.shading, i)) largest = std::fmax(largest, mesh.use.largest(i));
+  return largest * largest <= kLargestProduct;
+}
+
 // Weights to measure at.
 struct Poses {
   std::vector<std::vector<double>> weights;
@@ -345,8 +354,10 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
                            const WeightUse& use, bool is_driven, const BakeOptions& options) {
   const MeshUse mesh{shading, terms, use, is_driven};
   MeshPlan plan;
-  plan.encoding = options.encoding.value_or(is_driven ? BakeEncoding::kExact : BakeEncoding::kEndpoint);
   plan.is_driven = is_driven;
+  plan.products_fit = products_fit(mesh);
+  plan.encoding =
+      options.encoding.value_or(is_driven && plan.products_fit ? BakeEncoding::kExact : BakeEncoding::kEndpoint);
   plan.ranges = weight_ranges(use);
   plan.is_shown = shown_elements(shading);
   plan.is_line = single_delta_targets(mesh, plan.encoding);

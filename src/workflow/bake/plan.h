@@ -21,6 +21,7 @@ struct WeightRange {
 struct MeshPlan {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool is_driven = false;             ///< an animation gives some moving target a weight
+  bool products_fit = true;           ///< of weights, into float32: or nothing can be exact
   std::vector<bool> is_line;          ///< of each target: it gets the best single delta
   std::vector<WeightRange> ranges;    ///< of each target: what its error is stated for
   FittedLines lines;                  ///< those of targets that are active together, of endpoint

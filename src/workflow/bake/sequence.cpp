@@ -7,6 +7,7 @@
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -37,9 +38,12 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
-    if ((!times.empty() && !(times.back() < time)) || !std::isfinite(time))
+    // The slopes of weights between two keys are up to 1 over the time between them.
+    constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
+    const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
+    if (!is_after || !std::isfinite(time))
       return invalid_input("keyframe " + std::to_string(times.size()),
-                           "its time is not after that of the one before in float32");
+                           "its time is not after that of the one before in float32, by 1e-38 seconds or more");
     times.push_back(time);
   }
   return times;

@@ -89,13 +89,21 @@ std::vector<float> weight_track(const SequenceTargets& targets, std::span<const 
   return values;
 }
 
+// The weight t (1 - t) as a product of the weights of two keys. That of key 0, where it has no target, is 1 minus all of
+// the others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
-  const auto factor = [&](std::size_t key) {
-    return key == 0 && !targets.has_key_0 ? GltfExtraTarget::kBase : targets.of_key(key);
-  };
   GltfBakeMark mark{targets.exact ? BakeEncoding::kExact : BakeEncoding::kEndpoint, true, {}};
-  for (const std::size_t s : targets.bent_segments)
-    mark.extras.push_back({targets.of_keys() + mark.extras.size(), factor(s), factor(s + 1)});
+  for (const std::size_t s : targets.bent_segments) {
+    GltfExtraTarget& extra = mark.extras.emplace_back();
+    extra.target = targets.of_keys() + mark.extras.size() - 1;
+    const std::size_t next = targets.of_key(s + 1);
+    if (s > 0 || targets.has_key_0) {
+      extra.quadratic.push_back({targets.of_key(s), next, 1});
+      continue;
+    }
+    extra.linear.push_back({next, 1});
+    for (std::size_t i = 0; i < targets.of_keys(); ++i) extra.quadratic.push_back({i, next, -1});
+  }
   return mark;
 }
 
@@ -120,6 +128,7 @@ SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std
                            bool exact, const BakeOptions& options)
     : vertices_(make_vertices(motion.topology, groups)),
       dense_zeros_(options.dense_zeros),
+      expansion_(options.expansion),
       builder_(options.most_bytes) {
   triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices_.of_corner), vertices_.size());
   base_ = {
@@ -147,13 +156,16 @@ void SequenceFile::add_target(std::string name, std::size_t positions, std::span
                       {"NORMAL", builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
 }
 
-Status SequenceFile::check_size() const {
-  if (builder_.fits()) return Success{};
+Status SequenceFile::check_size(std::uint64_t more) const {
+  if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
+  if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
   return invalid_input("", "the file would have more than " + std::to_string(builder_.most_bytes()) +
                                " bytes, which is all that it may have");
 }
 
 Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::uint64_t weights = std::uint64_t{targets.keys} * targets.count() * (targets.exact ? 3 : 1);
+  if (Status status = check_size(sizeof(float) * (times.size() + weights)); !status) return status.error();
   const std::size_t input = builder_.add_scalars(times, {true, true}),
                     output = builder_.add_scalars(weight_track(targets, times), {false, true});
   std::vector<int> rest(targets_.size(), 0);
@@ -161,11 +173,14 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
   Json& document = builder_.document();
   document["scene"] = 0;
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  document["nodes"] = Json::array({{{"mesh", 0}}});
+  const Json mark = gltf::bake_mark_json(mark_of(targets));
+  Json node = {{"mesh", 0}};
+  if (!targets.bent_segments.empty()) node["extras"] = {{"chronormal", mark}};
+  document["nodes"] = Json::array({std::move(node)});
   const Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", targets_}};
   const Json mesh = {{"primitives", Json::array({primitive})},
                      {"weights", rest},
-                     {"extras", {{"targetNames", names_}, {"chronormal", gltf::bake_mark_json(mark_of(targets))}}}};
+                     {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
   document["meshes"] = Json::array({mesh});
   const Json sampler = {
       {"input", input}, {"interpolation", targets.exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};

@@ -144,9 +144,7 @@ ControlNormals normals_between(const ControlNormals& normals, double from, doubl
 
 VertexTerms::VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept
     : base_(unit(base)), stored_(unit(stored)) {
-  // A stored length near the ends of float32 would take the terms beyond them.
-  length_ = std::clamp(length(stored), 1e-20, 1e20);
-  if (max_abs(stored) == 0) length_ = 1;
+  if (max_abs(stored) > 0) length_ = length(stored);
   const double of_base = length(base);
   if (has_base(base, largest)) {
     scale_ = of_base > 0 ? length_ / of_base : 0;

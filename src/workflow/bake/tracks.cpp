@@ -23,11 +23,10 @@ struct Knot {
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// The slope of a piece shorter than any frame may be beyond float32: nobody sees it.
-float to_slope(double slope) { return std::fabs(slope) <= kMost ? static_cast<float>(slope) : 0.0F; }
-float to_weight(double weight) { return static_cast<float>(std::clamp(weight, -kMost, kMost)); }
+// Weights, and slopes: those of a piece that is shorter than 1e-38 seconds may be beyond float32.
+float to_file(double number) { return static_cast<float>(std::clamp(number, -kMost, kMost)); }
 
-// What had to be clamped is no product any more: nothing is known of the normal.
+// What had to be clamped is no product any more, or no straight line: nothing is known of the normal.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
@@ -63,7 +62,7 @@ void append_values(const WeightTrack& track, std::span<const WeightProduct> prod
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
     for (const WeightProduct& product : products)
-      values.push_back(to_weight(track.value(key, product.i) * track.value(key, product.j)));
+      values.push_back(to_file(track.value(key, product.i) * track.value(key, product.j)));
   }
 }
 
@@ -77,6 +76,7 @@ class Spline {
     times_.push_back(static_cast<float>(time));
     knots_.resize(knots_.size() + columns_);
   }
+  void clear() { *this = Spline(columns_); }
   Knot& last(std::size_t column) { return knots_[knots_.size() - columns_ + column]; }
   Knot& before(std::size_t column) { return knots_[knots_.size() - 2 * columns_ + column]; }
 
@@ -84,9 +84,9 @@ class Spline {
     result.values.reserve(3 * knots_.size());
     for (std::size_t key = 0; key < times_.size(); ++key) {
       const Knot* row = knots_.data() + key * columns_;
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].in));
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_weight(row[c].value));
-      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_slope(row[c].out));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].in));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].value));
+      for (std::size_t c = 0; c < columns_; ++c) result.values.push_back(to_file(row[c].out));
     }
     result.times = std::move(times_);
   }
@@ -99,8 +99,13 @@ class Spline {
 
 class TrackExtender {
  public:
-  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance)
-      : track_(track), products_(products), tolerance_(tolerance), spline_(track.targets + products.size()) {}
+  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
+                std::size_t most_keys)
+      : track_(track),
+        products_(products),
+        tolerance_(tolerance),
+        most_keys_(most_keys),
+        spline_(track.targets + products.size()) {}
 
   // The track as a cubic spline.
   ExtendedTrack spline() {
@@ -112,6 +117,8 @@ class TrackExtender {
       for (std::size_t i = 0; i < track_.targets; ++i) pieces_.push_back(track_.piece(key, i));
       add_pieces(track_.keys.times[key], track_.keys.times[key + 1], pieces_, kMostHalvings);
     }
+    result.keys = keys_;
+    if (keys_ > most_keys_) return result;
     // The outermost slopes shape nothing; those of the file stay.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
@@ -161,6 +168,8 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
+    // Beyond the limit they are only counted.
+    if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       spline_.before(i).out = slope_at_start(weights[i], duration);
@@ -179,6 +188,7 @@ class TrackExtender {
   const WeightTrack& track_;
   std::span<const WeightProduct> products_;
   double tolerance_;
+  std::size_t most_keys_, keys_ = 1;  // with the first
   Spline spline_;
   std::vector<Cubic> pieces_;
   double error_ = 0;
@@ -186,11 +196,14 @@ class TrackExtender {
 
 }  // namespace
 
-ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance) {
+ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
+                             std::size_t most_keys) {
   const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1;
   const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !products_are_linear(track, products);
-  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance).spline();
+  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance, most_keys).spline();
   ExtendedTrack result;
+  result.keys = track.size();
+  if (result.keys > most_keys) return result;
   result.interpolation = track.interpolation;
   if (track.interpolation != GltfInterpolation::kCubicSpline) {
     append_values(track, products, result.values);
@@ -206,8 +219,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightPro
     result.values[2 * columns + i] = static_cast<float>(track.tangent(0, true, i));
   }
   for (std::size_t p = 0; p < products.size(); ++p)
-    result.values[columns + track.targets + p] =
-        to_weight(track.value(0, products[p].i) * track.value(0, products[p].j));
+    result.values[columns + track.targets + p] = to_file(track.value(0, products[p].i) * track.value(0, products[p].j));
   return result;
 }
 

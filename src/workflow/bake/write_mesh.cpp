@@ -105,7 +105,7 @@ void MeshWriter::append_target(const TargetDeltas& deltas) {
 
 void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras) {
   const auto append = [&](const std::string& pointer, const std::vector<double>& weights) {
-    for (const GltfExtraTarget& extra : extras) edit_.append(pointer, weight_text(weights[extra.i] * weights[extra.j]));
+    for (const GltfExtraTarget& extra : extras) edit_.append(pointer, weight_text(extra.weight(weights)));
   };
   if (edit_.has(pointer_ + "/weights")) append(pointer_ + "/weights", mesh_.weights);
   for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
@@ -118,8 +118,19 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras) {
     edit_.append(pointer_ + "/extras/targetNames", quote_json(name_of_extra(extra)));
 }
 
-void MeshWriter::set_mark(const GltfBakeMark& mark) {
-  edit_.set(pointer_ + "/extras/chronormal", gltf::bake_mark_json(mark).dump());
+std::vector<std::size_t> MeshWriter::set_mark(const GltfBakeMark& mark) {
+  const std::string text = gltf::bake_mark_json(mark).dump();
+  edit_.set(pointer_ + "/extras/chronormal", text);
+  std::vector<std::size_t> unmarked;
+  for (std::size_t n = 0; n < document_.nodes().size() && !mark.extras.empty(); ++n) {
+    if (document_.nodes()[n].mesh != shading_.mesh) continue;
+    const std::string extras = std::string("/nodes/").append(std::to_string(n)).append("/extras");
+    if (edit_.has(extras) && !edit_.text(extras).starts_with("{"))
+      unmarked.push_back(n);
+    else
+      edit_.set(extras + "/chronormal", text);
+  }
+  return unmarked;
 }
 
 }  // namespace chronormal::inline internal

@@ -48,8 +48,10 @@ class MeshWriter {
   void append_target(const TargetDeltas& deltas);
   /// Gives weights and names to the targets that were appended.
   void append_weights(std::span<const GltfExtraTarget> extras);
-  /// Writes down what was done, where the next bake and an audit look for it.
-  void set_mark(const GltfBakeMark& mark);
+  /// Writes down what was done (docs/extras.md): in the mesh, where the next bake and an audit look for it, and where
+  /// there are extra targets, in the nodes that carry the mesh, for hosts that hand on the extras of nodes alone. Returns
+  /// the nodes whose extras are no object, which stay as they are.
+  [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
 
  private:
   // Which attributes the targets of a primitive have when all is done.

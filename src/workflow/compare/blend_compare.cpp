@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -50,12 +51,23 @@ struct Subject {
   [[nodiscard]] std::size_t elements() const { return groups ? groups->size() : set->topology.face_count(); }
 };
 
-// n(w) of all elements by nothing but cross products of blended positions.
+// A normal, and what it is the sum of: the products of the lengths of edges.
+struct SizedNormal {
+  Vec3d value;
+  double size = 0;
+
+  // What is left of terms that cancel is their rounding, and no direction. A direction is right to 1e-6 rad above this.
+  [[nodiscard]] Vec3d without_rounding() const { return length(value) > 1e-10 * size ? value : Vec3d{}; }
+};
+
+SizedNormal operator+(const SizedNormal& a, const SizedNormal& b) { return {a.value + b.value, a.size + b.size}; }
+
+// n(w) of all elements by nothing but cross products of blended positions, and zero where that is rounding.
 std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
   const Topology& topology = subject.set->topology;
   std::vector<double> positions(subject.set->base.size());
   blend_positions(*subject.set, weights, positions);
-  std::vector<Vec3d> faces(topology.face_count());
+  std::vector<SizedNormal> faces(topology.face_count());
   numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f) {
       const auto face = topology.face(f);
@@ -63,14 +75,22 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
         const double* p = positions.data() + 3 * std::size_t{face[c]};
         return Vec3d{p[0], p[1], p[2]};
       };
-      faces[f] = twice_vector_area(face.size(), at);
+      const auto edge_to = [&](std::size_t c) { return at(c) - at(0); };
+      for_fan(face.size(), edge_to, [&](const Vec3d& a, const Vec3d& b) {
+        faces[f] = faces[f] + SizedNormal{cross(a, b), length(a) * length(b)};
+      });
     }
   });
-  if (subject.groups == nullptr) return faces;
-  std::vector<Vec3d> result(subject.groups->size());
+  std::vector<Vec3d> result(subject.elements());
   numbered_blocks(result.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t e = first; e < last; ++e)
-      for (const std::uint32_t f : subject.groups->faces(e)) result[e] = result[e] + faces[f];
+    for (std::size_t e = first; e < last; ++e) {
+      SizedNormal sum;
+      if (subject.groups == nullptr)
+        sum = faces[e];
+      else
+        for (const std::uint32_t f : subject.groups->faces(e)) sum = sum + faces[f];
+      result[e] = sum.without_rounding();
+    }
   });
   return result;
 }
@@ -159,14 +179,15 @@ class BlendMeter {
     return result;
   }
 
-  // N + sum w D as a file has them.
+  // N + sum w D as a file has them, in float32 as hosts add.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
-    Vec3d sum = vector_at(subject_.shading->normals, output.number);
+    Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const std::vector<float>& deltas = subject_.shading->normal_deltas[k];
-      if (weights[k] != 0 && !deltas.empty()) sum = sum + weights[k] * vector_at(deltas, output.number);
+      if (weights[k] == 0 || deltas.empty()) continue;
+      sum = sum + static_cast<float>(weights[k]) * to_float(vector_at(deltas, output.number));
     }
-    return sum;
+    return to_double(sum);
   }
 
   void measure(std::size_t row, std::span<const double> weights, const DeltaNormals& best, BlendErrors& errors) {
@@ -184,10 +205,9 @@ class BlendMeter {
       for (std::size_t i = first; i < last; ++i) {
         const Output& output = subject_.outputs[moved[i]];
         const std::size_t e = output.element;
-        const Vec3d best_that_float_can = vector_at(exact, e);
         for (std::size_t m = 0; m < methods; ++m) {
           Quality& quality = parts[chunk * methods + m];
-          if (best_that_float_can == Vec3d{} || truth[e] == Vec3d{}) {  // nothing but rounding
+          if (truth[e] == Vec3d{}) {  // nothing but rounding: no method is asked there
             ++quality.degenerate;
             continue;
           }
@@ -204,7 +224,7 @@ class BlendMeter {
               shown = bests[e];
               break;
             case BlendDeltas::kExact:
-              shown = best_that_float_can;
+              shown = vector_at(exact, e);
           }
           add(shown, right, {row, moved[i], 0}, quality);
         }
@@ -213,12 +233,11 @@ class BlendMeter {
     for (std::size_t p = 0; p < parts.size(); ++p) errors.deltas[p % methods].quality.add(parts[p]);
   }
 
+  // What cannot be lit is the worst that a method can show.
   static void add(const Vec3d& shown, const Vec3d& right, const ErrorPlace& place, Quality& quality) {
-    if (shown == Vec3d{}) {
-      ++quality.missing;
-      return;
-    }
-    const double angle = angle_between(shown, right);
+    const bool is_lit = is_finite(shown) && shown != Vec3d{};
+    if (!is_lit) ++quality.missing;
+    const double angle = is_lit ? angle_between(shown, right) : std::numbers::pi;
     quality.sum += angle;
     quality.sum_of_squares += angle * angle;
     ++quality.count;

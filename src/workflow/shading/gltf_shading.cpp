@@ -62,6 +62,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
   bool has_tangents = false;
   shading.set.targets.resize(mesh.target_count);
   shading.normal_deltas.resize(mesh.target_count);
+  shading.turns.resize(mesh.target_count);
   shading.tangent_deltas.resize(mesh.target_count);
   for (std::size_t k = 0; k < mesh.target_count; ++k)
     shading.set.targets[k].name = mesh.target_names.empty() ? std::to_string(k) : mesh.target_names[k];
@@ -92,6 +93,9 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
       Result<GltfGeometry::Target> target = document.target(shading.mesh, p, k, true);
       if (!target) return target.error();
       append_deltas(target.value().positions, vertices, shading.set.targets[k]);
+      const std::vector<float>& normals = target.value().normals;
+      if (mesh.primitives[p].has_normals && std::any_of(normals.begin(), normals.end(), [](float d) { return d != 0; }))
+        shading.turns[k] = true;
       if (!keep_deltas) continue;
       append(std::move(target.value().normals), vertices, count, 3, shading.normal_deltas[k]);
       append(std::move(target.value().tangents), vertices, count, 3, shading.tangent_deltas[k]);
@@ -356,16 +360,7 @@ Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept {
   assert(weights.size() == shading.set.targets.size());
   if (!shading.mark) return;
-  const std::vector<GltfExtraTarget>& extras = shading.mark->extras;
-  double base = 1;  // 1 - all weights of the mesh's own targets
-  for (std::size_t k = 0, next = 0; k < weights.size(); ++k) {
-    if (next < extras.size() && extras[next].target == k)
-      ++next;
-    else
-      base -= weights[k];
-  }
-  const auto factor = [&](std::size_t i) { return i == GltfExtraTarget::kBase ? base : weights[i]; };
-  for (const GltfExtraTarget& extra : extras) weights[extra.target] = factor(extra.i) * factor(extra.j);
+  for (const GltfExtraTarget& extra : shading.mark->extras) weights[extra.target] = extra.weight(weights);
 }
 
 }  // namespace chronormal::inline internal

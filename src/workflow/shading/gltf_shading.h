@@ -49,7 +49,8 @@ struct GltfShading {
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) where a primitive has none
   /// Per target the stored deltas (V, 3), or empty where no primitive stores any for it.
   std::vector<std::vector<float>> normal_deltas;
-  std::vector<float> tangents;                     ///< (V, 4), or empty where no primitive has any
+  std::vector<bool> turns;      ///< per target, whether some of these are other than zero, kept or not
+  std::vector<float> tangents;  ///< (V, 4), or empty where no primitive has any
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas
   std::optional<GltfBakeMark> mark;
   std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
@@ -85,7 +86,7 @@ struct GltfShading {
 /// looks to the other side than n(0), both are those of the other side: -n(0) and -n(w).
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
-/// The weight of every target where those of the mesh's own targets are given: extra ones get their products.
+/// The weight of every target where those of the mesh's own targets are given: extra ones get theirs.
 /// weights must have one for each target; those of extra ones are written
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 

@@ -284,6 +284,31 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
   EXPECT_GT(result.offsets[0].worst, 0.1);
 }
 
+TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
+  // Two triangles in a plane have one normal, whatever the weighting, and the authored ones are turned from it.
+  ShadedMesh mesh = hinge();
+  for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
+  const Audit result = audit_of(mesh.file());
+  ASSERT_EQ(result.offsets.size(), 1U);
+  EXPECT_NEAR(result.offsets[0].worst, 36.86989764584402, 1e-5);
+  EXPECT_EQ(result.offsets[0].closest_mean, result.offsets[0].mean());
+  EXPECT_EQ(result.offsets[0].closest, Weighting::kArea);
+}
+
+TEST(Audit, takes_from_2_to_1000001_samples) {
+  // At more the file is not even read.
+  for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, std::size_t{1000002}, ~std::size_t{0}}) {
+    const test::GltfFixture file(hinge().file());
+    const Result<Audit> result = audit(*file, {.samples = samples});
+    ASSERT_FALSE(result.ok()) << samples;
+    EXPECT_EQ(result.error().code, ErrorCode::kUsage);
+  }
+  const test::GltfFixture file(hinge().file());
+  const Result<Audit> most = audit(*file, {.samples = 1000001});
+  ASSERT_TRUE(most.ok()) << most.error().text();
+  EXPECT_EQ(most.value().error.judged, 3U * 1000001);
+}
+
 // ---- what is not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
@@ -297,13 +322,82 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
 }
 
-TEST(Audit, stored_normals_that_add_up_to_zero_are_counted_and_not_judged) {
+// ---- what cannot be lit
+
+TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_degrees) {
   ShadedMesh mesh = hinge();
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1};
   const Audit result = audit_of(mesh.file(), {.samples = 2});
-  EXPECT_EQ(result.error.no_shown, 1U);
-  EXPECT_EQ(result.error.judged, 5U);
-  EXPECT_NEAR(result.error.worst, 45, 1e-12);
+  EXPECT_EQ(result.error.judged, 6U);
+  EXPECT_EQ(result.error.unlit, 1U);
+  EXPECT_EQ(result.error.unlit_at.vertex, 3U);
+  EXPECT_EQ(result.error.unlit_at.at, 1);
+  EXPECT_EQ(result.error.worst, 180);
+  EXPECT_EQ(result.error.worst_at.vertex, 3U);
+  EXPECT_NEAR(result.error.sum, 45 + 45 + 180, 1e-9);
+  ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kUnlit}));
+  EXPECT_TRUE(result.findings[0].is_fault());
+  EXPECT_EQ(result.findings[0].count, 1U);
+  EXPECT_EQ(result.findings[0].worst_at->vertex, 3U);
+  EXPECT_FALSE(result.error.is_within(180)) << "no tolerance allows what cannot be lit";
+  EXPECT_TRUE(audit_of(hinge().file()).error.is_within(90.001));
+  EXPECT_FALSE(audit_of(hinge().file()).error.is_within(89.999));
+}
+
+TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
+  // Weights of 3e38 make infinities of deltas of 2; of two infinities with opposite signs, NaN.
+  for (const bool has_opposite : {false, true}) {
+    ShadedMesh mesh = hinge();
+    mesh.targets[0].normals.assign(12, 2);
+    mesh.targets.push_back({std::vector<float>(12, 0), std::vector<float>(12, has_opposite ? -2.0F : 0.0F), {}});
+    GltfBuilder builder = mesh.file();
+    builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 3e38F, 3e38F});
+    const Audit result = audit_of(builder, {.samples = 2, .animation = "0"});
+    const MotionError& error = result.error;
+    EXPECT_EQ(error.judged, 5U);
+    EXPECT_EQ(error.no_normal, 3U) << "beside those of such weights the normals of the base are nothing";
+    EXPECT_EQ(error.unlit, 4U);
+    EXPECT_EQ(error.unlit_at.vertex, 0U);
+    EXPECT_EQ(error.unlit_at.at, 1) << "in seconds";
+    EXPECT_EQ(error.worst, 180);
+    EXPECT_NEAR(error.mean(), 4 * 180 / 5.0, 1e-9);
+    EXPECT_TRUE(std::isfinite(error.rms()));
+    EXPECT_EQ(error.histogram.back(), 4U);
+    EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kUnlit}));
+  }
+}
+
+TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_only_where_nothing_is_drawn) {
+  // The face of vertex 3 has no area at weight 1/2. At weight 1 it lies on the other face: their normals cancel at the
+  // vertices 1 and 2, but they are drawn.
+  ShadedMesh mesh = hinge();
+  mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, down at 1
+  MotionError error = audit_of(mesh.file(), {.samples = 3}).error;
+  EXPECT_EQ(error.no_normal, 3U);
+  EXPECT_EQ(error.unlit, 0U);
+  EXPECT_NEAR(error.worst, 0, 1e-9);
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -2};  // vertex 1: zero at 1
+  error = audit_of(mesh.file(), {.samples = 3}).error;
+  EXPECT_EQ(error.no_normal, 2U);
+  EXPECT_EQ(error.unlit, 1U);
+  EXPECT_EQ(error.unlit_at.vertex, 1U);
+  // Infinity is none even there.
+  mesh.normals[11] = 3e38F;
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
+  error = audit_of(mesh.file(), {.samples = 3}).error;
+  EXPECT_EQ(error.unlit, 2U);
+  EXPECT_EQ(error.unlit_at.at, 0.5);
+}
+
+TEST(Audit, a_track_that_cannot_be_lit_is_told_of_where_its_targets_are_wrong_too) {
+  ShadedMesh mesh = hinge();
+  mesh.targets[0].normals.assign(12, 2);
+  GltfBuilder builder = mesh.file();
+  builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 3e38F});
+  const Audit result = audit_of(builder);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongAtKeys, Kind::kUnlit}));
+  EXPECT_EQ(result.worst, std::size_t{1});
 }
 
 TEST(Audit, deltas_of_normals_alone_are_motion_of_what_is_shown) {

@@ -43,10 +43,11 @@ std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::siz
       continue;
     }
     for (const Json& extra : after["extras"]["chronormal"]["extras"]) {
-      const auto factor = [&](int n) {
-        return pose.after[extra["factors"][static_cast<std::size_t>(n)].get<std::size_t>()];
-      };
-      pose.after[extra["target"].get<std::size_t>()] = factor(0) * factor(1);
+      float weight = 0;
+      const auto of = [&](const Json& index) { return pose.after[index.get<std::size_t>()]; };
+      for (const Json& term : extra["linear"]) weight += term[1].get<float>() * of(term[0]);
+      for (const Json& term : extra["quadratic"]) weight += term[2].get<float>() * of(term[0]) * of(term[1]);
+      pose.after[extra["target"].get<std::size_t>()] = weight;
     }
     poses.push_back(std::move(pose));
   }
@@ -129,16 +130,95 @@ TEST(Bake, encoding_is_exact_where_animations_drive_weights_and_else_endpoint) {
   EXPECT_EQ(test::bake_document(builder).report.meshes[0].encoding, BakeEncoding::kExact);
 }
 
-TEST(Bake, exact_without_animations_comes_with_its_formulas) {
+TEST(Bake, exact_without_animations_says_in_the_mesh_and_its_nodes_what_drives_extra_targets) {
   const Baked baked = test::bake_document(test::still_hills_document(2), with(BakeEncoding::kExact));
   ASSERT_EQ(baked.report.meshes[0].extras.size(), 3U);
-  const Json drivers = Json::parse(baked.report.drivers);
-  EXPECT_EQ(drivers["meshes"][0]["name"], "hills");
-  EXPECT_EQ(drivers["meshes"][0]["extras"][1], Json({{"target", 3}, {"formula", "w0*w1"}, {"factors", {0, 1}}}));
+  const Json expected = R"({"version": 2, "encode": "exact", "sequence": false, "extras": [
+    {"target": 2, "linear": [], "quadratic": [[0, 0, 1.0]]}, {"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]},
+    {"target": 4, "linear": [], "quadratic": [[1, 1, 1.0]]}]})"_json;
+  EXPECT_EQ(baked.mesh()["extras"]["chronormal"], expected);
+  EXPECT_EQ(baked.json()["nodes"][0]["extras"]["chronormal"], expected);
+  EXPECT_EQ(Json::parse(baked.report.drivers),
+            Json({{"meshes", {{{"mesh", 0}, {"name", "hills"}, {"chronormal", expected}}}}}));
   std::vector<Pose> poses;
   for (const auto& [a, b] : {std::pair{0.5F, 0.5F}, {1.0F, 0.25F}, {-0.5F, 1.5F}})
     poses.push_back({{static_cast<double>(a), static_cast<double>(b)}, {a, b, a * a, a * b, b * b}});
   test::expect_exact(test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses));
+}
+
+TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
+  GltfBuilder builder = test::still_hills_document(1);
+  builder.json["nodes"][0]["extras"] = {{"mine", 7}};
+  builder.add_node(0);
+  builder.json["nodes"][1]["extras"] = "a note";
+  builder.add_node(0);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
+  const Json& nodes = baked.json()["nodes"];
+  EXPECT_EQ(nodes[0]["extras"]["mine"], 7);
+  EXPECT_EQ(nodes[0]["extras"]["chronormal"], baked.mesh()["extras"]["chronormal"]);
+  EXPECT_EQ(nodes[1]["extras"], "a note");
+  EXPECT_EQ(nodes[2]["extras"]["chronormal"], baked.mesh()["extras"]["chronormal"]);
+  EXPECT_EQ(baked.report.meshes[0].unmarked_nodes, std::vector<std::size_t>{1});
+  const auto tells = [](const std::string& warning) {
+    return warning.find("extras of node 1 is no object") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
+  // One delta for each target needs no drivers.
+  const Baked endpoint = test::bake_document(builder, with(BakeEncoding::kEndpoint));
+  EXPECT_FALSE(endpoint.json()["nodes"][0]["extras"].contains("chronormal"));
+}
+
+TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
+  for (const float length : {3e38F, 1e12F, 1e-12F, 1e-38F}) {
+    GltfBuilder builder;
+    test::Hills hills(3);
+    const std::vector<float> targets[] = {hills.deltas(), hills.deltas()};
+    for (float& c : hills.normals) c *= length;
+    builder.add_node(builder.add_mesh(hills.primitive(builder, {targets[0], targets[1]})));
+    builder.add_animation("move");
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0.5F, 1, -0.5F});
+    for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
+      const Baked baked = test::bake_document(builder, with(encoding));
+      ASSERT_EQ(baked.error, "");
+      EXPECT_EQ(baked.report.meshes[0].rescaled, 25U);
+      for (const float c : baked.numbers(baked.mesh()["primitives"][0]["attributes"]["NORMAL"]))
+        EXPECT_LE(std::fabs(c), 1);
+      if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
+    }
+  }
+  // Others stay to the bit.
+  const Baked usual = test::bake_document(test::still_hills_document(1));
+  EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
+  EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
+            usual.before->json["meshes"][0]["primitives"][0]["attributes"]);
+}
+
+TEST(Bake, a_target_that_moves_normals_alone_moves_none_when_it_was_baked) {
+  for (const bool is_alone : {false, true}) {
+    GltfBuilder builder;
+    test::Hills hills(4);
+    std::vector<std::vector<float>> targets;
+    if (!is_alone) targets.push_back(hills.deltas());
+    Json primitive = hills.primitive(builder, targets);
+    primitive["targets"].push_back({{"NORMAL", builder.add_positions(hills.deltas())}});
+    builder.add_node(builder.add_mesh(primitive));
+    const Baked baked = test::bake_document(builder);
+    ASSERT_EQ(baked.error, "");
+    ASSERT_EQ(baked.report.meshes.size(), 1U);
+    EXPECT_EQ(baked.report.meshes[0].stilled, 1U);
+    const Json& after = baked.mesh()["primitives"][0]["targets"][is_alone ? 0 : 1];
+    for (const float c : baked.numbers(after["NORMAL"])) EXPECT_EQ(c, 0);
+  }
+}
+
+TEST(Bake, keys_that_are_too_near_for_the_slopes_of_products_are_told_of) {
+  GltfBuilder builder = test::hills_document(1);
+  builder.add_track(0, 0, std::vector<float>{0, 1e-45F, 1}, std::vector<float>{0, 1, 0});
+  const Baked baked = test::bake_document(builder);
+  ASSERT_EQ(baked.error, "");
+  EXPECT_NEAR(baked.report.meshes[0].resampling_error, 180, 1e-9);
+  const auto tells = [](const std::string& warning) { return warning.find("near to each other") != std::string::npos; };
+  EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
 }
 
 TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {

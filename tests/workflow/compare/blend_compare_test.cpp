@@ -339,6 +339,25 @@ TEST(BlendCompare, meshes_without_normals_and_those_that_stand_still_are_counted
   EXPECT_EQ(result.still, 1U);
 }
 
+TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_lit_is_off_by_180_degrees) {
+  // Deltas that take the base normal away: at weight 1 the file shows nothing, and the geometry has a normal there.
+  ShadedMesh mesh = random_sheet(5, 5, 1, 0.1);
+  mesh.targets[0].normals.clear();
+  for (const float c : mesh.normals) mesh.targets[0].normals.push_back(-c);
+  GltfBuilder builder = mesh.file();
+  builder.add_track<float>(builder.add_animation("away"), 0, {0, 1}, {1, 1}, "STEP");
+  const BlendErrors errors = compared(builder, {.animation = "away"}).subjects[0].errors[0];
+  ASSERT_EQ(errors.deltas.size(), 4U);
+  for (const BlendError& error : errors.deltas) {
+    EXPECT_EQ(error.quality.count, 50U) << name_of(error.deltas);
+    EXPECT_EQ(error.quality.degenerate, 0U);
+  }
+  const Quality& file = quality(errors, BlendDeltas::kFile);
+  EXPECT_EQ(file.missing, 50U);
+  EXPECT_NEAR(degrees(file.mean()), 180, 1e-9);
+  EXPECT_EQ(quality(errors, BlendDeltas::kExact).missing, 0U);
+}
+
 TEST(BlendCompare, normals_that_collapse_are_left_out) {
   // A triangle that the target folds onto a line: at weight 1, and nowhere else, it has no normal.
   GltfBuilder builder;

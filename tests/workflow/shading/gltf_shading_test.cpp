@@ -235,23 +235,45 @@ GltfBuilder marked(const Json& mark) {
   return builder;
 }
 
-Json good_mark() {
+// As version 1 wrote it, and the same as version 2 does.
+Json mark_of_factors() {
   return {{"version", 1},
           {"encode", "exact"},
           {"sequence", false},
           {"extras", {{{"target", 2}, {"factors", {0, 0}}}, {{"target", 3}, {"factors", {1, "base"}}}}}};
 }
+Json good_mark() {
+  return R"({"version": 2, "encode": "exact", "sequence": false, "extras": [
+    {"target": 2, "linear": [], "quadratic": [[0, 0, 1]]},
+    {"target": 3, "linear": [[1, 1]], "quadratic": [[0, 1, -1], [1, 1, -1]]}]})"_json;
+}
 
-TEST(GltfShading, mark_of_a_bake_says_which_weights_are_products) {
-  const GltfShading shading = read(marked(good_mark()));
-  ASSERT_TRUE(shading.mark.has_value());
-  EXPECT_EQ(shading.mark->encoding, BakeEncoding::kExact);
-  EXPECT_FALSE(shading.mark->sequence);
-  EXPECT_EQ(shading.mark->extras, (std::vector<GltfExtraTarget>{{2, 0, 0}, {3, 1, GltfExtraTarget::kBase}}));
-  EXPECT_EQ(shading.own_targets(), 2U);
-  std::vector<double> weights = {0.5, 0.25, 9, 9};
-  fill_extra_weights(shading, weights);
-  EXPECT_EQ(weights, (std::vector<double>{0.5, 0.25, 0.25, 0.0625}));
+TEST(GltfShading, mark_of_a_bake_says_which_weights_follow_in_both_versions) {
+  for (const Json& mark : {good_mark(), mark_of_factors()}) {
+    const GltfShading shading = read(marked(mark));
+    ASSERT_TRUE(shading.mark.has_value());
+    EXPECT_EQ(shading.mark->encoding, BakeEncoding::kExact);
+    EXPECT_FALSE(shading.mark->sequence);
+    EXPECT_EQ(shading.mark->extras,
+              (std::vector<GltfExtraTarget>{{2, {}, {{0, 0, 1}}}, {3, {{1, 1}}, {{0, 1, -1}, {1, 1, -1}}}}));
+    EXPECT_EQ(shading.own_targets(), 2U);
+    std::vector<double> weights = {0.5, 0.25, 9, 9};
+    fill_extra_weights(shading, weights);
+    EXPECT_EQ(weights, (std::vector<double>{0.5, 0.25, 0.25, 0.0625}));
+  }
+}
+
+TEST(GltfShading, weight_of_an_extra_target_is_the_sum_of_its_terms) {
+  Json mark = good_mark();
+  mark["extras"][1]["linear"] = {{0, -2.5}, {1, 0.5}};
+  mark["extras"][1]["quadratic"] = {{0, 1, 3}, {1, 1, 0.25}};
+  const GltfExtraTarget extra = read(marked(mark)).mark->extras[1];
+  EXPECT_DOUBLE_EQ(extra.weight(std::vector<double>{2, 4, 0, 0}), -5 + 2 + 24 + 4);
+  EXPECT_TRUE(extra.follows(0));
+  EXPECT_TRUE(extra.follows(1));
+  mark["extras"][1]["linear"] = Json::array();
+  EXPECT_FALSE(read(marked(mark)).mark->extras[1].follows(0)) << "alone, a factor of a product makes nothing";
+  EXPECT_TRUE(read(marked(mark)).mark->extras[1].follows(1));
 }
 
 TEST(GltfShading, mark_without_extra_targets_is_a_mark) {
@@ -263,8 +285,9 @@ TEST(GltfShading, mark_without_extra_targets_is_a_mark) {
 }
 
 TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothing_else_is) {
-  const auto with = [](const char* pointer, const Json& value) {
-    Json mark = good_mark();
+  Json good = good_mark();
+  const auto with = [&good](const char* pointer, const Json& value) {
+    Json mark = good;
     mark[Json::json_pointer(pointer)] = value;
     return error_of(marked(mark));
   };
@@ -272,7 +295,7 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
     return text.find(word) != std::string::npos ? "" : text + " has no " + word;
   };
   const std::string at = "a.gltf, /meshes/0/extras/chronormal";
-  EXPECT_EQ(has(with("/version", 2), at + "/version"), "");
+  EXPECT_EQ(has(with("/version", 3), at + "/version"), "");
   EXPECT_EQ(has(with("/encode", "best"), at + "/encode"), "");
   EXPECT_EQ(has(with("/encode", 3), at + "/encode"), "");
   EXPECT_EQ(has(with("/sequence", "no"), at + "/sequence"), "");
@@ -280,7 +303,18 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
   EXPECT_EQ(has(with("/extras/0", 5), at + "/extras/0"), "");
   EXPECT_EQ(has(with("/extras/1/target", 2), at + "/extras/1/target"), "");
   EXPECT_EQ(has(with("/extras/1/target", 4), at + "/extras/1/target"), "");
-  EXPECT_EQ(has(with("/extras/0/factors/1", 2), at + "/extras/0/factors"), "");
+  EXPECT_EQ(has(with("/extras/0/linear", 1), at + "/extras/0/linear"), "");
+  EXPECT_EQ(has(with("/extras/1/linear/0", {1, 1, 1}), at + "/extras/1/linear/0"), "");
+  EXPECT_EQ(has(with("/extras/1/linear/0/1", "1"), at + "/extras/1/linear/0/1"), "");
+  EXPECT_EQ(has(with("/extras/1/linear/0/0", 4), at + "/extras/1/linear/0/0"), "");
+  EXPECT_EQ(has(with("/extras/1/linear/0/0", 2), at + "/extras/1"), "") << "an extra target follows from no other";
+  EXPECT_EQ(has(with("/extras/0/quadratic/0", {0, 1}), at + "/extras/0/quadratic/0"), "");
+  EXPECT_EQ(has(with("/extras/0/quadratic/0/1", 2.5), at + "/extras/0/quadratic/0/1"), "");
+  EXPECT_EQ(has(with("/extras/0/quadratic/0/1", 3), at + "/extras/0"), "");
+  EXPECT_EQ(has(with("/extras/0/quadratic/0/2", nullptr), at + "/extras/0/quadratic/0/2"), "");
+  good = mark_of_factors();
+  EXPECT_EQ(has(with("/extras/0/factors/1", 2), at + "/extras/0"), "");
+  EXPECT_EQ(has(with("/extras/1/factors/0", "base"), at + "/extras/1/factors"), "");
   EXPECT_EQ(has(with("/extras/0/factors/1", "all"), at + "/extras/0/factors/1"), "");
   EXPECT_EQ(has(with("/extras/0/factors", {1}), at + "/extras/0/factors"), "");
   EXPECT_EQ(has(error_of(marked("none")), at), "");
