@@ -10,6 +10,7 @@
 #include "chronormal/workflow/audit.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
+#include "cli/print.h"
 #include "cli/text.h"
 
 namespace chronormal::cli {
@@ -83,7 +84,6 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   how.weighting = weighting.value();
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
-  if (options.samples && *options.samples < 2) return misuse("--samples", "there must be 2 or more: both ends");
   if (options.input.world)
     return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -106,8 +106,8 @@ Result<int> run(const Options& options) {
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
   if (audited.value().passed()) return kExitDone;
-  fmt::print(stderr, "chronormal audit: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}\n",
-             audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value()));
+  say("audit", fmt::format("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}",
+                           audited.value().audit.error.worst, *options.tolerance, worst_label(audited.value())));
   return kExitBeyond;
 }
 
@@ -124,9 +124,11 @@ Command audit_command() {
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
         {"--weighting NAME", &options->weighting,
          "of the right normals: area (default), angle, uniform, area-angle, max"},
-        {"--samples N", &options->samples,
+        {"--samples N",
+         &options->samples,
          "per segment, ends included (default 21; 5 in animations of more than\n"
-         "32 key intervals)"},
+         "32 key intervals)",
+         {.check = check_whole(2, kMostAuditSamples)}},
         {"--tolerance DEG", &options->tolerance, "exit with 4 if the worst error is beyond this"},
         {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
         {"--json", &options->json, "one JSON object"}},

@@ -15,7 +15,7 @@
 #include "chronormal/workflow/audit.h"
 #include "cli/bake_report.h"
 #include "cli/command.h"
-#include "cli/text.h"
+#include "cli/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -61,36 +61,41 @@ Result<BakeOptions> understand(const Options& options) {
 }
 
 // Where the report goes: beside the result, or out of its way.
-void say(const Options& options, const std::string& text, const std::string& json) {
-  if (options.json)
-    fmt::print("{}", json);
-  else if (!is_stream(options.common.output))
-    fmt::print("{}", text);
-  else if (!options.common.quiet)
-    fmt::print(stderr, "{}", text);
+Result<int> report(const Options& options, const std::string& text, const std::string& json) {
+  const bool is_aside = is_stream(options.common.output) && !options.json;
+  if (is_aside && !options.common.quiet) say_raw(text);
+  if (is_aside) return kExitDone;
+  const Status printed = print(options.json ? json : text);
+  if (!printed) return printed.error();
+  return kExitDone;
 }
 
 void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "chronormal bake: {}\n", printable(warning));
+  for (const std::string& warning : warnings) say("bake", warning);
 }
 
 std::string drivers_path(const std::string& output) {
   return std::filesystem::path(output).replace_extension(".drivers.json").string();
 }
 
-// What audit(how) says of what was there before, and audit() of the file that was written.
+// What audit(how) says of what was there before, and audit() of the file that was written; nothing where there is nothing
+// to judge. Errors: kFailed where the file cannot be read.
 template <class AuditBefore>
-std::optional<BeforeAndAfter> audit_both(const BakeOptions& how, const Options& options,
-                                         const AuditBefore& audit_before) {
-  if (options.no_audit || is_stream(options.common.output)) return std::nullopt;
+Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const Options& options,
+                                                 const AuditBefore& audit_before) {
+  std::optional<BeforeAndAfter> result;
+  if (options.no_audit || is_stream(options.common.output)) return result;
   AuditOptions audited;
   audited.weighting = how.weighting;
-  const GltfOptions gltf{.allow_external = options.input.allow_external};
+  const GltfOptions gltf{.allow_external = options.input.allow_external, .max_expansion = options.input.max_expansion};
   const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
-  if (!after) return std::nullopt;
+  if (!after) return after.error();
   const Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
-  if (!first || !second || first.value().subjects.empty()) return std::nullopt;
-  return BeforeAndAfter{first.value().error, second.value().error};
+  for (const Result<Audit>* audit : {&first, &second})
+    if (!*audit && audit->error().code == ErrorCode::kFailed) return audit->error();
+  if (first && second && !first.value().subjects.empty())
+    result = BeforeAndAfter{first.value().error, second.value().error};
+  return result;
 }
 
 Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
@@ -128,10 +133,11 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   }
   warn(warnings);
   if (baked.value().changed && input.file_size() <= kMostAudited) {
-    told.audit = audit_both(how, options, [&](const AuditOptions& audited) { return audit(document, audited); });
+    auto audited = audit_both(how, options, [&](const AuditOptions& asked) { return audit(document, asked); });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
   }
-  say(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
-  return kExitDone;
+  return report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
 }
 
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
@@ -153,6 +159,7 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
     how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
   }
   how.progress = progress.callback("baking");
+  how.expansion = input.expansion();
   std::string glb;
   const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
   progress.clear();
@@ -162,14 +169,15 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
-    told.audit = audit_both(how, options, [&](AuditOptions audited) {
-      audited.rule = AuditRule::kNlerp;
-      return audit(motion, stored, audited);
+    auto audited = audit_both(how, options, [&](AuditOptions asked) {
+      asked.rule = AuditRule::kNlerp;
+      return audit(motion, stored, asked);
     });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
   }
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
-  say(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
-  return kExitDone;
+  return report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
 }
 
 Result<int> run(const Options& options) {
@@ -208,10 +216,10 @@ Command bake_command() {
              "more than this are hard (default 180: none)"},
             {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
             {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
-            {"--max-bytes N:NONNEGATIVE",
+            {"--max-bytes N",
              &options->most_bytes,
              "fail where more bytes of arrays would be added",
-             {.check = check_not_negative}},
+             {.check = check_whole(0)}},
             {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
             {"--tolerance DEG", &options->tolerance,
              "leave out targets that turn no normal by more than this, and cut cubic\n"

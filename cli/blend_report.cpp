@@ -28,7 +28,7 @@ bool is_several_primitives(const BlendSubject& subject) {
 }
 
 std::string headline(const NamedBlendComparison& input, const BlendSubject& subject) {
-  std::string text = input.name;
+  std::string text = printable(input.name);
   if (subject.mesh) {
     text += fmt::format(", mesh {}", *subject.mesh);
     if (!subject.name.empty()) text += fmt::format(" '{}'", printable(subject.name, kShownName));

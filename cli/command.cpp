@@ -49,6 +49,11 @@ std::vector<Option> input_table(InputOptions& input) {
            {.check = check_given("it must be a name or an index")}},
           {"--world", &input.world, "vertices of a glTF file are where its nodes put them"},
           {"--allow-external", &input.allow_external, "a glTF file may name files outside its folder"},
+          {"--max-expansion N",
+           &input.max_expansion,
+           "what is read may ask for N times its bytes of memory and output (default 100;\n"
+           "always for 32 MiB)",
+           {.check = check_whole(0)}},
           {"--sample NAME", &input.samples, morph_list()},
           {"--fps N", &input.frames_per_second, "frames per second of the keyframes (default 1)"}};
 }

@@ -14,7 +14,6 @@ namespace chronormal::cli {
 namespace {
 
 constexpr std::size_t kMostSamples = 1000000;
-constexpr const char* kSampleRange = "it must be a whole number from 2 to 1,000,000";
 
 struct Options {
   InputOptions input;
@@ -143,7 +142,6 @@ Result<int> run_blend(const Options& options) {
 Result<int> run(const Options& options) {
   if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
-  if (options.sample_count() < 2 || options.sample_count() > kMostSamples) return misuse("--samples", kSampleRange);
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
@@ -185,7 +183,7 @@ Command compare_command() {
             {"--samples N",
              &options->samples,
              "samples per segment, ends included (default 21)",
-             {.check = check_given(kSampleRange)}}},
+             {.check = check_whole(2, kMostSamples)}}},
            options->elements.table(),
            {{"--access KIND",
              &options->access,

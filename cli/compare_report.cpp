@@ -6,6 +6,7 @@
 #include "cli/inspect_trouble.h"
 #include "cli/json.h"
 #include "cli/table.h"
+#include "cli/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -19,7 +20,7 @@ bool is_of_targets(const Comparison& comparison) { return comparison.motion == M
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   return fmt::format(
-             "{}: {}, {}, {} x {} samples\n", input.name, counted(c.vertices, "vertex", "vertices"),
+             "{}: {}, {}, {} x {} samples\n", printable(input.name), counted(c.vertices, "vertex", "vertices"),
              counted(c.faces, "face", "faces"),
              counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
              c.samples) +
@@ -114,7 +115,8 @@ std::string one_element(ElementKind kind) {
   return kind == ElementKind::kCorners ? "corner" : "face";
 }
 
-std::string csv_field(const std::string& text) {
+std::string csv_field(const std::string& field) {
+  const std::string text = printable(field);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {
@@ -172,7 +174,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   Table table;
   table.add_column("scheme", "", Align::kLeft);
   for (const NamedComparison& input : inputs) {
-    table.add_column(short_name(input.name), "sum, degrees", Align::kRight);
+    table.add_column(printable(short_name(input.name)), "sum, degrees", Align::kRight);
     table.add_column("", "vs linear", Align::kRight);
   }
   const std::size_t rows = inputs.front().comparison.schemes.size();
@@ -186,7 +188,8 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
     table.add_row(std::move(cells));
   }
   std::string remarks;
-  for (const NamedComparison& input : inputs) remarks += notes(input.comparison, short_name(input.name) + ": ");
+  for (const NamedComparison& input : inputs)
+    remarks += notes(input.comparison, printable(short_name(input.name)) + ": ");
   return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
 }
 

@@ -20,8 +20,9 @@ Result<int> run(const Options& options) {
   if (!input) return input.error();
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();
-  if (const Status written = write_motion(*motion.value(), options.common.output, options.common.force); !written)
-    return written.error();
+  const Status written =
+      write_motion(*motion.value(), options.common.output, options.common.force, input.value().expansion());
+  if (!written) return written.error();
   return kExitDone;
 }
 

@@ -1,11 +1,15 @@
 #include "cli/json.h"
 
+#include "cli/text.h"
 #include "cli/version.h"
 
 namespace chronormal::cli {
 
 Json json_of_command(const char* command) { return {{"chronormal", kVersion}, {"command", command}, {"schema", 1}}; }
 
-std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
+// Control characters that JSON lets stand are those from DEL on, inside of texts: as escapes they are the same texts.
+std::string json_text(const Json& json) {
+  return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
+}
 
 }  // namespace chronormal::cli

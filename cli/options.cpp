@@ -6,17 +6,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "cli/text.h"
+#include "cli/print.h"
+#include "cli/table.h"
 #include "cli/version.h"
 
 namespace chronormal::cli {
 namespace {
 
-constexpr int kExitUsage = 2;
+constexpr int kExitDone = 0, kExitUsage = 2;
 
 CLI::Option* add_target(CLI::App& command, const std::string& names, bool* target, const std::string& help) {
   return command.add_flag(names, *target, help);
@@ -62,10 +64,14 @@ void add_command(const Command& command, CLI::App& program) {
     for (const Option& option : table) add_option(option, *added);
 }
 
-// Prints the error, and returns its exit code.
+void say_where_help_is(std::string_view command) {
+  say_raw(fmt::format("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
+}
+
+// Says the error, and returns its exit code.
 int report(const std::string& command, const Error& error) {
-  fmt::print(stderr, "chronormal {}: {}\n", command, printable(error.text()));  // it may quote a file
-  if (error.code == ErrorCode::kUsage) fmt::print(stderr, "Try: chronormal {} --help\n", command);
+  say(command, error.text());
+  if (error.code == ErrorCode::kUsage) say_where_help_is(command);
   return static_cast<int>(error.code);
 }
 
@@ -78,16 +84,26 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
     names += (names.empty() ? "" : ", ") + command.name;
   }
   if (first.empty())
-    fmt::print(stderr, "chronormal: name a command: {}\n", names);
+    say("", "name a command: " + names);
   else
-    fmt::print(stderr, "chronormal: there is no command '{}'; there are {}\n", first, names);
-  fmt::print(stderr, "Try: chronormal --help\n");
+    say("", fmt::format("there is no command '{}'; there are {}", first, names));
+  say_where_help_is("");
   return false;
 }
 
 }  // namespace
 
-std::string check_not_negative(const std::string& value) { return CLI::NonNegativeNumber(value); }
+Check check_whole(std::size_t least, std::size_t most) {
+  const std::string range = most == static_cast<std::size_t>(-1)
+                                ? fmt::format("of {} or more", grouped(least))
+                                : fmt::format("from {} to {}", grouped(least), grouped(most));
+  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
+    std::size_t number = 0;
+    const char* const last = value.data() + value.size();
+    const auto [end, code] = std::from_chars(value.data(), last, number);
+    return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
+  };
+}
 
 Check check_given(std::string message) {
   return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
@@ -107,13 +123,15 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::Success& request) {  // --help and --version
-    return program.exit(request);
+    std::ostringstream text;
+    (void)program.exit(request, text, text);
+    const Status printed = print(text.str());
+    return printed ? kExitDone : report("", printed.error());
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
-    const std::string name = parsed.empty() ? "" : " " + parsed.front()->get_name();
-    const std::string message =
-        parsed.empty() ? fmt::format("there is no option '{}' before a command", first) : error.what();
-    fmt::print(stderr, "chronormal{}: {}\nTry: chronormal{} --help\n", name, message, name);
+    const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
+    say(name, parsed.empty() ? fmt::format("there is no option '{}' before a command", first) : error.what());
+    say_where_help_is(name);
     return kExitUsage;
   }
   const auto chosen = std::find_if(commands.begin(), commands.end(),

@@ -45,8 +45,8 @@ struct Command {
   std::function<Result<int>()> run;  ///< returns the exit code; the targets of the options have their values by then
 };
 
-/// Checks that the value is a number, 0 or more.
-[[nodiscard]] std::string check_not_negative(const std::string& value);
+/// A check that the value is a whole number in a range, in digits alone.
+[[nodiscard]] Check check_whole(std::size_t least, std::size_t most = static_cast<std::size_t>(-1));
 
 /// A check that there is a value, with the message otherwise.
 [[nodiscard]] Check check_given(std::string message);

@@ -3,10 +3,11 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <utility>
+
+#include "cli/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -37,12 +38,11 @@ void Progress::show(const std::string& label, std::size_t done, std::size_t tota
   if (percent == last_percent_) return;
   last_percent_ = percent;
   visible_ = true;
-  fmt::print(stderr, "\r{} [{:=<{}}{:<{}}] {:3} %", label, "", filled, "", kWidth - filled, percent);
-  std::fflush(stderr);
+  say_raw(fmt::format("\r{} [{:=<{}}{:<{}}] {:3} %", label, "", filled, "", kWidth - filled, percent));
 }
 
 void Progress::clear() {
-  if (visible_) fmt::print(stderr, "\r\033[K");
+  if (visible_) say_raw("\r\033[K");
   visible_ = false;
   last_percent_ = -1;
 }

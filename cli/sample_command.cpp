@@ -10,6 +10,8 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/command.h"
+#include "cli/print.h"
+#include "cli/table.h"
 
 namespace chronormal::cli {
 namespace {
@@ -239,6 +241,20 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
+// Says how much was asked for, where that is much: it is not refused.
+void announce(const Topology& topology, const Request& request) {
+  constexpr double kMuch = 1e9;
+  const ElementKind kind = request.sample.elements.kind;
+  const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()
+                               : kind == ElementKind::kCorners ? topology.corner_count()
+                                                               : topology.vertex_count();
+  const double bytes =
+      3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(request.moments.count());
+  if (bytes >= kMuch)
+    say("sample", fmt::format("the normals of {} times {} elements are {:.1f} GB", grouped(request.moments.count()),
+                              grouped(elements), bytes / 1e9));
+}
+
 Result<int> run(const Options& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
@@ -253,6 +269,7 @@ Result<int> run(const Options& options) {
   if (!read) return read.error();
   const Motion& motion = *read.value();
   if (const Status status = fit_moments(motion, request.moments); !status) return status.error();
+  if (!options.common.quiet) announce(motion.topology, request);
   if (!options.hard_edges.empty()) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
@@ -262,8 +279,8 @@ Result<int> run(const Options& options) {
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)
-    fmt::print(stderr, "chronormal sample: {} of {} normals of {} are (0, 0, 0): there is no area to give them one\n",
-               written.value().zeros, written.value().normals, options.elements.kind());
+    say("sample", fmt::format("{} of {} normals of {} are (0, 0, 0): there is no area to give them one",
+                              written.value().zeros, written.value().normals, options.elements.kind()));
   return kExitDone;
 }
 

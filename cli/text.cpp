@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -71,6 +72,22 @@ std::string printable(std::string_view text, std::size_t most) {
   }
   std::string result;
   for (const std::string& piece : pieces) result += piece;
+  return result;
+}
+
+std::string escaped_for_json(std::string_view document) {
+  std::string result;
+  for (std::size_t at = 0; at < document.size();) {
+    std::uint32_t character = 0;
+    const std::size_t length = length_of_character(document.substr(at), character);
+    if (length > 1 && !is_safe(character))
+      result += fmt::format("\\u{:04x}", character);
+    else if (length == 1 && character == 0x7F)
+      result += "\\u007f";
+    else
+      result += document.substr(at, std::max<std::size_t>(length, 1));
+    at += std::max<std::size_t>(length, 1);
+  }
   return result;
 }
 

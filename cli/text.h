@@ -13,6 +13,9 @@ namespace chronormal::cli {
 /// 4 <= most
 [[nodiscard]] std::string printable(std::string_view text, std::size_t most = static_cast<std::size_t>(-1));
 
+/// The text of a JSON document, in UTF-8, with the same characters as \uNNNN inside its strings; line ends stay.
+[[nodiscard]] std::string escaped_for_json(std::string_view document);
+
 /// How many columns of a terminal a text takes: one for each character of UTF-8.
 [[nodiscard]] std::size_t width_of(std::string_view text) noexcept;
 

@@ -31,6 +31,7 @@
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
+#include "chronormal/io/expansion.h"       // how much a file may make us hold or write
 #include "chronormal/io/gltf_document.h"   // glTF 2.0 files: what is in them, and their meshes as arrays
 #include "chronormal/io/gltf_edit.h"       // changes to a glTF file that keep every other byte
 #include "chronormal/io/input.h"           // the one door: motions, meshes and documents from files of every format

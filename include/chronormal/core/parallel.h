@@ -8,7 +8,8 @@
 namespace chronormal {
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
-/// done. The first exception that body throws is thrown here. Over oneTBB; one after the other in a build without it.
+/// done. The first exception that body throws is thrown here. Over oneTBB; one after the other in a build without it, and
+/// where the system gives this process no threads (found out once, when it is first asked).
 /// A result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
@@ -20,7 +21,7 @@ enum class Threads { kOne, kAll };
 
 /// While it lives, parallel_for on this thread uses this many threads, also more than there are cores (64 at
 /// most): for tests, benchmarks, and programs that want some cores for themselves. Limits may be nested; the innermost
-/// counts. A build without oneTBB has one thread whatever the limit.
+/// counts. A build without oneTBB, or a process that gets no threads, has one whatever the limit.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/normals/transform.h"
 
 namespace chronormal {
@@ -155,6 +156,7 @@ struct GltfOptions {
   bool allow_external = false;  ///< read buffers from files outside the folder of the asset
   /// The most memory that the arrays of one primitive may take: a small file can ask for much.
   std::size_t most_bytes = std::size_t{4} << 30;
+  std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
   /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
   FileResolver resolve = {};
 };
@@ -192,6 +194,8 @@ class GltfDocument {
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
+  /// How much the document may ask for, by its size and that of the files that hold its buffers.
+  [[nodiscard]] Expansion expansion() const;
 
   /// The part of a geometry that is wanted beside faces and positions.
   struct Wanted {

@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 
@@ -51,7 +52,8 @@ struct InputOptions {
   std::string animation = {};        ///< of a glTF file, by name or index; empty: its morph targets
   bool world = false;                ///< vertices of a glTF file are where its nodes put them
   bool allow_external = false;       ///< a glTF file may name files outside its folder
-  bool allow_mesh = false;           ///< a mesh that does not move is an input, too
+  std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
+  bool allow_mesh = false;                        ///< a mesh that does not move is an input, too
   KeepShading shading = KeepShading::kNone;
   /// Where the bytes of files come from; empty: the file system. With a resolver, files are names and not patterns or
   /// folders, and a glTF file's buffers are asked for by their paths below its folder.
@@ -80,6 +82,9 @@ class Input {
   [[nodiscard]] const std::string& name() const noexcept;
   /// Bytes of the file, where the input is a document.
   [[nodiscard]] std::size_t file_size() const noexcept;
+
+  /// How much the input may ask for, by the bytes that were read of it; a built-in morph is not limited.
+  [[nodiscard]] Expansion expansion() const;
 
   /// The glTF file that the input is; nullptr where it is none. It lives as long as the input.
   [[nodiscard]] const GltfDocument* document() const noexcept;

@@ -21,6 +21,8 @@
 
 namespace chronormal {
 
+class Expansion;  // io/expansion.h
+
 /// Refuses now what write_output() would refuse later: a folder, or an existing file without force. Asks before a long
 /// computation, and before the first of many files.
 [[nodiscard]] Status check_output(const std::string& path, bool force);
@@ -34,6 +36,10 @@ namespace chronormal {
 [[nodiscard]] Status write_output(const std::string& path, std::string_view bytes, bool force);
 /// The same of a file in pieces, which come one after the other: what lies elsewhere already needs no copy.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
+
+/// Removes all temporary files that write_output() is writing now, in any thread: for a handler of a signal that ends the
+/// process, which must end it then. Safe to call from there.
+void remove_temporaries() noexcept;
 
 /// The names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from 0; it
 /// may be missing where count is at most 1. Errors: kUsage for a pattern of another form.
@@ -49,10 +55,13 @@ namespace chronormal {
 ///     .obj, .ply    every keyframe into a file of its own, of numbered_names(); .ply is binary, little endian
 ///
 /// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
-/// Errors: kUsage with path as the place for another extension, a pattern of another form, and a motion that the format
+/// expansion is that of the file that the motion came from, if any: a file for each keyframe repeats all faces.
+/// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form, and a motion that the format
 /// does not hold: targets in a point cache, faces of different numbers of corners in .npz. Else those of
 /// write_output(); where a file exists and force is not given, nothing is written.
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force);
+[[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force,
+                                  const Expansion& expansion);
 
 }  // namespace chronormal
 

@@ -59,6 +59,8 @@ inline constexpr double kAuditFault = 1;  // degrees
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
+inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
+
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/motion/motion.h"
@@ -34,7 +35,8 @@ struct BakeOptions {
   VectorView<const float> normal_of_corner = {};
   bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
-  std::optional<std::size_t> most_bytes = {};  ///< refuse to add more than this
+  std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
+  Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
   /// Degrees: pairs whose lack, all together, turns no normal by more are left out; cubic splines are cut to this.
   double tolerance = 0.001;
   std::function<void(std::size_t done, std::size_t total)> progress = {};

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -16,39 +17,14 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "io/bytes/descriptor.h"
+#include "io/bytes/temporary_file.h"
 
 namespace chronormal {
 namespace {
 
 Error failure(const std::string& path, int system_error) {
   return Error{ErrorCode::kFailed, path, std::generic_category().message(system_error)};
-}
-
-// A file descriptor that is closed when its time is over.
-class Descriptor {
- public:
-  explicit Descriptor(int number) noexcept : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-
-  [[nodiscard]] int number() const noexcept { return number_; }
-  [[nodiscard]] bool is_open() const noexcept { return number_ >= 0; }
-
-  /// Closes now. False, with errno, where the system could not write what was left.
-  [[nodiscard]] bool close() noexcept { return ::close(std::exchange(number_, -1)) == 0 || errno == EINTR; }
-
- private:
-  int number_;
-};
-
-int open_descriptor(const std::string& path, int flags, mode_t mode = 0) {
-  int descriptor = -1;
-  do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
-  while (descriptor < 0 && errno == EINTR);
-  return descriptor;
 }
 
 // Waits where the other side set a pipe to non-blocking. False for any other error in errno.
@@ -59,12 +35,12 @@ bool may_go_on(int descriptor, short events) {
   return ::poll(&waiting, 1, -1) >= 0 || errno == EINTR;
 }
 
-// Reads to the end. False, with errno, on failure.
-bool read_all(int descriptor, std::string& bytes) {
+// Reads to the end, or until there are more than `most` bytes. False, with errno, on failure.
+bool read_all(int descriptor, std::size_t most, std::string& bytes) {
   constexpr std::size_t kFirstBlock = std::size_t{1} << 16;
   std::size_t size = 0;
-  while (true) {
-    if (size == bytes.size()) bytes.resize(size == 0 ? kFirstBlock : 2 * size);
+  while (size <= most) {
+    if (size == bytes.size()) bytes.resize(std::min(size == 0 ? kFirstBlock : 2 * size, most + 1));
     const ssize_t count = ::read(descriptor, bytes.data() + size, bytes.size() - size);
     if (count == 0) break;
     if (count > 0) {
@@ -135,26 +111,6 @@ std::string follow_links(const std::string& path) {
   return target.string();
 }
 
-// Opens a new file beside target. The name is free of anything that target has, so that it is never too long.
-int open_temporary(const std::string& target, mode_t mode, std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-  for (int attempt = 0; attempt < 1000; ++attempt) {
-    name = (folder / (".chronormal-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp")).string();
-    const int descriptor = open_descriptor(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, mode);
-    if (descriptor >= 0 || errno != EEXIST) return descriptor;
-  }
-  return -1;
-}
-
-// Renames without replacing a file that somebody else made meanwhile, where system and file system can do that.
-bool rename_to_new(const std::string& from, const std::string& to) {
-#ifdef RENAME_NOREPLACE
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
-  if (errno != EINVAL && errno != ENOSYS) return false;
-#endif
-  return std::rename(from.c_str(), to.c_str()) == 0;
-}
-
 // Makes the rename last through a power cut. File systems that can not do it are none of our business.
 void flush_folder_of(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -169,27 +125,24 @@ Error exists_already(const std::string& path) {
 // Writes target by way of a temporary sibling. old is what target is now, or null where it does not exist.
 Status replace_file(const std::string& path, const std::string& target, std::span<const std::string_view> pieces,
                     const struct stat* old, bool force) {
-  std::string temporary;
   // Until it has the permissions of the file that it replaces, nobody else may read it.
-  Descriptor file(open_temporary(target, old != nullptr ? 0600 : 0666, temporary));
+  TemporaryFile file(target, old != nullptr ? 0600 : 0666);
   if (!file.is_open()) {
     Error error = failure(path, errno);
     error.message = "can not write in its folder: " + error.message;
     return error;
   }
-  const auto prepare = [&] {
-    if (!write_all(file.number(), pieces)) return false;
+  const auto write = [&] {
+    if (!write_all(file.descriptor(), pieces)) return false;
     if (old != nullptr) {
-      if (::fchown(file.number(), old->st_uid, old->st_gid) != 0) errno = 0;  // only the owner or root may
-      if (::fchmod(file.number(), old->st_mode & 07777) != 0) return false;
+      if (::fchown(file.descriptor(), old->st_uid, old->st_gid) != 0) errno = 0;  // only the owner or root may
+      if (::fchmod(file.descriptor(), old->st_mode & 07777) != 0) return false;
     }
-    if (::fsync(file.number()) != 0 && errno != EINVAL && errno != EROFS) return false;
-    if (!file.close()) return false;
-    return force ? std::rename(temporary.c_str(), target.c_str()) == 0 : rename_to_new(temporary, target);
+    if (::fsync(file.descriptor()) != 0 && errno != EINVAL && errno != EROFS) return false;
+    return file.close() && file.rename_to(target, force);
   };
-  if (!prepare()) {
+  if (!write()) {
     const int system_error = errno;
-    (void)::unlink(temporary.c_str());
     if (system_error == EEXIST && !force) return exists_already(path);
     return failure(path, system_error);
   }
@@ -197,11 +150,16 @@ Status replace_file(const std::string& path, const std::string& target, std::spa
   return Success{};
 }
 
+// Whether reading would come to an end: not that of devices, of which /dev/zero is one; terminals end with a key.
+bool may_have_no_end(int descriptor, const struct stat& status) {
+  return S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0);
+}
+
 }  // namespace
 
-Result<FileBytes> FileBytes::open(const std::string& path) {
+Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_stream) {
   const bool is_stdin = path == "-";
-  const Descriptor opened(is_stdin ? -1 : open_descriptor(path, O_RDONLY));
+  const Descriptor opened(is_stdin ? -1 : open_descriptor(path, O_RDONLY | O_NOCTTY));
   if (!is_stdin && !opened.is_open()) return failure(path, errno);
   const int descriptor = is_stdin ? STDIN_FILENO : opened.number();
   const std::string place = is_stdin ? "<stdin>" : path;
@@ -209,6 +167,8 @@ Result<FileBytes> FileBytes::open(const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return failure(place, errno);
   if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, place, "this is a folder, not a file"};
+  if (may_have_no_end(descriptor, status))
+    return Error{ErrorCode::kFailed, place, "this is a device, not a file, and may have no end"};
 
   FileBytes file;
   if (!is_stdin && S_ISREG(status.st_mode) && status.st_size > 0) {
@@ -221,7 +181,11 @@ Result<FileBytes> FileBytes::open(const std::string& path) {
       return file;
     }
   }
-  if (!read_all(descriptor, file.owned_)) return failure(place, errno);
+  if (!read_all(descriptor, most_of_stream, file.owned_)) return failure(place, errno);
+  if (file.owned_.size() > most_of_stream)
+    return Error{ErrorCode::kFailed, place,
+                 "there is no end within " + std::to_string(most_of_stream) +
+                     " bytes, and no more are read of a stream: write them to a file, and give that"};
   return file;
 }
 

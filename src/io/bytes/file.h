@@ -14,13 +14,18 @@
 
 namespace chronormal::inline internal {
 
-/// The bytes of a file, as long as the object lives. Regular files are mapped (another program must not shorten the
-/// file meanwhile), pipes and devices are read to their end.
+/// The most bytes that are read of a pipe or a terminal, or of a file that says no size: they are held in memory.
+inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
+
+/// The bytes of a file, as long as the object lives. Regular files are mapped: where another program shortens one
+/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/process.h). Pipes and
+/// terminals are read to their end.
 class FileBytes {
  public:
   /// Opens a file; "-" is the standard input.
-  /// Errors: kFailed with the path as the place: not found, not readable, a folder.
-  [[nodiscard]] static Result<FileBytes> open(const std::string& path);
+  /// Errors: kFailed with the path as the place: not found, not readable, a folder, a device other than a terminal, a
+  /// stream of more than most_of_stream bytes.
+  [[nodiscard]] static Result<FileBytes> open(const std::string& path, std::size_t most_of_stream = kMostOfStream);
 
   /// The same of bytes that a resolver finds by the path, which are not copied; without a resolver as above.
   [[nodiscard]] static Result<FileBytes> open(

@@ -1,5 +1,6 @@
 #include "io/cache/npz.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -113,8 +114,8 @@ Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
 // The arrays of an archive, one at a time.
 class Archive {
  public:
-  Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members)
-      : bytes_(bytes), name_(name), members_(std::move(members)) {}
+  Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members, std::size_t max_expansion)
+      : bytes_(bytes), name_(name), members_(std::move(members)), expansion_(max_expansion, bytes.size()) {}
 
   [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
   [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
@@ -122,18 +123,19 @@ class Archive {
   // The bytes of the file of that small array; good until the next call.
   [[nodiscard]] Result<std::string_view> bytes(std::string_view array) {
     const zip::Member* const member = find(array);
-    if (member == nullptr) return invalid_input(place(array), "the file has no array of this name");
+    if (member == nullptr) return missing(array);
     return zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
   }
 
   // Reads the array of that name into storage_, or finds it in the file; good until the next call.
   [[nodiscard]] Result<Array> read(std::string_view array) {
     const zip::Member* const member = find(array);
-    if (member == nullptr) return invalid_input(place(array), "the file has no array of this name");
+    if (member == nullptr) return missing(array);
     Result<std::string_view> start = zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
     if (!start) return start.error();
     Result<Array> result = npy::read_header(start.value(), member->size, place(array));
     if (!result) return result;
+    if (Status status = ask_for(*member, result.value()); !status) return status.error();
     const Result<std::string_view> all =
         start.value().size() == member->size
             ? start
@@ -144,6 +146,17 @@ class Archive {
   }
 
  private:
+  [[nodiscard]] Error missing(std::string_view array) const {
+    constexpr std::size_t kMostNamed = 8;
+    std::string names;
+    for (std::size_t i = 0; i < members_.size() && i <= kMostNamed; ++i) {
+      const std::string_view name = members_[i].name;
+      names += i == 0 ? "" : ", ";
+      names += i == kMostNamed ? "..." : std::string(name.ends_with(".npy") ? name.substr(0, name.size() - 4) : name);
+    }
+    return invalid_input(place(array), "the file has no array of this name; it has " +
+                                           (names.empty() ? std::string("none at all") : names));
+  }
   [[nodiscard]] const zip::Member* find(std::string_view array) const {
     for (const zip::Member& member : members_) {
       if (member.name.starts_with(array) && member.name.substr(array.size()) == ".npy") return &member;
@@ -151,9 +164,21 @@ class Archive {
     return nullptr;
   }
 
+  // Whether there may be memory for an array as bytes and as numbers, beside what was read before.
+  [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
+    constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
+    const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;
+    asked_ += 2 * std::min(member.size, kMost) + kBytesPerRow * std::min(rows, kMost);
+    return expansion_.check(asked_, place(member.name.substr(0, member.name.find('.'))));
+  }
+  // More than any file has; a few of them can be added up.
+  static constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
+
   std::string_view bytes_;
   const std::string& name_;
   std::vector<zip::Member> members_;
+  Expansion expansion_;
+  std::uint64_t asked_ = 0;
   std::string storage_;
 };
 
@@ -168,10 +193,11 @@ Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, 
   return cache;
 }
 
-Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second) {
+Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second,
+                        std::size_t max_expansion) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);
   if (!members) return members.error();
-  Archive archive(bytes, name, std::move(members).value());
+  Archive archive(bytes, name, std::move(members).value(), max_expansion);
 
   const Result<Array> positions = archive.read("positions");
   if (!positions) return positions.error();

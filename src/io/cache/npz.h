@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
 #include "io/cache/position_cache.h"
 
@@ -37,8 +38,10 @@ namespace chronormal::inline internal {
 /// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, times that
 /// do not ascend, an unknown kind. Sizes that disagree between directory, member and array header are refused before
 /// memory is taken.
-/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are.
-[[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1);
+/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so expansion
+/// is asked first, with bytes and numbers of what is deflated, and what a keyframe takes beside its positions.
+[[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
+                                      std::size_t max_expansion = Expansion::kUsual);
 
 /// Reads a .npy file of positions (T, V, 3), as above; sample k is at k / options.frames_per_second.
 /// Errors: as read_npz().

@@ -39,8 +39,8 @@ class GlbBuilder {
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// Whether the arrays so far fit into the limit.
-  [[nodiscard]] bool fits() const noexcept { return indices_.size() + arrays_.byte_count() <= most_bytes_; }
+  /// Bytes of the arrays so far.
+  [[nodiscard]] std::size_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 

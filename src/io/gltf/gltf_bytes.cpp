@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "io/bytes/binary.h"
@@ -112,11 +113,28 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
   return files_.emplace(index, std::move(file).value()).first->second.bytes();
 }
 
+const Expansion& Bytes::expansion() {
+  if (expansion_) return *expansion_;
+  Expansion found = origin_.expansion;
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
+    const std::optional<std::string>& uri = model_.buffers[i].uri;
+    if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
+    // What is wrong with it is said where it is read.
+    if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
+  }
+  expansion_ = found;
+  return *expansion_;
+}
+
 Result<std::string> Bytes::decompress(std::size_t view_index, const Compression& compression) {
   const Result<std::string_view> whole = buffer(compression.buffer);
   if (!whole) return whole.error();
   const std::string_view source = whole.value().substr(compression.offset, compression.length);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(source.data());
+  const std::string pointer = pointer_to("bufferViews", view_index) + "/extensions/EXT_meshopt_compression";
+  if (Status status = expansion().check(compression.count * compression.stride, place(pointer)); !status)
+    return status.error();
   std::string result(compression.count * compression.stride, '\0');
   const auto decode = [&] {
     switch (compression.mode) {
@@ -129,9 +147,7 @@ Result<std::string> Bytes::decompress(std::size_t view_index, const Compression&
     }
     return -1;
   };
-  if (decode() != 0)
-    return invalid_input(place(pointer_to("bufferViews", view_index) + "/extensions/EXT_meshopt_compression"),
-                         "the compressed bytes are broken");
+  if (decode() != 0) return invalid_input(place(pointer), "the compressed bytes are broken");
   switch (compression.filter) {
     case Compression::Filter::kNone:
       break;

@@ -37,6 +37,7 @@ struct Origin {
   std::optional<std::string> folder;    ///< of its files; nothing for standard input
   std::optional<std::string_view> bin;  ///< the BIN chunk
   bool allow_external = false;
+  Expansion expansion;        ///< of the asset itself
   FileResolver resolve = {};  ///< where its files come from; empty: the file system
 
   /// The path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
@@ -65,6 +66,9 @@ class Bytes {
   /// The same as indices, of which every one must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
+  /// How much the asset may ask for, with the files of its buffers as far as they can be opened: each counts once.
+  [[nodiscard]] const Expansion& expansion();
+
   /// Gives memory back that holds what was read of buffers in files of their own.
   void release() const noexcept;
 
@@ -89,6 +93,7 @@ class Bytes {
   std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
   std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
   std::size_t kept_bytes_ = 0;                                       // of views_
+  std::optional<Expansion> expansion_;                               // once it was asked for
 };
 
 }  // namespace chronormal::inline internal::gltf

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "io/bytes/binary.h"
+#include "io/bytes/extension.h"
 #include "io/bytes/file.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/gltf_bytes.h"
@@ -54,6 +56,8 @@ const std::vector<GltfNode>& GltfDocument::nodes() const noexcept { return state
 const std::vector<GltfAnimation>& GltfDocument::animations() const noexcept { return state_->model.animations; }
 const std::vector<std::string>& GltfDocument::extensions() const noexcept { return state_->model.extensions; }
 
+Expansion GltfDocument::expansion() const { return state_->bytes.expansion(); }
+
 AffineTransform GltfDocument::world_transform(std::size_t node) const noexcept {
   const auto& transforms = state_->model.transforms;
   AffineTransform result;
@@ -91,8 +95,12 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
 
 Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
-  gltf::Origin origin{name, folder, std::nullopt, options.allow_external, options.resolve};
+  const Expansion expansion(options.max_expansion, bytes.size());
+  gltf::Origin origin{name, folder, std::nullopt, options.allow_external, expansion, options.resolve};
   GlbChunks chunks{bytes, 0, std::nullopt, {}};
+  if (lower_extension(name) == ".glb" && !recognises(bytes.substr(0, 512)))
+    return invalid_input(binary::place(name, 0),
+                         "this is not glTF: it begins neither as GLB (glTF) nor as a JSON object ({)");
   if (is_glb(bytes)) {
     Result<GlbChunks> found = read_glb(bytes, name);
     if (!found) return found.error();
@@ -116,8 +124,9 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
   if (source.draco) {
     const Result<gltf::View> view = bytes.view(source.draco->view);
     if (!view) return view.error();
-    Result<GltfGeometry> decoded = gltf::decode_draco(view.value().bytes, state_->model, source, wanted.shading,
-                                                      bytes.place(pointer + "/extensions/KHR_draco_mesh_compression"));
+    Result<GltfGeometry> decoded =
+        gltf::decode_draco(view.value().bytes, state_->model, source, wanted.shading, bytes.expansion(),
+                           bytes.place(pointer + "/extensions/KHR_draco_mesh_compression"));
     if (!decoded) return decoded;
     geometry = std::move(decoded).value();
     if (source.indices && geometry.corners.size() != declared.element_count)
@@ -164,13 +173,16 @@ Result<GltfGeometry::Target> GltfDocument::target(std::size_t mesh, std::size_t 
   return target;
 }
 
-Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, std::size_t targets,
-                                       bool shading) const {
-  const std::size_t vertices = model.meshes[mesh].primitives[primitive].vertex_count, per_vertex = shading ? 40 : 12;
-  if (vertices <= most_bytes / per_vertex / (targets + 1)) return Success{};
-  return invalid_input(bytes.place(gltf::primitive_pointer(mesh, primitive)),
-                       "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
-                           " targets would take more than " + std::to_string(most_bytes) + " bytes");
+Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading) {
+  const GltfPrimitive& declared = model.meshes[mesh].primitives[primitive];
+  const std::size_t vertices = declared.vertex_count, per_vertex = shading ? 40 : 12;
+  const std::string place = bytes.place(gltf::primitive_pointer(mesh, primitive));
+  if (vertices <= most_bytes / per_vertex / (targets + 1)) {
+    const std::uint64_t corners = std::uint64_t{declared.element_count} * (declared.mode == 4 ? 1 : 3);
+    return bytes.expansion().check(vertices * per_vertex * (targets + 1) + sizeof(std::uint32_t) * corners, place);
+  }
+  return invalid_input(place, "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
+                                  " targets would take more than " + std::to_string(most_bytes) + " bytes");
 }
 
 Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,

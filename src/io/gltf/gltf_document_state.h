@@ -21,7 +21,7 @@ struct GltfDocument::State {
       : chunks(found), model(std::move(parsed)), name(asset.name), bytes(model, std::move(asset)), most_bytes(most) {}
 
   // Whether the arrays of a primitive and so many targets would take too much.
-  [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading) const;
+  [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading);
   // The arrays that are wanted of those that an object of attributes names, but for those that are there already.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);

@@ -14,6 +14,9 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wpedantic"
 #include <draco/compression/decode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
 #pragma GCC diagnostic pop
 
 #include "io/gltf/gltf_bytes.h"
@@ -68,16 +71,44 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   return Success{};
 }
 
+// How many faces the compressed mesh says that it has: the library takes memory for them before it reads any. Nothing
+// where that cannot be found out.
+std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
+  draco::DracoHeader header;
+  if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
+  const auto version = static_cast<std::uint16_t>(DRACO_BITSTREAM_VERSION(header.version_major, header.version_minor));
+  buffer.set_bitstream_version(version);
+  draco::GeometryMetadata metadata;
+  if ((header.flags & METADATA_FLAG_MASK) != 0 && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
+    return std::nullopt;
+  const auto count = [&](bool is_varint) {
+    std::uint32_t number = 0;
+    const bool ok = is_varint ? draco::DecodeVarint(&number, &buffer) : buffer.Decode(&number);
+    return ok ? std::optional(number) : std::nullopt;
+  };
+  if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) return count(version >= DRACO_BITSTREAM_VERSION(2, 2));
+  // Before the faces stand how they are walked, new vertices (up to 2.1), and vertices.
+  const bool is_varint = version >= DRACO_BITSTREAM_VERSION(2, 0);
+  std::uint8_t traversal = 0;
+  if (!buffer.Decode(&traversal)) return std::nullopt;
+  if (version < DRACO_BITSTREAM_VERSION(2, 2) && !count(is_varint)) return std::nullopt;
+  return count(is_varint) ? count(is_varint) : std::nullopt;
+}
+
 }  // namespace
 
 Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, const PrimitiveSource& source,
-                                  bool with_shading, const std::string& place) {
+                                  bool with_shading, const Expansion& expansion, const std::string& place) {
+  constexpr std::uint64_t kBytesPerFace = 64;  // of the library's tables, and ours
   const std::size_t vertex_count = model.accessors[*source.base.position].count;
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
   std::string reason = "it holds no mesh";
   try {
+    if (const auto faces = declared_faces(buffer)) {
+      if (Status status = expansion.check(kBytesPerFace * *faces, place); !status) return status.error();
+    }
     const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
     if (type.ok() && type.value() == draco::TRIANGULAR_MESH) {
       draco::Decoder decoder;

@@ -76,6 +76,7 @@ class Assembly {
       return invalid_input(document_.name(), std::to_string(keyframes) + " keyframes of " +
                                                  std::to_string(vertex_count_) + " vertices would take more than " +
                                                  std::to_string(most_bytes) + " bytes of memory");
+    if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
       return invalid_input(document_.name(), "indices of 32 bits cannot name so many vertices");
     return Success{};

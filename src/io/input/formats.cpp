@@ -54,6 +54,12 @@ std::string write_binary_ply(const Topology& topology, VectorView<const float> p
   return write_ply(topology, positions, PlyEncoding::kBinaryLittleEndian);
 }
 
+// No count of it is larger than the file.
+Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, double frames_per_second,
+                              std::size_t /*max_expansion*/) {
+  return read_md2(bytes, name, frames_per_second);
+}
+
 Result<std::string> write_pc2_at_one(const Motion& motion) { return write_pc2(motion); }  // frame a second
 
 constexpr std::array<Format, 11> kFormats = {{
@@ -77,7 +83,7 @@ constexpr std::array<Format, 11> kFormats = {{
      .recognises = is_zip,
      .read_motion = read_npz,
      .write_motion = write_npz},
-    {.name = "md2", .holds = Holds::kMotion, .extensions = kMd2, .recognises = is_md2, .read_motion = read_md2},
+    {.name = "md2", .holds = Holds::kMotion, .extensions = kMd2, .recognises = is_md2, .read_motion = read_whole_md2},
     {.name = "pc2",
      .holds = Holds::kCache,
      .extensions = kPc2,

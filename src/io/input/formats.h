@@ -39,7 +39,8 @@ struct Format {
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   /// The same with smoothing groups and normals; nullptr where the format is read without them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
-  Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second) = nullptr;
+  Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
+                                std::size_t max_expansion) = nullptr;
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 

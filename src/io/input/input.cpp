@@ -97,6 +97,8 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<PositionCache> cache =
       read_cache(input, {options.frames_per_second, faces.vertex_count(), input.channel}, options);
   if (!cache) return cache.error();
+  // The files of a cache have no fewer bytes than its positions.
+  read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
       motion_from_cache(std::move(faces), std::move(cache).value(), file_name_of(mesh_path), file_name_of(input.path));
@@ -133,9 +135,9 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
   Opened opened;
   opened.file_size = file.bytes().size();
-  Result<GltfDocument> document =
-      GltfDocument::read(std::move(file), file_name_of(path), folder,
-                         {.allow_external = options.allow_external, .resolve = options.resolve});
+  Result<GltfDocument> document = GltfDocument::read(
+      std::move(file), file_name_of(path), folder,
+      {.allow_external = options.allow_external, .max_expansion = options.max_expansion, .resolve = options.resolve});
   if (!document) return document.error();
   opened.document = std::move(document).value();
   return opened;
@@ -151,9 +153,16 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
   if (!options.animation.empty()) return not_animated(path);
   Opened opened;
   if (format != nullptr && format->holds == Holds::kMotion) {
-    Result<Motion> motion = format->read_motion(bytes, file_name_of(path), options.frames_per_second);
+    Result<Motion> motion =
+        format->read_motion(bytes, file_name_of(path), options.frames_per_second, options.max_expansion);
     if (!motion) return motion.error();
     opened.read.motion = std::move(motion).value();
+    opened.read.bytes_read = bytes.size();
+  } else if (options.allow_mesh && format == nullptr) {
+    return invalid_input(file_name_of(path), "neither the name nor the content tells a format that is read: " +
+                                                 extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh}) +
+                                                 " alone, " + extensions_of({Holds::kCache}) + " over a mesh, " +
+                                                 extensions_of({Holds::kTarget}) + " over --base");
   } else if (options.allow_mesh) {
     Result<ReadMotion> mesh = read_still_mesh(bytes, path, options);
     if (!mesh) return mesh.error();
@@ -223,6 +232,7 @@ Status check_input(const InputOptions& options) {
 struct Input::State {
   std::string name;
   Opened opened;
+  Expansion expansion;       // of what is not a document
   GltfMotionOptions chosen;  // of the document
   bool allow_mesh = false;
   // Of the document, once it was asked for.
@@ -252,6 +262,7 @@ Input& Input::operator=(Input&&) noexcept = default;
 Input::~Input() = default;
 
 const std::string& Input::name() const noexcept { return state_->name; }
+Expansion Input::expansion() const { return document() != nullptr ? document()->expansion() : state_->expansion; }
 std::size_t Input::file_size() const noexcept { return state_->opened.file_size; }
 const GltfDocument* Input::document() const noexcept {
   return state_->opened.document ? &*state_->opened.document : nullptr;
@@ -299,12 +310,15 @@ Result<Input> open_input(const InputOptions& options) {
     if (!read) return read.error();
     state->name = std::move(name);
     state->opened.read = std::move(read).value();
+    state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);
     return Input(std::move(state));
   };
   if (!options.samples.empty()) {
     Result<Motion> motion = make_builtin_morph(options.samples.front());
     if (!motion) return motion.error();
-    return keep(options.samples.front(), ReadMotion{std::move(motion).value(), {}, {}, {}});
+    Result<Input> input = keep(options.samples.front(), ReadMotion{std::move(motion).value(), {}, {}, {}, 0});
+    input.value().state_->expansion = Expansion::unlimited();
+    return input;
   }
   if (!options.base.empty()) return keep(path_name(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options))
@@ -314,6 +328,7 @@ Result<Input> open_input(const InputOptions& options) {
   if (!opened) return opened.error();
   state->name = name_of_files(options.files);
   state->opened = std::move(opened).value();
+  state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);
   if (state->opened.document) {
     state->chosen.animation = options.animation;
     state->chosen.world = options.world;

@@ -106,6 +106,7 @@ Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string&
 
 Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes, const std::string& path,
                                  const std::string& place, ReadMotion& read) {
+  read.bytes_read += bytes.size();
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
   // The normals of all keyframes count as far as every one so far had some.

@@ -19,7 +19,8 @@ struct ReadMotion {
   Motion motion;
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;  ///< as Input has it
+  std::string shaded_by;         ///< as Input has it
+  std::uint64_t bytes_read = 0;  ///< of all files
 };
 
 /// Which files of a folder count, in any order.

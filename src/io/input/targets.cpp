@@ -2,6 +2,7 @@
 #include "io/input/targets.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -69,9 +70,19 @@ std::string keyframe_name(const std::string& path) {
   return (is_packed_target ? stem.stem() : stem).string();
 }
 
-Result<std::vector<float>> read_deltas(const InputOptions& options, const std::string& path, const Motion& motion) {
+// Asks for the positions of a keyframe, beside those that are there: a target of one line has as many as any.
+Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
+  const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
+  const Expansion expansion(options.max_expansion, read.bytes_read);
+  return expansion.check(keyframes * vertices * 3 * sizeof(float), place_of(path));
+}
+
+Result<std::vector<float>> read_deltas(const InputOptions& options, const std::string& path, ReadMotion& read) {
+  const Motion& motion = read.motion;
   const Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
+  read.bytes_read += file.value().bytes().size();
+  if (const Status status = ask_for_keyframe(options, path, read); !status) return status.error();
   std::vector<float> positions = motion.keyframes.front().positions;
   const auto base = VectorView<const float>::packed(positions.data(), motion.topology.vertex_count());
   const Result<MakeHumanTarget> target = read_make_human_target(file.value().bytes(), path, base);
@@ -121,7 +132,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
     const std::string& path = files[k - 1];
     const Format* const format = target_format(path);
     Result<std::vector<float>> positions = format != nullptr && format->holds == Holds::kTarget
-                                               ? read_deltas(options, path, motion)
+                                               ? read_deltas(options, path, read)
                                                : read_shape(of_base, path, read);
     if (!positions) return positions.error();
     motion.keyframes.push_back({std::move(positions).value(), 1, keyframe_name(path)});

@@ -1,8 +1,10 @@
 // Motions as files: one that holds everything, or one for each keyframe.
 #include <cassert>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
 #include "io/input/formats.h"
 
@@ -49,7 +51,8 @@ Result<NamePattern> parse_pattern(const std::string& pattern) {
   return parts;
 }
 
-Status write_keyframes(const Motion& motion, const Format& format, const std::string& pattern, bool force) {
+Status write_keyframes(const Motion& motion, const Format& format, const std::string& pattern, bool force,
+                       const Expansion& expansion) {
   const Result<std::vector<std::string>> names = numbered_names(pattern, motion.keyframes.size());
   if (!names) return names.error();
   for (const std::string& name : names.value()) {
@@ -59,8 +62,11 @@ Status write_keyframes(const Motion& motion, const Format& format, const std::st
     const std::vector<float>& coordinates = motion.keyframes[k].positions;
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
-    if (Status status = write_output(names.value()[k], format.write_mesh(motion.topology, positions), force); !status)
-      return status;
+    const std::string bytes = format.write_mesh(motion.topology, positions);
+    // Keyframes take about as many bytes each: the first tells before anything is written.
+    const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
+    if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;
+    if (Status status = write_output(names.value()[k], bytes, force); !status) return status;
   }
   return Success{};
 }
@@ -84,8 +90,15 @@ bool is_motion_file(const std::string& path) noexcept {
 }
 
 Status write_motion(const Motion& motion, const std::string& path, bool force) {
+  return write_motion(motion, path, force, Expansion::unlimited());
+}
+
+Status write_motion(const Motion& motion, const std::string& path, bool force, const Expansion& expansion) {
   const Format* const format = find_format(path);
-  if (format != nullptr && format->write_mesh != nullptr) return write_keyframes(motion, *format, path, force);
+  if (format != nullptr && format->write_mesh != nullptr)
+    return write_keyframes(motion, *format, path, force, expansion);
+  if (format != nullptr && format->holds == Holds::kGltf)
+    return Error{ErrorCode::kUsage, path, "bake writes glTF, with the normals; convert does not"};
   if (format == nullptr || format->write_motion == nullptr) {
     std::string writable;
     for (const Format& each : formats())

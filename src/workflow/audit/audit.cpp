@@ -67,9 +67,8 @@ std::size_t samples_per_segment(const AuditOptions& options, std::size_t segment
 }
 
 Status check_samples(const AuditOptions& options) {
-  constexpr std::size_t kMost = 1000001;
-  if (options.samples && (*options.samples < 2 || *options.samples > kMost))
-    return Error{ErrorCode::kUsage, "", "there must be from 2 to 1,000,001 samples"};
+  if (options.samples && (*options.samples < 2 || *options.samples > kMostAuditSamples))
+    return Error{ErrorCode::kUsage, "", "there must be from 2 to " + std::to_string(kMostAuditSamples) + " samples"};
   return Success{};
 }
 

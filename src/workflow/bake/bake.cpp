@@ -30,7 +30,7 @@ namespace {
 // What became of one mesh.
 struct MeshBake {
   BakedMesh report;
-  std::vector<std::string> warnings;
+  std::vector<MeshWarning> warnings;
   std::vector<WeightProduct> extras;
   std::optional<nlohmann::ordered_json> drivers;  // where nothing in the file drives the extra targets
 };
@@ -143,6 +143,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
+  const auto check_size = [&] { return document.expansion().check(edit.added_bytes(), document.name()); };
   for (std::size_t i = 0; i < mesh.target_count; ++i) {
     std::optional<TargetDeltas> deltas;
     if (moves(shading, i)) {
@@ -151,10 +152,12 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     }
     writer.write_target(i, deltas);
     step();
+    if (Status status = check_size(); !status) return status;
   }
   for (const WeightProduct& extra : plan.extras) {
     writer.append_target(extra_target_deltas(source, extra));
     step();
+    if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras);
   writer.set_mark({plan.encoding, false, baked.report.extras});
@@ -210,6 +213,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   std::vector<GrownMesh> grown;
   std::vector<std::size_t> report_of_grown;
   std::vector<nlohmann::ordered_json> drivers;
+  std::vector<MeshWarning> warnings;
   for (const std::size_t mesh : candidates) {
     Result<std::optional<MeshBake>> baked = bake_mesh(document, mesh, options, step, zeros, edit);
     if (!baked) return baked.error();
@@ -221,7 +225,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
     }
     result.added_targets += of_mesh.report.extras.size();
     result.meshes.push_back(std::move(of_mesh.report));
-    std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(result.warnings));
+    std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(warnings));
     if (of_mesh.drivers) drivers.push_back(std::move(*of_mesh.drivers));
   }
   const Result<WrittenTracks> tracks = write_tracks(document, grown, options.tolerance / kDegreesPerRadian, edit);
@@ -240,6 +244,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
                                               " bytes, and at most " + std::to_string(*options.most_bytes) +
                                               " are allowed");
   }
+  result.warnings = said_once(warnings);
   result.drivers = drivers_file(drivers);
   return result;
 }

@@ -1,5 +1,7 @@
 #include "workflow/bake/messages.h"
 
+#include <map>
+#include <string_view>
 #include <utility>
 
 namespace chronormal::inline internal {
@@ -13,8 +15,8 @@ constexpr std::size_t kMorphedAttributes = 8;
 // More extra targets than these make a file large.
 constexpr std::size_t kManyExtras = 64;
 
-std::string start_of(const GltfMesh& mesh, const BakedMesh& baked) {
-  return (mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name) + ": ";
+std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
+  return mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name;
 }
 
 // The weight of an extra target: "w0*w1".
@@ -43,17 +45,42 @@ std::string drivers_file(const std::vector<Json>& of_meshes) {
   return Json({{"version", 1}, {"meshes", of_meshes}}).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std::string>& warnings) {
+std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings) {
+  constexpr std::size_t kMostNamed = 4;
+  struct Meshes {
+    std::string names;
+    std::size_t count = 0;
+  };
+  std::map<std::string_view, Meshes> meshes_of;
+  for (const MeshWarning& warning : warnings) {
+    Meshes& meshes = meshes_of[warning.sentence];
+    if (++meshes.count <= kMostNamed) meshes.names.append(meshes.count == 1 ? "" : ", ").append(warning.mesh);
+  }
+  std::vector<std::string> texts;
+  for (const MeshWarning& warning : warnings) {
+    const auto meshes = meshes_of.extract(warning.sentence);
+    if (meshes.empty()) continue;  // said already
+    const auto& [names, count] = meshes.mapped();
+    const std::string more = count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "";
+    texts.push_back(names + more + ": " + warning.sentence);
+  }
+  return texts;
+}
+
+void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
   if (baked.left_flat == 0) return;
-  warnings.push_back(start_of(mesh, baked) + std::to_string(baked.left_flat) +
-                     (baked.left_flat == 1 ? " primitive has" : " primitives have") +
-                     " no normals and stays flat, as hosts shade it by the specification "
-                     "(--smooth gives it normals)");
+  warnings.push_back({label_of(mesh, baked),
+                      baked.left_flat == 1
+                          ? "1 primitive has no normals and stays flat, as hosts shade it by the specification "
+                            "(--smooth gives it normals)"
+                          : std::to_string(baked.left_flat) +
+                                " primitives have no normals and stay flat, as hosts shade them by the specification "
+                                "(--smooth gives them normals)"});
 }
 
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
-                   const BakedMesh& baked, std::vector<std::string>& warnings) {
-  const auto warn = [&](const std::string& sentence) { warnings.push_back(start_of(mesh, baked) + sentence); };
+                   const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
+  const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
   if (!plan.is_driven && !options.encoding) {
     warn(

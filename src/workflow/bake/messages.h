@@ -19,11 +19,18 @@ namespace chronormal::inline internal {
 /// The same of several meshes as the text of a file; empty for none.
 [[nodiscard]] std::string drivers_file(const std::vector<nlohmann::ordered_json>& of_meshes);
 
+/// A sentence about a mesh.
+struct MeshWarning {
+  std::string mesh, sentence;
+};
+/// The same as text, "MESH: sentence"; what holds for several meshes is said once, of all of them.
+[[nodiscard]] std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings);
+
 /// Adds a sentence for primitives that stay flat, if there are any.
-void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<std::string>& warnings);
+void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings);
 /// Adds a sentence for everything else that was baked otherwise than somebody might think.
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
-                   const BakedMesh& baked, std::vector<std::string>& warnings);
+                   const BakedMesh& baked, std::vector<MeshWarning>& warnings);
 
 }  // namespace chronormal::inline internal
 

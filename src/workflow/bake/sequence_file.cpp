@@ -120,6 +120,7 @@ SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std
                            bool exact, const BakeOptions& options)
     : vertices_(make_vertices(motion.topology, groups)),
       dense_zeros_(options.dense_zeros),
+      expansion_(options.expansion),
       builder_(options.most_bytes) {
   triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices_.of_corner), vertices_.size());
   base_ = {
@@ -147,13 +148,16 @@ void SequenceFile::add_target(std::string name, std::size_t positions, std::span
                       {"NORMAL", builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
 }
 
-Status SequenceFile::check_size() const {
-  if (builder_.fits()) return Success{};
+Status SequenceFile::check_size(std::uint64_t more) const {
+  if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
+  if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
   return invalid_input("", "the file would have more than " + std::to_string(builder_.most_bytes()) +
                                " bytes, which is all that it may have");
 }
 
 Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::uint64_t weights = std::uint64_t{targets.keys} * targets.count() * (targets.exact ? 3 : 1);
+  if (Status status = check_size(sizeof(float) * (times.size() + weights)); !status) return status.error();
   const std::size_t input = builder_.add_scalars(times, {true, true}),
                     output = builder_.add_scalars(weight_track(targets, times), {false, true});
   std::vector<int> rest(targets_.size(), 0);

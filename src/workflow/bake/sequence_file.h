@@ -62,8 +62,8 @@ class SequenceFile {
   /// Of exact: adds a target for the bend of a segment.
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
-  /// Errors: kInvalidInput where the file has too many bytes already.
-  [[nodiscard]] Status check_size() const;
+  /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more.
+  [[nodiscard]] Status check_size(std::uint64_t more = 0) const;
   /// Adds the animation and puts the file together. targets must say what was added. Errors: kInvalidInput where it
   /// would be too large.
   [[nodiscard]] Result<std::string> finish(const SequenceTargets& targets, const std::vector<float>& times);
@@ -73,6 +73,7 @@ class SequenceFile {
 
   SequenceVertices vertices_;
   bool dense_zeros_;
+  Expansion expansion_;
   GlbBuilder builder_;
   std::size_t triangles_ = 0;       // accessor
   std::size_t zero_positions_ = 0;  // accessor that targets share which move nothing; of exact

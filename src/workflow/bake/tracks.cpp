@@ -77,6 +77,7 @@ class Spline {
     times_.push_back(static_cast<float>(time));
     knots_.resize(knots_.size() + columns_);
   }
+  void clear() { *this = Spline(columns_); }
   Knot& last(std::size_t column) { return knots_[knots_.size() - columns_ + column]; }
   Knot& before(std::size_t column) { return knots_[knots_.size() - 2 * columns_ + column]; }
 
@@ -99,8 +100,13 @@ class Spline {
 
 class TrackExtender {
  public:
-  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance)
-      : track_(track), products_(products), tolerance_(tolerance), spline_(track.targets + products.size()) {}
+  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
+                std::size_t most_keys)
+      : track_(track),
+        products_(products),
+        tolerance_(tolerance),
+        most_keys_(most_keys),
+        spline_(track.targets + products.size()) {}
 
   // The track as a cubic spline.
   ExtendedTrack spline() {
@@ -112,6 +118,8 @@ class TrackExtender {
       for (std::size_t i = 0; i < track_.targets; ++i) pieces_.push_back(track_.piece(key, i));
       add_pieces(track_.keys.times[key], track_.keys.times[key + 1], pieces_, kMostHalvings);
     }
+    result.keys = keys_;
+    if (keys_ > most_keys_) return result;
     // The outermost slopes shape nothing; those of the file stay.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
@@ -161,6 +169,8 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
+    // Beyond the limit they are only counted.
+    if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       spline_.before(i).out = slope_at_start(weights[i], duration);
@@ -179,6 +189,7 @@ class TrackExtender {
   const WeightTrack& track_;
   std::span<const WeightProduct> products_;
   double tolerance_;
+  std::size_t most_keys_, keys_ = 1;  // with the first
   Spline spline_;
   std::vector<Cubic> pieces_;
   double error_ = 0;
@@ -186,11 +197,14 @@ class TrackExtender {
 
 }  // namespace
 
-ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance) {
+ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
+                             std::size_t most_keys) {
   const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1;
   const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !products_are_linear(track, products);
-  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance).spline();
+  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance, most_keys).spline();
   ExtendedTrack result;
+  result.keys = track.size();
+  if (result.keys > most_keys) return result;
   result.interpolation = track.interpolation;
   if (track.interpolation != GltfInterpolation::kCubicSpline) {
     append_values(track, products, result.values);

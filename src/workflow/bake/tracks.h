@@ -8,6 +8,7 @@
 #define CHRONORMAL_WORKFLOW_BAKE_TRACKS_H_
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,12 +28,18 @@ struct ExtendedTrack {
   std::vector<float> times;   ///< empty: as they were
   std::vector<float> values;  ///< of targets + products weights, in the order of the file
   double error = 0;           ///< a bound, in radians, of what insertions leave
+  std::size_t keys = 0;
 };
 
+/// Memory for each key and weight of an extended track, while it is made and afterwards.
+inline constexpr std::size_t kBytesPerWeight = 48;
+
 /// Extends a track by products of its weights. Cubic splines get keys until no normal is off by more than tolerance
-/// (radians), as far as float32 can tell.
+/// (radians), as far as float32 can tell. Where that takes more than most_keys, the result has no values, but says how
+/// many it would have.
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products,
-                                           double tolerance);
+                                           double tolerance,
+                                           std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
 }  // namespace chronormal::inline internal
 

@@ -2,6 +2,7 @@
 // one of them needs that; else the first mesh takes it over, and every further mesh gets a sampler of its own.
 #include "workflow/bake/write_tracks.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -147,7 +148,15 @@ class TrackWriter {
       if (!keys) return keys.error();
       const WeightTrack weights{track.interpolation, std::move(keys).value(),
                                 document_.meshes()[meshes_[place].mesh].target_count};
-      const ExtendedTrack extended = extended_track(weights, meshes_[place].extras, tolerance_);
+      const std::uint64_t bytes_per_key = kBytesPerWeight * (weights.targets + meshes_[place].extras.size());
+      const Expansion expansion = document_.expansion();
+      const std::size_t most_keys =
+          (expansion.most() - std::min(expansion.most(), edit_.added_bytes())) / bytes_per_key;
+      const ExtendedTrack extended = extended_track(weights, meshes_[place].extras, tolerance_, most_keys);
+      if (extended.keys > most_keys)
+        return expansion
+            .check(edit_.added_bytes() + bytes_per_key * extended.keys, item(document_.name() + ", /animations", a))
+            .error();
       written_.errors[place] = std::fmax(written_.errors[place], extended.error);
       Sampler& result = found->second;
       result.interpolation = extended.interpolation;

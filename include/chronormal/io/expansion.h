@@ -1,0 +1,47 @@
+/// How much a file may make us hold or write: a few bytes can declare, unpack to, or be cut into very many.
+///
+///     Expansion expansion(100);                     // --max-expansion
+///     expansion.add_read(file.size());              // whatever is read counts
+///     if (Status s = expansion.check(wanted, place); !s) return s;      // before memory is taken
+///
+/// What a file asks for is at most 32 MiB, or `times` the bytes that were read, whichever is larger. What the user asks
+/// for (times to sample, poses) is no matter of this.
+///
+/// Threads    a value: as any other.
+#ifndef CHRONORMAL_IO_EXPANSION_H_
+#define CHRONORMAL_IO_EXPANSION_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "chronormal/core/result.h"
+
+namespace chronormal {
+
+class Expansion {
+ public:
+  static constexpr std::size_t kUsual = 100;
+  static constexpr std::uint64_t kAlways = std::uint64_t{32} << 20;  ///< bytes that any file may ask for
+
+  explicit Expansion(std::size_t times = kUsual, std::uint64_t bytes_read = 0) noexcept
+      : times_(times), read_(bytes_read) {}
+  /// Allows everything: of what did not come from a file.
+  [[nodiscard]] static Expansion unlimited() noexcept { return Expansion(static_cast<std::size_t>(-1), kAlways); }
+
+  void add_read(std::uint64_t bytes) noexcept { read_ += bytes; }
+
+  /// The most bytes that may be asked for.
+  [[nodiscard]] std::uint64_t most() const noexcept;
+  /// Whether so many bytes may be asked for; 2^64 - 1 stands for more than can be counted.
+  /// Errors: kInvalidInput; the message says how much it would be, and which --max-expansion allows it.
+  [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
+
+ private:
+  std::size_t times_;
+  std::uint64_t read_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_IO_EXPANSION_H_

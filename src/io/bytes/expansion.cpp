@@ -1,0 +1,35 @@
+#include "chronormal/io/expansion.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace chronormal {
+namespace {
+
+// 1234567 as "1,234,567".
+std::string grouped(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t i = digits.size(); i > 3;) {
+    i -= 3;
+    digits.insert(i, 1, ',');
+  }
+  return digits;
+}
+
+}  // namespace
+
+std::uint64_t Expansion::most() const noexcept {
+  constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
+  if (times_ != 0 && read_ > kAll / times_) return kAll;
+  return std::max(kAlways, read_ * times_);
+}
+
+Status Expansion::check(std::uint64_t bytes, const std::string& place) const {
+  if (bytes <= most()) return Success{};
+  const std::uint64_t times = read_ == 0 ? bytes : bytes / read_ + (bytes % read_ == 0 ? 0 : 1);
+  return invalid_input(place, grouped(read_) + " bytes that were read ask for " + grouped(bytes) +
+                                  " of memory or output, and may have " + grouped(most()) + "; --max-expansion " +
+                                  std::to_string(times) + " allows it");
+}
+
+}  // namespace chronormal

@@ -1,0 +1,48 @@
+/// A new file beside the one that it is to become, which is gone when its time is over or the process is told to end.
+/// Private to io.
+///
+/// All that there are stand in one list, from before they exist, so that remove_temporaries() (chronormal/io/output.h)
+/// misses none. Their names are random: nobody else has a file of that name, whenever it is removed.
+///
+/// Threads    every thread may have temporary files of its own.
+#ifndef CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
+#define CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+
+#include "io/bytes/descriptor.h"
+
+namespace chronormal::inline internal {
+
+class TemporaryFile {
+ public:
+  /// Opens a file in the folder of target; is_open() says whether that went well, and errno why not.
+  TemporaryFile(const std::string& target, mode_t mode);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  /// Removes the file, unless it was renamed.
+  ~TemporaryFile();
+
+  [[nodiscard]] bool is_open() const noexcept { return file_.is_open(); }
+  [[nodiscard]] int descriptor() const noexcept { return file_.number(); }
+  /// As Descriptor has it.
+  [[nodiscard]] bool close() noexcept { return file_.close(); }
+
+  /// Gives the file its name; with replace in place of what has that name already. False, with errno, on failure:
+  /// EEXIST where something has that name and must not be replaced.
+  [[nodiscard]] bool rename_to(const std::string& target, bool replace) noexcept;
+
+ private:
+  void forget() noexcept;
+
+  char* name_ = nullptr;   // on the heap, for the list; nullptr where there is no file
+  std::size_t place_ = 0;  // in the list
+  Descriptor file_{-1};
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
