@@ -6,8 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -15,6 +19,7 @@
 #include <vector>
 
 #include "chronormal/io/output.h"
+#include "io/bytes/temporary_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::file_test {
@@ -45,7 +50,10 @@ std::string many_bytes() {
 // Puts a descriptor in the place of another one while it lives.
 class Redirect {
  public:
-  Redirect(int from, int to) : from_(from), saved_(::dup(from)) { ::dup2(to, from); }
+  Redirect(int from, int to) : from_(from), saved_(::dup(from)) {
+    std::fflush(stdout);  // what the test program said so far
+    ::dup2(to, from);
+  }
   Redirect(const Redirect&) = delete;
   Redirect& operator=(const Redirect&) = delete;
   ~Redirect() {
@@ -105,6 +113,46 @@ TEST(FileBytes, bytes_in_memory_are_found_by_their_names_and_not_copied) {
   ASSERT_TRUE(file.ok());
   EXPECT_EQ(file.value().bytes().data(), bytes.data());
   EXPECT_EQ(FileBytes::open("b", resolve).error().text(), "b: there is none of this name");
+}
+
+TEST(FileBytes, devices_are_refused_but_for_terminals) {
+  for (const char* const device : {"/dev/zero", "/dev/urandom", "/dev/full"}) {
+    const Result<FileBytes> file = FileBytes::open(device);
+    ASSERT_FALSE(file.ok()) << device;
+    EXPECT_EQ(file.error().code, ErrorCode::kFailed);
+    EXPECT_EQ(file.error().text(), device + std::string(": this is a device, not a file, and may have no end"));
+  }
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(terminal, 0);
+  ASSERT_EQ(::grantpt(terminal) | ::unlockpt(terminal), 0);
+  const std::string name = ::ptsname(terminal);
+  ASSERT_EQ(::write(terminal, "typed\n\4", 7), 7) << "and the key that ends it";
+  EXPECT_EQ(FileBytes::open(name).value().bytes(), "typed\n");
+  ::close(terminal);
+}
+
+TEST(FileBytes, streams_are_read_up_to_a_limit) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::size_t most : {std::size_t{99999}, std::size_t{100000}}) {
+    std::thread writer([&] {
+      const auto old_handler = std::signal(SIGPIPE, SIG_IGN);
+      const bool is_read = write_output(pipe, std::string(100000, 'x'), false).ok();
+      EXPECT_TRUE(is_read || most < 100000);
+      std::signal(SIGPIPE, old_handler);
+    });
+    const Result<FileBytes> file = FileBytes::open(pipe, most);
+    writer.join();
+    EXPECT_EQ(file.ok(), most == 100000);
+    if (!file) {
+      EXPECT_EQ(file.error().text(), pipe +
+                                         ": there is no end within 99999 bytes, and no more are read of a stream: "
+                                         "write them to a file, and give that");
+    }
+  }
+  const std::string mapped = folder.write("file", std::string(100000, 'x'));
+  EXPECT_TRUE(FileBytes::open(mapped, 10).ok()) << "a file has an end";
 }
 
 TEST(FileBytes, missing_file_and_folder_are_errors_with_the_path) {
@@ -252,6 +300,38 @@ TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file
   EXPECT_EQ(error_of(made), folder / "b" + ": File too large");
   EXPECT_EQ(read_whole(path), "old");
   EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(WriteOutput, temporaries_that_are_on_their_way_can_be_removed_all_at_once) {
+  const TemporaryFolder folder;
+  const TemporaryFile first(folder / "a", 0600);
+  ASSERT_TRUE(first.is_open());
+  {
+    TemporaryFile second(folder / "b", 0600);
+    ASSERT_TRUE(second.is_open());
+    EXPECT_EQ(folder.entry_count(), 2U);
+  }
+  EXPECT_EQ(folder.entry_count(), 1U);
+  TemporaryFile named(folder / "c", 0600);
+  ASSERT_TRUE(named.rename_to(folder / "c", false));
+  std::vector<std::unique_ptr<TemporaryFile>> many;
+  for (int i = 0; i < 100; ++i) many.push_back(std::make_unique<TemporaryFile>(folder / "d", 0600));
+  EXPECT_EQ(folder.entry_count(), 102U);
+  many.clear();
+  remove_temporaries();
+  EXPECT_EQ(folder.entry_count(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(folder / "c"));
+}
+
+TEST(WriteOutput, temporary_becomes_no_file_that_somebody_made_meanwhile) {
+  const TemporaryFolder folder;
+  const std::string theirs = folder.write("a", "theirs");
+  TemporaryFile file(theirs, 0600);
+  EXPECT_FALSE(file.rename_to(theirs, false));
+  EXPECT_EQ(errno, EEXIST);
+  EXPECT_EQ(read_whole(theirs), "theirs");
+  EXPECT_TRUE(file.rename_to(theirs, true));
+  EXPECT_EQ(read_whole(theirs), "");
 }
 
 }  // namespace

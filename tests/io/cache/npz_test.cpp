@@ -165,8 +165,8 @@ TEST(ReadNpz, errors_name_array_and_element) {
 
 TEST(ReadNpz, missing_and_doubled_arrays_are_errors) {
   EXPECT_EQ(error_of(test::zip({{"positions.npy", kPositions}})),
-            "walk.npz, faces: the file has no array of this name");
-  EXPECT_EQ(error_of(test::zip({})), "walk.npz, positions: the file has no array of this name");
+            "walk.npz, faces: the file has no array of this name; it has positions");
+  EXPECT_EQ(error_of(test::zip({})), "walk.npz, positions: the file has no array of this name; it has none at all");
   EXPECT_NE(error_of(test::zip({{"a.npy", "1"}, {"a.npy", "1"}})).find("has 'a.npy' twice"), std::string::npos);
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
 #include "io/cache/maya_cache.h"
 #include "tests/support/cache_bytes.h"
@@ -93,7 +94,7 @@ std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
       });
     if (format.read_motion != nullptr)
       readers.emplace(format.name, [&format](const std::string& bytes) {
-        return check(format.read_motion(bytes, "a.bin", 1), bytes.size());
+        return check(format.read_motion(bytes, "a.bin", 1, Expansion::kUsual), bytes.size());
       });
   }
   readers.emplace("maya_xml",

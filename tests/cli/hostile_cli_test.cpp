@@ -1,0 +1,234 @@
+// What the program does where files and the system are not as it would like them: names that are no plain words, inputs
+// without an end, limits, and messages that must say what is the matter.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/cache_bytes.h"
+#include "tests/support/gltf_documents.h"
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::hostile_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kFirst = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr const char* kSecond = "v 0 0 0\nv 1 0 1\nv 0 1 0\nf 1 2 3\n";
+
+class HostileCli : public testing::Test {
+ protected:
+  [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "",
+                                  const std::string& input = "") const {
+    return run_shell(before + kProgram + " " + arguments, folder_.path(), input);
+  }
+  void expect(const ProcessResult& result, int exit_code, const std::vector<std::string>& words) const {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    for (const std::string& word : words) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+// The first character that a terminal would obey; empty where there is none.
+std::string find_unsafe(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if ((c < 0x20 && c != '\n') || c == 0x7F || c >= 0xF8) return "byte " + std::to_string(c);
+    const std::string_view rest = text.substr(i);
+    if (rest.size() > 1 && c == 0xC2 && static_cast<unsigned char>(rest[1]) < 0xA0) return "a C1 control";
+    for (const char* const turning : {"\u202e", "\u2066", "\u2028", "\ufeff"})
+      if (rest.starts_with(turning)) return turning;
+  }
+  return "";
+}
+
+// Names that a file system takes; the second is no UTF-8.
+const std::vector<std::string> kNames = {"esc\x1b[31m csi\u009b31m rtl\u202etxt two\nlines del\x7f", "raw\xff\x9b"};
+
+TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
+  const auto quoted = [](const std::string& text) { return "'" + text + "'"; };
+  for (const std::string& name : kNames) {
+    folder_.write(name + "_0.obj", kFirst);
+    folder_.write(name + "_1.obj", kSecond);
+    const std::string both = quoted(name + "_0.obj") + " " + quoted(name + "_1.obj");
+    const std::string missing = quoted(name + ".obj"), two = quoted(name + "_0.obj");
+    for (const std::string& arguments :
+         {"inspect " + both,
+          "inspect " + both + " --json",
+          "compare " + both,
+          "compare " + both + " --csv",
+          "compare " + both + " --json",
+          "compare --base " + both + " --blend 2",
+          "compare --base " + both + " --blend 2 --csv",
+          "compare --base " + both + " --blend 2 --json",
+          "audit " + both,
+          "audit " + both + " --json",
+          "audit " + both + " --tolerance 0.1",
+          "bake " + both + " --force -o " + quoted(name + ".glb"),
+          "bake " + both + " -o out.glb --force --json",
+          "sample " + both + " --times 9 -o x.npy",
+          "sample " + both + " --elements corners --hard-edges groups --times 0 -o x.npy",
+          "convert " + both + " -o " + quoted(name),
+          "convert " + two + " -o " + quoted(name + "_0.obj"),
+          "inspect " + missing,
+          "compare " + two,
+          "inspect " + quoted(name),
+          "compare --schemes " + quoted(name) + " " + both,
+          "compare --base " + two + " " + missing,
+          quoted(name),
+          "inspect --" + quoted(name),
+          "audit " + both + " --rule " + quoted(name),
+          "bake " + both + " -o x.glb --encode " + quoted(name),
+          "inspect " + two + " --animation " + quoted(name),
+          "sample " + both + " --times " + quoted(name) + " -o x.npy"}) {
+      const ProcessResult result = run(arguments);
+      EXPECT_LE(result.exit_code, 4) << arguments;
+      EXPECT_EQ(find_unsafe(result.out), "") << arguments << "\n" << result.out;
+      EXPECT_EQ(find_unsafe(result.err), "") << arguments << "\n" << result.err;
+    }
+    // Names that are UTF-8 come back whole from JSON.
+    if (name != kNames.back()) {
+      EXPECT_EQ(Json::parse(run("inspect " + two + " --json").out)["input"]["name"], name + "_0.obj");
+    }
+  }
+}
+
+TEST_F(HostileCli, names_in_a_gltf_file_are_printed_without_what_a_terminal_obeys) {
+  const std::string& name = kNames.front();
+  test::GltfBuilder builder = test::sparse_document();
+  builder.json["meshes"][0]["name"] = name;
+  builder.json["meshes"][0]["extras"]["targetNames"] = {name + "1", name + "2"};
+  for (auto& node : builder.json["nodes"]) node["name"] = name;
+  builder.json["animations"][0]["name"] = name;
+  folder_.write("face.glb", builder.glb());
+  for (const std::string arguments :
+       {"inspect face.glb", "inspect face.glb --json", "inspect face.glb --animation 0",
+        "inspect face.glb --animation no", "audit face.glb", "audit face.glb --json",
+        "audit face.glb --animation 0 --tolerance 0", "compare face.glb", "compare face.glb --csv",
+        "compare face.glb --blend 2", "compare face.glb --blend 2 --csv",
+        "compare face.glb --blend 2 --json --animation 0", "bake face.glb -o out.glb --force",
+        "bake face.glb -o out.glb --force --json --encode endpoint", "sample face.glb --times 0 -o x.npy"}) {
+    const ProcessResult result = run(arguments);
+    EXPECT_LE(result.exit_code, 4) << arguments;
+    EXPECT_EQ(find_unsafe(result.out), "") << arguments << "\n" << result.out;
+    EXPECT_EQ(find_unsafe(result.err), "") << arguments << "\n" << result.err;
+  }
+}
+
+TEST_F(HostileCli, devices_without_an_end_are_refused_before_they_are_read) {
+  expect(run("inspect /dev/zero"), 1, {"/dev/zero: this is a device"});
+  expect(run("inspect - < /dev/zero"), 1, {"<stdin>: this is a device"});
+  folder_.write("x.obj", kFirst);
+  expect(run("audit --base /dev/urandom x.obj"), 1, {"/dev/urandom: this is a device"});
+}
+
+TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_nothing) {
+  folder_.write("a.obj", kFirst);
+  folder_.write("old.npy", "old");
+  const ProcessResult result = run("sample --sample twist --times 0:0.01:1 -o old.npy --force", "ulimit -f 100; ");
+  expect(result, 1, {"old.npy: File too large"});
+  EXPECT_EQ(test::read_whole(folder_ / "old.npy"), "old");
+  EXPECT_EQ(folder_.entry_count(), 2U);
+}
+
+TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
+  // A shell ignores SIGINT for what it runs in the background, and SIGHUP where it is told to, as nohup does.
+  const ProcessResult result =
+      run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
+          "trap '' HUP; ");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out.npy"));
+}
+
+TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
+  ASSERT_EQ(run("convert --sample twist -o right.npz").exit_code, 0);
+  for (const char* const closed : {" <&-", " >&-", " 2>&-", " <&- >&- 2>&-"}) {
+    EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
+    EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
+  }
+  // What is said about zeros has nowhere to go, and does not go into the file.
+  folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
+  EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);
+}
+
+TEST_F(HostileCli, a_pipe_holds_a_whole_motion_for_every_command) {
+  const std::string npz = test::small_npz(true);
+  for (const char* const arguments : {"inspect -", "compare -", "audit -", "bake - -o out.glb",
+                                      "sample - --times 1 -o out.npy", "convert - -o out.mdd"}) {
+    const ProcessResult piped = run(arguments, "cat | ", npz),
+                        redirected = run(std::string(arguments) + " --force", "", npz);
+    EXPECT_EQ(piped.exit_code, 0) << arguments << ": " << piped.err;
+    EXPECT_EQ(redirected.exit_code, 0) << arguments << ": " << redirected.err;
+    EXPECT_EQ(redirected.out.substr(0, 9), piped.out.substr(0, 9)) << arguments;
+  }
+}
+
+TEST_F(HostileCli, small_files_that_ask_for_much_are_refused_with_the_option_that_allows_it) {
+  using test::npy, test::npy_header;
+  const std::string positions = npy(npy_header("<f4", "(2, 1000000, 3)"), std::string(24000000, '\0'));
+  const std::string faces = npy(npy_header("<i4", "(1, 3)"), test::raw<std::int32_t>({0, 1, 2}));
+  folder_.write("bomb.npz", test::zip({{"positions.npy", positions, true}, {"faces.npy", faces}}));
+  for (const std::string arguments :
+       {"inspect bomb.npz", "bake bomb.npz -o out.glb", "compare bomb.npz", "audit bomb.npz",
+        "convert bomb.npz -o out.npz", "sample bomb.npz --times 0 -o out.npy"})
+    expect(run(arguments), 3, {"bomb.npz, positions: ", "--max-expansion "});
+  EXPECT_EQ(folder_.entry_count(), 1U);
+  EXPECT_EQ(run("sample bomb.npz --times 0 -o out.npy --max-expansion 3000").exit_code, 0);
+}
+
+TEST_F(HostileCli, what_the_user_asks_for_is_announced_and_not_refused) {
+  const std::string arguments = "sample --sample twist --times 0:0.00005:1 -o no/folder_%d.ply";
+  const ProcessResult result = run(arguments);
+  expect(result, 1, {"chronormal sample: the normals of 20,001 times 7,700 elements are 1.8 GB\n", "can not write"});
+  EXPECT_EQ(run(arguments + " --quiet").err.find("GB"), std::string::npos);
+}
+
+TEST_F(HostileCli, messages_say_what_is_the_matter) {
+  folder_.write("a.obj", kFirst);
+  folder_.write("b.obj", kSecond);
+  folder_.write("f.fbx", "Kaydara FBX Binary");
+  folder_.write("text.glb", "hello");
+  folder_.write("other.npz", test::zip({{"points.npy", "x"}, {"faces.npy", "y"}}));
+  expect(run("inspect f.fbx"), 3, {".obj, ", ".glb", ".npz", ".md2", ".pc2", ".target.gz"});
+  expect(run("inspect text.glb"), 3, {"text.glb, byte 0: this is not glTF: it begins neither as GLB"});
+  expect(run("inspect other.npz"), 3, {"positions: the file has no array of this name; it has points, faces"});
+  const ProcessResult gltf = run("convert a.obj b.obj -o r.glb");
+  expect(gltf, 2, {"r.glb: ", "bake"});
+  EXPECT_EQ(gltf.err.find("%d"), std::string::npos);
+  for (const char* const samples : {"-5", "1", "1e3", "x", "1000002", "''"}) {
+    for (const char* const command : {"audit", "compare"})
+      expect(run(std::string(command) + " a.obj b.obj --samples " + samples), 2,
+             {"--samples: it must be a whole number from 2 to 1,000,00"});
+  }
+  expect(run("inspect a.obj --max-expansion -1"), 2, {"--max-expansion: it must be a whole number of 0 or more"});
+}
+
+TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
+  test::GltfBuilder builder = test::sparse_document();
+  const auto mesh = builder.json["meshes"][0];
+  for (const char* const name : {"one", "two", "three"}) {
+    builder.json["meshes"].push_back(mesh);
+    builder.json["meshes"].back()["name"] = name;
+  }
+  builder.json.erase("animations");
+  folder_.write("four.glb", builder.glb());
+  const ProcessResult result = run("bake four.glb -o out.glb");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("quad, one, two, three: no animation drives"), std::string::npos) << result.err;
+  const std::size_t first = result.err.find("no animation drives");
+  EXPECT_EQ(result.err.find("no animation drives", first + 1), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace chronormal::hostile_cli_test
