@@ -47,6 +47,30 @@ TEST(Quality, pairs_without_a_direction_are_counted_not_summed) {
   EXPECT_NEAR(quality.mean(), 3.14159265358979 / 2, 1e-7);
 }
 
+TEST(Quality, a_normal_without_bounds_is_missing) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  const std::vector<Vec3d> exact = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  float normals[] = {infinite, 0, 0, 0, -infinite, 0, infinite, infinite, -infinite, 0, 1, 0};
+  Quality quality;
+  quality.add(exact, VectorView<float>::packed(normals, 4), {});
+  EXPECT_EQ(quality.missing, 3u);
+  EXPECT_EQ(quality.count, 1u);
+  EXPECT_EQ(quality.sum, 0);
+  EXPECT_EQ(quality.max, 0);
+}
+
+TEST(Quality, what_parts_left_out_adds_up) {
+  const std::vector<Vec3d> exact = {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  float normals[] = {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  Quality sum, part;
+  part.add(exact, VectorView<float>::packed(normals, 4), {});
+  sum.add(part);
+  sum.add(part);
+  EXPECT_EQ(sum.degenerate, 2u);
+  EXPECT_EQ(sum.missing, 6u);
+  EXPECT_EQ(sum.count, 0u);
+}
+
 TEST(Quality, parts_add_up) {
   const std::vector<Vec3d> exact = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   float normals[] = {0, 0, 1, 0, 0.1f, 1, 0, 0.3f, 1, 0, 0.3f, 1};

@@ -131,6 +131,38 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
   for (const char* name : kPlayed) EXPECT_LT(drift_of_scheme(name, twist, 50, 1), 6e-7) << name;
 }
 
+TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
+  // Its bits are those of a playback without anchors that began at the last anchor.
+  constexpr std::size_t kInterval = 8;
+  constexpr double kStep = 0x1p-6;  // so that all times are exact
+  const Prepared twist("twist");
+  const NormalCurves curves(twist.normals);
+  const auto scheme = make_scheme("circle").value();
+  scheme->prepare({&twist.segment, twist.faces, twist.normals});
+  std::vector<float> found(3 * curves.size()), expected(found.size()), random(found.size());
+  const auto view = [&curves](std::vector<float>& xyz) { return VectorView<float>::packed(xyz.data(), curves.size()); };
+  NormalPlayback playback(curves, 0, kStep, kInterval), since_anchor(curves, 0, kStep, 0);
+  const auto scheme_playback = scheme->play(0, kStep, kInterval);
+  auto scheme_since_anchor = scheme->play(0, kStep, 0);
+  std::size_t drifted = 0;
+  for (std::size_t k = 0; k <= 5 * kInterval; ++k) {
+    const double t = static_cast<double>(k) * kStep;
+    if (k % kInterval == 0) {
+      since_anchor = NormalPlayback(curves, t, kStep, 0);
+      scheme_since_anchor = scheme->play(t, kStep, 0);
+    }
+    (void)playback.next(view(found));
+    (void)since_anchor.next(view(expected));
+    ASSERT_EQ(found, expected) << "step " << k;
+    (void)curves.unit_normals(t, view(random));
+    if (k % kInterval == kInterval - 1 && found != random) ++drifted;
+    scheme_playback->next(view(found));
+    scheme_since_anchor->next(view(expected));
+    ASSERT_EQ(found, expected) << "circle, step " << k;
+  }
+  EXPECT_EQ(drifted, 5u) << "an anchor that comes early would not be seen";
+}
+
 TEST(Playback, a_part_of_the_segment_can_be_played_backwards) {
   const Prepared twist("twist");
   const NormalCurves curves(twist.normals);

@@ -156,6 +156,20 @@ TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
   EXPECT_EQ(weighted(motion, Weighting::kUniform)[1], (Vec3d{0, 0, 1}));
 }
 
+TEST(Weighting, a_corner_at_an_edge_without_length_takes_nothing_from_the_faces_around_it) {
+  // The edge of the quad from 1 to 2 has no length; it is the second edge of corner 1, and the first of corner 2.
+  const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 3, 2}};
+  const Motion alone = test::still(fixtures::make_triangles(5, {1, 4, 3, 2, 4, 0}), points);
+  const Motion both = test::still(fixtures::make_polygons(5, {0, 3, 6, 10}, {1, 4, 3, 2, 4, 0, 0, 1, 2, 3}), points);
+  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax}) {
+    const auto expected = weighted(alone, weighting), found = weighted(both, weighting);
+    for (const std::size_t v : {std::size_t{1}, std::size_t{2}}) {
+      EXPECT_GT(max_abs(expected[v]), 0.1);
+      EXPECT_EQ(found[v], expected[v]) << weighting_name(weighting) << ", vertex " << v;
+    }
+  }
+}
+
 TEST(Weighting, both_sides_of_a_sheet_cancel_to_zero) {
   Motion sheet = test::still(fixtures::make_triangles(3, {0, 1, 2, 2, 1, 0}),
                              {{0.1, 0.7, 0.2}, {1.3, 0.1, -0.4}, {0.3, 1.9, 0.6}});
