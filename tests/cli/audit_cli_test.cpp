@@ -166,6 +166,27 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
   EXPECT_EQ(json_of("many.glb")["subjects"].size(), 20U);
 }
 
+TEST_F(AuditCli, long_tables_show_the_worst) {
+  // 20 targets of which every third folds the hinge by its whole angle, and the others by a tenth of that.
+  test::ShadedMesh mesh = test::hinge();
+  const auto slight = [&] {
+    test::ShadedMesh::Target target = mesh.targets[0];
+    for (float& c : target.positions) c *= 0.1F;
+    return target;
+  }();
+  const auto whole = mesh.targets[0];
+  mesh.targets.clear();
+  for (int i = 0; i < 20; ++i) mesh.targets.push_back(i % 3 == 0 ? whole : slight);
+  folder_.write("many.glb", mesh.file().glb());
+  const std::string text = text_of("many.glb --samples 2");
+  const std::string table = text.substr(0, text.find("... and 4 more"));
+  for (int i = 0; i < 20; ++i) {
+    // The first of equals are shown: all 7 that are off by 90 degrees, and 9 of the rest.
+    const bool is_shown = i % 3 == 0 || i < 14;
+    EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
+  }
+}
+
 TEST_F(AuditCli, errors_say_what_is_wrong) {
   expect_error("", 2, "nothing to read");
   expect_error("missing.glb", 1, "missing.glb");
@@ -174,6 +195,7 @@ TEST_F(AuditCli, errors_say_what_is_wrong) {
   expect_error("a.obj b.obj --rule gltf", 2, "the rule gltf");
   expect_error("hinge.glb --weighting mass", 2, "--weighting");
   expect_error("hinge.glb --samples 1", 2, "--samples");
+  expect_error("hinge.glb --samples 1000002", 2, "samples");
   expect_error("hinge.glb --tolerance -1", 2, "--tolerance");
   expect_error("hinge.glb --tolerance nan", 2, "--tolerance");
   expect_error("hinge.glb --animation walk", 2, "walk");

@@ -86,6 +86,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("inspect - --fps 0"), 2, {"--fps"});
   expect_error(run("compare a.obj b.obj --samples 1"), 2, {"--samples"});
   expect_error(run("compare a.obj b.obj --samples x"), 2, {"--samples"});
+  expect_error(run("compare a.obj b.obj --samples 1000001"), 2, {"--samples", "1,000,000"});
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});

@@ -44,6 +44,25 @@ TEST(GltfContainer, glb_and_gltf_hold_the_same) {
       GltfFixture(builder.gltf_with_uri("data:application/gltf-buffer;base64," + test::base64(builder.buffer)))));
 }
 
+TEST(GltfContainer, bin_chunk_has_at_most_3_bytes_more_than_its_buffer) {
+  // As the specification has it: what pads the chunk, and nothing else.
+  GltfBuilder builder = test::quad_document();
+  builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4);
+  for (const std::size_t surplus : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
+    GltfBuilder::Json json = builder.json;
+    const std::string bin = builder.buffer + std::string(4 * ((surplus + 3) / 4), '\0');
+    json["buffers"] = {{{"byteLength", bin.size() - surplus}}};
+    const GltfFixture file(test::glb_bytes(json.dump(), bin));
+    ASSERT_TRUE(file.ok()) << file.error();
+    const Result<GltfGeometry> geometry = file->geometry(0, 0, {true, true});
+    EXPECT_EQ(geometry.ok(), surplus <= 3) << surplus;
+    if (surplus > 3 && !geometry) {
+      EXPECT_EQ(geometry.error().code, ErrorCode::kInvalidInput);
+      EXPECT_NE(geometry.error().text().find("/buffers/0/byteLength"), std::string::npos) << geometry.error().text();
+    }
+  }
+}
+
 TEST(GltfContainer, buffer_lies_in_a_file_beside_the_asset) {
   const GltfBuilder builder = test::quad_document();
   const test::TemporaryFolder folder;

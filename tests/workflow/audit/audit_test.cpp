@@ -284,6 +284,31 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
   EXPECT_GT(result.offsets[0].worst, 0.1);
 }
 
+TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
+  // Two triangles in a plane have one normal, whatever the weighting, and the authored ones are turned from it.
+  ShadedMesh mesh = hinge();
+  for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
+  const Audit result = audit_of(mesh.file());
+  ASSERT_EQ(result.offsets.size(), 1U);
+  EXPECT_NEAR(result.offsets[0].worst, 36.86989764584402, 1e-5);
+  EXPECT_EQ(result.offsets[0].closest_mean, result.offsets[0].mean());
+  EXPECT_EQ(result.offsets[0].closest, Weighting::kArea);
+}
+
+TEST(Audit, takes_from_2_to_1000001_samples) {
+  // At more the file is not even read.
+  for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, std::size_t{1000002}, ~std::size_t{0}}) {
+    const test::GltfFixture file(hinge().file());
+    const Result<Audit> result = audit(*file, {.samples = samples});
+    ASSERT_FALSE(result.ok()) << samples;
+    EXPECT_EQ(result.error().code, ErrorCode::kUsage);
+  }
+  const test::GltfFixture file(hinge().file());
+  const Result<Audit> most = audit(*file, {.samples = 1000001});
+  ASSERT_TRUE(most.ok()) << most.error().text();
+  EXPECT_EQ(most.value().error.judged, 3U * 1000001);
+}
+
 // ---- what is not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {

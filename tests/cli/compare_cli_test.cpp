@@ -1,0 +1,94 @@
+// Each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV: against figures by hand.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::compare_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+// Three triangles that move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and
+// one from z to -y in which linear interpolation is off by 45 - atan(1/2) degrees at t = 1/2. Of 3 x 2 x 3 pairs 6 have
+// no exact normal, and linear is wrong at two: there, and by 180 degrees where opposite normals cancel.
+class CompareFigures : public testing::Test {
+ protected:
+  CompareFigures() {
+    const std::string line = "v 0 0 0\nv 1 0 0\nv 2 0 0\n", faces = "f 1 2 3\nf 4 5 6\nf 7 8 9\n";
+    const std::string end = line + "v 0 0 0\nv 1 0 0\nv 0 -3 0\nv 0 0 0\nv 1 0 0\nv 0 0 2\n" + faces;
+    folder_.write("1.obj", line + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\n" + faces);
+    folder_.write("2.obj", end);
+    folder_.write("3.obj", end);
+  }
+  [[nodiscard]] std::string output(const std::string& form) const {
+    return run_shell(std::string(kProgram) +
+                         " compare 1.obj 2.obj 3.obj --samples 3 --schemes linear,slerp --no-times " + form,
+                     folder_.path())
+        .out;
+  }
+
+  static constexpr double kLess = 18.43494882292201;  // degrees
+  static constexpr double kSum = 180 + kLess;
+  static constexpr double kMean = kSum / 12;
+  static constexpr double kRms = 52.23332855092279;  // sqrt((180^2 + kLess^2) / 12)
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CompareFigures, csv_has_each_figure_in_the_column_of_its_name) {
+  std::istringstream lines(output("--csv"));
+  std::string header, row;
+  std::getline(lines, header);
+  std::getline(lines, row);
+  std::istringstream names(header), values(row);
+  std::map<std::string, std::string> field;
+  for (std::string name, value; std::getline(names, name, ',') && std::getline(values, value, ',');)
+    field[name] = value;
+  EXPECT_EQ(field["scheme"], "linear");
+  EXPECT_NEAR(std::stod(field["sum_degrees"]), kSum, 1e-4);
+  EXPECT_NEAR(std::stod(field["mean_degrees"]), kMean, 1e-5);
+  EXPECT_NEAR(std::stod(field["rms_degrees"]), kRms, 1e-5);
+  EXPECT_NEAR(std::stod(field["max_degrees"]), 180, 1e-5);
+  EXPECT_EQ(field["max_segment"], "0");
+  EXPECT_EQ(field["max_element"], "1");
+  EXPECT_EQ(field["max_t"], "0.5");
+  EXPECT_EQ(field["degenerate"], "6");
+  EXPECT_EQ(field["missing"], "0");
+  EXPECT_EQ(field["fallbacks"], "0");
+  EXPECT_EQ(field["flagged"], "0");
+  EXPECT_EQ(field["segments"], "2");
+}
+
+TEST_F(CompareFigures, json_has_each_figure_under_its_name) {
+  const Json rows = Json::parse(output("--json"))["schemes"];
+  EXPECT_NEAR(rows[0]["mean_degrees"], kMean, 1e-5);
+  EXPECT_NEAR(rows[0]["rms_degrees"], kRms, 1e-5);
+  EXPECT_NEAR(rows[0]["max_degrees"], 180, 1e-5);
+  for (const Json& row : rows) {
+    EXPECT_EQ(row["degenerate"], 6);
+    EXPECT_EQ(row["missing"], 0);
+  }
+  EXPECT_EQ(rows[0]["fallbacks"], 0);
+  EXPECT_EQ(rows[1]["fallbacks"], 1) << "of slerp between opposite normals";
+}
+
+TEST_F(CompareFigures, table_counts_shares_in_pairs_of_all_segments) {
+  const std::string text = output("");
+  for (const char* const line :
+       {"\nslerp: 1 of 6 (face, segment) pairs (16.67 %) with a stated fallback\n",
+        "\ndegenerate: 6 (face, sample) pairs without an exact normal left out\n", "  16.5362  52.2333  180.0000  "})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
+  EXPECT_EQ(text.find("without a normal of the scheme"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace chronormal::compare_cli_test
