@@ -124,6 +124,7 @@ struct Corner {
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);
+  const Real crease = degrees * kPi / 180 + 1e-6L;  // as the contract has it, for the rounding of positions
   const auto neighbours = [&](const Corner& c) {
     return std::pair{point[vertex_of(mesh, c, 1)], point[vertex_of(mesh, c, mesh.faces[c.face].size() - 1)]};
   };
@@ -135,7 +136,7 @@ struct Corner {
     const auto [b1, b2] = neighbours(b);
     const bool edge = (a1 != here && (a1 == b1 || a1 == b2)) || (a2 != here && (a2 == b1 || a2 == b2));
     if (!edge) return false;
-    return a.face == b.face || angle(vector_area(mesh, a.face, 0), vector_area(mesh, b.face, 0)) <= degrees * kPi / 180;
+    return a.face == b.face || angle(vector_area(mesh, a.face, 0), vector_area(mesh, b.face, 0)) <= crease;
   });
 }
 

@@ -1,0 +1,14 @@
+// Property tests draw from a fixed seed, so that a failure is there again in the next run. RapidCheck reads the
+// environment variable RC_PARAMS when the first property runs, and prints the seed; where the caller has set it, as in
+//     RC_PARAMS=seed=1234 chronormal_tests --gtest_filter=...
+// that stays.
+
+#include <cstdlib>
+
+namespace chronormal {
+namespace {
+
+[[maybe_unused]] const int kIsSet = setenv("RC_PARAMS", "seed=20261122", 0);
+
+}  // namespace
+}  // namespace chronormal
