@@ -211,6 +211,51 @@ TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   EXPECT_GT(sure, 3U);
 }
 
+// Each of very many targets rounds the position anew, here all in one direction: a vertex goes to 256, on in 250 steps
+// of 1 + 127 eps that lose 127 eps each, and all the way back.
+TEST(BlendNormals, rounding_of_every_target_counts) {
+  constexpr double kEps = 0x1p-52;
+  constexpr float kSize = 4e-6F;  // of the triangle, which the loss of 7e-12 turns by 1.8e-6 rad
+  BlendSet set;
+  set.topology = fixtures::make_triangles(3, {0, 1, 2});
+  set.base = {0, 0, 0, kSize, 0, 0, 0, kSize, 0};
+  set.targets.assign(252, {"", {2}, {0, 0, 1}});
+  std::vector<double> weights(252, 1 + 127 * kEps);
+  weights.front() = 256;
+  weights.back() = -506;
+  const auto expected = test::exact_normals(set, nullptr, weights);
+  for (const BlendPath path : kPaths) {
+    BlendNormals normals = BlendNormals::of_faces(set, {kUnlimited, path});
+    const Evaluated done = evaluate(normals, weights);
+    EXPECT_EQ(errors_of(done, expected).far, 1U) << "no rounding to be counted";
+    EXPECT_EQ(done.evaluation.uncertain_elements + done.evaluation.zeros, 1U) << name_of(path);
+  }
+}
+
+// A polygon that winds around a triangle of less than an ulp is a point once it has been far away. What area it has is
+// all rounding; its edges are zero, so that nothing but the square of the rounding of positions says so. With its many
+// corners that outweighs the triangle beside it, which alone has a direction.
+TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
+  constexpr float kFar = 1.5F * 0x1p52F;  // where an ulp is 1
+  for (const int turns : {0, 10}) {
+    BlendSet set;
+    set.base = {0, 0, 0, 150, 0, 0, 0, 150, 0, -0.49F, -0.49F, 0, 0, 0.49F, 0, 0.49F, -0.49F, 0};
+    std::vector<std::uint32_t> offsets = {0, 3}, corners = {0, 1, 2};
+    if (turns > 0) corners.push_back(0);
+    for (int i = 0; i < turns; ++i) corners.insert(corners.end(), {3, 4, 5});
+    if (turns > 0) offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    set.topology = fixtures::make_polygons(6, offsets, corners);
+    BlendTarget away{"", {0, 1, 2, 3, 4, 5}, {}};
+    for (int v = 0; v < 6; ++v) away.deltas.insert(away.deltas.end(), {kFar, kFar, 0});
+    set.targets = {away, away};
+    for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // terms know no positions
+      BlendNormals normals = BlendNormals::of_groups(set, test::vertices_of(set), {kUnlimited, path});
+      const std::vector<float> expected = {0, 0, turns == 0 ? 1.0F : 0.0F};
+      EXPECT_EQ(evaluate(normals, std::vector{1.0, -1.0}).of(0), expected) << name_of(path) << ", " << turns;
+    }
+  }
+}
+
 TEST(BlendNormals, faces_without_area_in_the_base_count_until_a_target_opens_them) {
   BlendSet set;
   set.topology = fixtures::make_triangles(6, {0, 1, 2, 3, 4, 5});
