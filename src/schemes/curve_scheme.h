@@ -35,15 +35,18 @@ namespace chronormal::inline internal {
 /// One element while it is fitted.
 class ElementMotion {
  public:
-  ElementMotion(const Segment& segment, std::size_t element, const ControlNormals& normals)
-      : segment_(segment),
-        element_(element),
-        normals_(normals),
-        start_(unit_normal_at(normals, 0)),
-        end_(unit_normal_at(normals, 1)) {}
+  /// The i-th of a block.
+  ElementMotion(const ElementBlock& block, std::size_t i)
+      : segment_(*block.segment),
+        element_(block.elements.first + i),
+        is_face_(block.are_faces),
+        normals_(block.normals[i]),
+        start_(unit_normal_at(normals_, 0)),
+        end_(unit_normal_at(normals_, 1)) {}
 
   [[nodiscard]] const Segment& segment() const { return segment_; }
   [[nodiscard]] std::size_t element() const { return element_; }
+  [[nodiscard]] bool is_face() const { return is_face_; }
   [[nodiscard]] const ControlNormals& control_normals() const { return normals_; }
   /// Exact unit normals at the ends: u0, u1 of docs/theory.md.
   [[nodiscard]] const UnitNormal& start() const { return start_; }
@@ -63,6 +66,7 @@ class ElementMotion {
  private:
   const Segment& segment_;
   std::size_t element_;
+  bool is_face_;
   const ControlNormals& normals_;
   UnitNormal start_, end_;
   bool used_fallback_ = false;
@@ -186,7 +190,7 @@ class CurveScheme final : public Scheme {
 
     std::vector<double> c(policy_.plane_count());
     for (std::size_t i = 0; i < count_; ++i) {
-      ElementMotion element(*block.segment, block.elements.first + i, block.normals[i]);
+      ElementMotion element(block, i);
       if (element.start().direction == Direction::kNone) {
         ++without_direction_;
         continue;

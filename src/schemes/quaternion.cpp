@@ -12,7 +12,7 @@ namespace {
 
 template <class MakeFrames>
 struct Quaternion : UniformArc {
-  Quaternion(MakeFrames make, bool looks_at_faces) : make_frames(std::move(make)), needs_faces(looks_at_faces) {}
+  explicit Quaternion(MakeFrames make) : make_frames(std::move(make)) {}
 
   void fit(ElementMotion& element, double* c) const {
     if (const auto frames = make_frames(element)) {
@@ -24,22 +24,21 @@ struct Quaternion : UniformArc {
   }
 
   MakeFrames make_frames;
-  bool needs_faces;
+  bool needs_faces = true;
 };
 
 template <class MakeFrames>
-std::unique_ptr<Scheme> make_quaternion(MakeFrames make_frames, bool needs_faces) {
-  return std::make_unique<CurveScheme<Quaternion<MakeFrames>>>(
-      Quaternion<MakeFrames>(std::move(make_frames), needs_faces));
+std::unique_ptr<Scheme> make_quaternion(MakeFrames make_frames) {
+  return std::make_unique<CurveScheme<Quaternion<MakeFrames>>>(Quaternion<MakeFrames>(std::move(make_frames)));
 }
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_quaternion_matrix() { return make_quaternion(matrix_frames, true); }
-std::unique_ptr<Scheme> make_quaternion_edge() { return make_quaternion(edge_frames, true); }
-std::unique_ptr<Scheme> make_quaternion_polar() { return make_quaternion(polar_frames, true); }
+std::unique_ptr<Scheme> make_quaternion_matrix() { return make_quaternion(matrix_frames); }
+std::unique_ptr<Scheme> make_quaternion_edge() { return make_quaternion(edge_frames); }
+std::unique_ptr<Scheme> make_quaternion_polar() { return make_quaternion(polar_frames); }
 std::unique_ptr<Scheme> make_quaternion_random(std::uint64_t seed) {
-  return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); }, false);
+  return make_quaternion([seed](const ElementMotion& element) { return random_frames(element, seed); });
 }
 
 }  // namespace chronormal::inline internal

@@ -33,11 +33,14 @@ struct OptimalQuaternion : UniformArc {
     std::size_t count = 0;
     for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
 
-    // The grid has slerp; add the constructed frames, and the circle through the middle.
-    for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
-      if (!frames) continue;
-      const Arc arc = shorter_arc(*frames);
-      if (arc.angle > 0) points[count++] = std::clamp(circles.phi_of(cross(arc.p, arc.q)), -limit, limit);
+    // The grid has slerp; add the frames that are constructed from the edges of a face, and the circle through the
+    // middle.
+    if (element.is_face()) {
+      for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
+        if (!frames) continue;
+        const Arc arc = shorter_arc(*frames);
+        if (arc.angle > 0) points[count++] = std::clamp(circles.phi_of(cross(arc.p, arc.q)), -limit, limit);
+      }
     }
     const Vec3d middle = unit_normal_at(element.control_normals(), 0.5).vector;
     const Vec3d axis = cross(middle - circles.u0, circles.u1 - circles.u0);

@@ -17,8 +17,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/cache_bytes.h"
+#include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::docs_test {
@@ -175,6 +178,38 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   std::replace(name.begin(), name.end(), '/', '_');
   return name;
 });
+
+// Files of the names that README speaks of, all small.
+void write_files_of_readme(const test::TemporaryFolder& folder) {
+  const std::string faces = "f 1 2 3\nf 1 3 4\n";
+  const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
+  const std::string moved = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0.5\n" + faces;
+  for (const char* const name : {"frames", "walk", "run", "targets"}) fs::create_directory(folder / name);
+  for (const char* const name : {"frames/1.obj", "frames/3.obj", "walk/1.obj", "run/1.obj", "start.obj", "face.obj"})
+    folder.write(name, still);
+  for (const char* const name : {"frames/2.obj", "walk/2.obj", "run/2.obj", "end.obj", "targets/smile.obj"})
+    folder.write(name, moved);
+  folder.write("body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("walk.pc2", test::small_pc2(0, 1));
+  test::GltfBuilder face = test::random_sheet(1, 5, 2, 0.2).file();
+  face.add_track<float>(face.add_animation("smile"), 0, {0, 1}, {1, 0, 0, 1});
+  folder.write("face.glb", face.glb());
+}
+
+// Those that stand alone, indented; what they print depends on whose files they are given.
+TEST(Documents, every_indented_command_of_README_runs) {
+  const test::TemporaryFolder folder;
+  write_files_of_readme(folder);
+  std::size_t commands = 0;
+  for (const std::string& line : lines_of(read(kRoot / "README.md"))) {
+    if (!line.starts_with("    ./run ")) continue;
+    ++commands;
+    const std::string command = line.substr(4, line.find(" # ") - 4);
+    const ProcessResult result = run_documented(command, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << command << "\n" << result.out;
+  }
+  EXPECT_GE(commands, 14u);
+}
 
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 

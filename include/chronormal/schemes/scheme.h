@@ -38,6 +38,7 @@ struct ElementBlock {
   const Segment* segment = nullptr;
   IndexRange elements;                      ///< which; schemes that need faces look at those of these indices
   std::span<const ControlNormals> normals;  ///< one per element; `recompute` does not read them
+  bool are_faces = true;                    ///< or vertices or corners, which have no edges
 };
 
 /// Elementary operations of one evaluation of one element. What all elements of a block share at one t

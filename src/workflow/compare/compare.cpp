@@ -63,6 +63,7 @@ class Elements {
   explicit Elements(NormalGroups groups) : groups_(std::move(groups)), count_(groups_->size()) {}
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
   // What a person calls an element: the face, or the first vertex or corner that shows it.
   [[nodiscard]] std::size_t first_output(std::size_t element) const {
@@ -119,7 +120,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
     schemes.push_back(make_scheme(names[s]).value());
     Scheme& scheme = *schemes[s];
     const auto start = Clock::now();
-    scheme.prepare({&segment, range, control_normals});
+    scheme.prepare({&segment, range, control_normals, all.are_faces()});
     const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
     tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
     tallies[s].fallbacks = scheme.fallback_count();

@@ -46,6 +46,25 @@ TEST(Compare, one_face_by_hand) {
   EXPECT_LT(row(comparison.value(), "polynomial").quality.sum, 1e-6);
 }
 
+TEST(Compare, vertices_may_be_more_than_faces) {
+  // Of schemes that search, too, none takes a vertex for the face of that number: here there are 4 and 1.
+  const Motion motion = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
+                                              {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                                              {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0.5}});
+  CompareOptions options;
+  options.elements.kind = ElementKind::kVertices;
+  for (const SchemeDescription& scheme : scheme_descriptions()) {
+    const std::string name(scheme.name.substr(0, scheme.name.find_first_of("KS")));
+    const std::string numbered = name.ends_with(':') ? name + "4" : name;
+    options.schemes = {numbered};
+    const auto compared = compare(motion, options);
+    if (make_scheme(numbered).value()->needs_faces())
+      EXPECT_EQ(compared.error().code, ErrorCode::kUsage) << numbered;
+    else
+      EXPECT_EQ(compared.value().schemes.front().quality.count, 4U * 21) << numbered;
+  }
+}
+
 // The whole table against an implementation that shares nothing with it: mean angles over faces and samples.
 TEST(Compare, agrees_with_the_oracle_to_the_printed_digits) {
   constexpr const char* kSchemes[] = {
