@@ -11,15 +11,13 @@
 #include "core/blocks.h"
 #include "core/vector_area.h"
 #include "normals/weighting/corner_terms.h"
+#include "normals/weighting/series_bounds.h"
 #include "normals/weighting/taylor.h"
 
 namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 64;
-
-// Taylor polynomials have 5 coefficients, and the sixth is the remainder.
-constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
 
 constexpr std::size_t kSamples = 16;      // of the error, to compare the bound with
 constexpr double kTightness = 2;          // times the largest sample is close enough
@@ -124,13 +122,6 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   return angle;
 }
 
-double length_of(double x, double y, double z) { return (1 + 0x1p-50) * length(Vec3d{x, y, z}); }
-
-// The largest length of a vector that is somewhere in these intervals.
-double largest_length(const Interval& x, const Interval& y, const Interval& z) {
-  return length_of(x.magnitude(), y.magnitude(), z.magnitude());
-}
-
 // An angle that is known no better than this over a piece of time.
 struct CoarseAngle {
   double middle, radius;
@@ -184,20 +175,6 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
   if (by_area) return {scaled_by<kTerms>(angle_here, n), scaled_by<kTerms>(angle_around, shifted(n, piece)), slack};
   return {scaled_by<kTerms>(angle_here, unit_series(n, kHere)), scaled_by<kTerms>(angle_around, unit_series(n, piece)),
           slack};
-}
-
-// C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
-constexpr std::array<std::array<double, kDegree + 1>, kDegree + 1> kBernsteinOfPowers = {
-    {{1, 1, 1, 1, 1}, {-4, -2, 0, 2, 4}, {6, 0, -2, 0, 6}, {-4, 2, 0, -2, 4}, {1, -1, 1, -1, 1}}};
-
-// The Bernstein coefficients over [c - h, c + h] of the Taylor polynomial about c; k-th powers of h are given.
-std::array<Interval, kDegree + 1> bernstein(const Series<kTerms>& taylor, const std::array<Interval, kTerms>& powers) {
-  std::array<Interval, kDegree + 1> result;
-  for (std::size_t k = 0; k <= kDegree; ++k) {
-    const Interval coefficient = (1 / binomial(kDegree, k)) * (taylor[k] * powers[k]);
-    for (std::size_t j = 0; j <= kDegree; ++j) result[j] = result[j] + kBernsteinOfPowers[k][j] * coefficient;
-  }
-  return result;
 }
 
 // Everything about one element that bounds need.
@@ -255,24 +232,8 @@ struct Element {
   [[nodiscard]] double bound(double t0, double t1) const {
     const double centre = t0 + (t1 - t0) / 2, half = (t1 - t0) / 2;
     const Products series = products(centre, Interval{-half, half});
-    std::array<Interval, kTerms> powers;
-    powers[0] = Interval::point(1);
-    for (std::size_t k = 1; k < kTerms; ++k) powers[k] = half * powers[k - 1];
-    const auto rest = [&](const Series<kTerms>& s) { return s[kTerms - 1] * powers[kTerms - 1]; };
-
-    // The cross product lies in the hull of its Bernstein coefficients, but for the remainder.
-    const auto& [cross_x, cross_y, cross_z] = series.cross_here;
-    const auto x = bernstein(cross_x, powers), y = bernstein(cross_y, powers), z = bernstein(cross_z, powers);
-    double sine = 0;
-    for (std::size_t j = 0; j <= kDegree; ++j) sine = std::max(sine, largest_length(x[j], y[j], z[j]));
-    const auto& [rest_x, rest_y, rest_z] = series.cross_around;
-    sine += largest_length(rest(rest_x), rest(rest_y), rest(rest_z)) + series.slack;
-
-    const auto d = bernstein(series.dot_here, powers);
-    double cosine = d[0].low;
-    for (const Interval& coefficient : d) cosine = std::min(cosine, coefficient.low);
-    cosine -= (1 + 0x1p-50) * (rest(series.dot_around).magnitude() + series.slack);
-
+    const double sine = largest_length_over(series.cross_here, series.cross_around, half, series.slack);
+    const double cosine = least_over(series.dot_here, series.dot_around, half, series.slack);
     if (!std::isfinite(sine) || !(cosine > 0)) return std::numbers::pi;
     return (1 + 0x1p-48) * std::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include "normals/weighting/series_bounds.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::taylor_test {
@@ -105,6 +107,56 @@ RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
   for (std::size_t k = 5; k > 0; --k) value = value * Interval::point(0.4) + taylor[k - 1];
   RC_ASSERT(value.high - value.low < 1e-14);
   RC_ASSERT(!contains(value, 1 / std::sqrt(p(0.4L))));
+}
+
+// ---- bounds over a piece -------------------------------------------------------------------------------------------
+
+// 1 / sqrt(p) about c, and about all of [c - half, c + half].
+struct PieceOfRoot {
+  Series<6> here, around;
+
+  PieceOfRoot(const Quadratic& p, double c, double half) {
+    const auto series = [&](const Interval& piece) {
+      const Series<3> of_p = shifted(p.about(c), piece);
+      return power<6>(of_p, -0.5, reciprocal(square_root(of_p[0])));
+    };
+    here = series({0, 0});
+    around = series({-half, half});
+  }
+};
+
+// Pieces so long that the polynomial alone is off by percents: only the remainder makes these bounds.
+TEST(SeriesBounds, hold_at_all_times_of_a_piece_and_would_not_without_the_remainder) {
+  fixtures::Random random(83);
+  std::size_t above_polynomial = 0, longer_than_polynomial = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double centre = random.uniform(-0.3, 0.3), half = random.uniform(0.2, 0.6);
+    std::array<Quadratic, 3> p{};
+    VectorSeries<6> here, around;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = {random.uniform(-0.7, 0.7), random.uniform(-0.2, 0.2)};
+      const PieceOfRoot piece(p[k], centre, half);
+      here[k] = piece.here;
+      around[k] = piece.around;
+    }
+    const Series<6> none{};
+    const double least = least_over(here[0], around[0], half, 0), unsafe = least_over(here[0], none, half, 0);
+    const double largest = largest_length_over(here, around, half, 0);
+    const double unsafe_length = largest_length_over(here, {none, none, none}, half, 0);
+    for (int i = -32; i <= 32; ++i) {
+      const Real t = Real(centre) + Real(half) * i / 32;
+      Real square = 0;
+      for (const Quadratic& q : p) square += 1 / q(t);
+      ASSERT_LE(Real(least), 1 / std::sqrt(p[0](t))) << round;
+      ASSERT_GE(Real(largest), std::sqrt(square)) << round;
+      above_polynomial += Real(unsafe) > 1 / std::sqrt(p[0](t)) ? 1U : 0U;
+      longer_than_polynomial += Real(unsafe_length) < std::sqrt(square) ? 1U : 0U;
+    }
+    ASSERT_EQ(least_over(here[0], none, half, 0.25), unsafe - (1 + 0x1p-50) * 0.25);
+    ASSERT_EQ(largest_length_over(here, {none, none, none}, half, 0.25), unsafe_length + 0.25);
+  }
+  EXPECT_GT(above_polynomial, 0U) << "no piece shows whether there is a remainder";
+  EXPECT_GT(longer_than_polynomial, 0U) << "no piece shows whether there is a remainder";
 }
 
 }  // namespace

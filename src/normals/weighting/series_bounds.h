@@ -1,0 +1,69 @@
+/// Bounds over a piece of time of functions that are known by their series: the polynomial lies in the hull of its
+/// Bernstein coefficients, and the function within the remainder of that.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "chronormal/core/polynomial.h"
+#include "chronormal/core/vec3.h"
+#include "normals/weighting/interval.h"
+#include "normals/weighting/taylor.h"
+
+namespace chronormal::inline internal {
+
+/// Taylor polynomials have 5 coefficients, and the sixth is the remainder.
+inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
+
+/// The largest length of a vector that is somewhere in these intervals.
+[[nodiscard]] inline double largest_length(const Interval& x, const Interval& y, const Interval& z) noexcept {
+  return (1 + 0x1p-50) * length(Vec3d{x.magnitude(), y.magnitude(), z.magnitude()});
+}
+
+/// The Bernstein coefficients over [c - half, c + half] of the Taylor polynomial about c.
+[[nodiscard]] inline std::array<Interval, kDegree + 1> bernstein(const Series<kTerms>& taylor, double half) noexcept {
+  // C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
+  constexpr std::array<std::array<double, kDegree + 1>, kDegree + 1> kOfPowers = {
+      {{1, 1, 1, 1, 1}, {-4, -2, 0, 2, 4}, {6, 0, -2, 0, 6}, {-4, 2, 0, -2, 4}, {1, -1, 1, -1, 1}}};
+  std::array<Interval, kDegree + 1> result;
+  Interval power = Interval::point(1);
+  for (std::size_t k = 0; k <= kDegree; ++k) {
+    const Interval coefficient = (1 / binomial(kDegree, k)) * (taylor[k] * power);
+    for (std::size_t j = 0; j <= kDegree; ++j) result[j] = result[j] + kOfPowers[k][j] * coefficient;
+    power = half * power;
+  }
+  return result;
+}
+
+/// What the remainder of a series about all of [c - half, c + half] may add anywhere there.
+[[nodiscard]] inline Interval remainder(const Series<kTerms>& around, double half) noexcept {
+  Interval power = Interval::point(1);
+  for (std::size_t k = 1; k < kTerms; ++k) power = half * power;
+  return around[kTerms - 1] * power;
+}
+
+/// A lower bound of a function over [c - half, c + half], from its series about c and about all of that. The true
+/// function may differ by `slack`.
+[[nodiscard]] inline double least_over(const Series<kTerms>& here, const Series<kTerms>& around, double half,
+                                       double slack) noexcept {
+  const auto coefficients = bernstein(here, half);
+  double least = coefficients[0].low;
+  for (const Interval& coefficient : coefficients) least = std::min(least, coefficient.low);
+  return least - (1 + 0x1p-50) * (remainder(around, half).magnitude() + slack);
+}
+
+/// An upper bound of the length of a vector, likewise.
+[[nodiscard]] inline double largest_length_over(const VectorSeries<kTerms>& here, const VectorSeries<kTerms>& around,
+                                                double half, double slack) noexcept {
+  const auto x = bernstein(here[0], half), y = bernstein(here[1], half), z = bernstein(here[2], half);
+  double largest = 0;
+  for (std::size_t j = 0; j <= kDegree; ++j) largest = std::max(largest, largest_length(x[j], y[j], z[j]));
+  return largest + largest_length(remainder(around[0], half), remainder(around[1], half), remainder(around[2], half)) +
+         slack;
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
