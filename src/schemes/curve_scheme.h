@@ -258,7 +258,7 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
-    ElementMotion element(segment, 0, turning);
+    ElementMotion element({&segment, {0, 1}, {&turning, 1}}, 0);
     std::vector<double> c(policy_.plane_count());
     policy_.fit(element, c.data());
     return {c.begin(), c.end()};

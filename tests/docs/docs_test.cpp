@@ -10,11 +10,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/support/cache_bytes.h"
@@ -210,6 +214,57 @@ TEST(Documents, every_indented_command_of_README_runs) {
   }
   EXPECT_GE(commands, 14u);
 }
+
+// The rows of docs/blend.md on real faces, as the commands above them print them now.
+class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
+
+TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
+  const char* const data = std::getenv("CHRONORMAL_DATA");
+  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+  const auto& [name, files, mesh] = GetParam();
+  const ProcessResult result = run_shell(std::string(kProgram) + " compare " + files + " --blend 1000 --json", data);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Lines expected;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  for (const auto& one : json["meshes"]) {
+    if (one.contains("mesh") && one["mesh"] != mesh) continue;
+    for (const auto& errors : one["errors"]) {
+      std::map<std::string, std::string> cell = {{"file", "-"}};
+      for (const auto& deltas : errors["deltas"]) {
+        char text[64];
+        const bool exact = deltas["deltas"] == "exact";
+        std::snprintf(text, sizeof text, exact ? "%.0e / %.0e" : "%.2f / %.1f", deltas["mean_degrees"].get<double>(),
+                      deltas["max_degrees"].get<double>());
+        cell[deltas["deltas"]] = text;
+      }
+      expected.push_back("|" + std::to_string(errors["active"].get<int>()) + "|" + cell["file"] + "|" +
+                         cell["end point"] + "|" + cell["least squares"] + "|" + cell["exact"] + "|");
+    }
+  }
+  // The rows of the page without blanks at the rims of cells; a name stands in the first of its rows only.
+  Lines shown;
+  std::string last;
+  for (const std::string& line : lines_of(read(kRoot / "docs/blend.md"))) {
+    if (!line.starts_with("| ")) continue;
+    std::string row = line;
+    while (row.find("  ") != std::string::npos) row = replaced(row, "  ", " ");
+    row = replaced(replaced(row, "| ", "|"), " |", "|");
+    const std::size_t end = row.find('|', 1);
+    if (end > 1) last = row.substr(1, end - 1);
+    const std::size_t digits = row.find_first_not_of("0123456789", end + 1);
+    if (last == name && digits != end + 1 && std::count(row.begin(), row.end(), '/') >= 3)
+      shown.push_back(row.substr(end));
+  }
+  EXPECT_EQ(shown, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Documents, RealFaces,
+    testing::Values(std::tuple{"face", "--base face_mpfb2/base.obj face_mpfb2/targets/", 0},
+                    std::tuple{"RobotExpressive", "gltf/RobotExpressive/RobotExpressive.glb", 5},
+                    std::tuple{"MorphStressTest", "gltf/MorphStressTest/glTF/MorphStressTest.gltf", 0},
+                    std::tuple{"AnimatedMorphSphere", "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf", 0}),
+    [](const auto& tested) { return std::string(std::get<0>(tested.param)); });
 
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
