@@ -9,7 +9,7 @@
 
 namespace chronormal::inline internal {
 
-std::unique_ptr<Scheme> make_recompute();                             // recompute.cpp
+std::unique_ptr<Scheme> make_recompute();                             // recompute_scheme.cpp
 std::unique_ptr<Scheme> make_polynomial();                            // polynomial.cpp
 std::unique_ptr<Scheme> make_rational();                              // rational.cpp
 std::unique_ptr<Scheme> make_lagrange(std::size_t degree);            // lagrange.cpp

@@ -67,6 +67,28 @@ TEST_F(Cli, version_and_help_go_to_stdout) {
     EXPECT_NE(compare_help.out.find(word), std::string::npos) << word;
 }
 
+TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
+  std::istringstream help(run("--help").out);
+  std::vector<std::string> commands;
+  for (std::string line; std::getline(help, line);) {
+    if (line == "Commands:") {
+      while (std::getline(help, line) && line.starts_with("  "))
+        commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+    }
+  }
+  EXPECT_GE(commands.size(), 6u);
+  for (const std::string& command : commands) {
+    SCOPED_TRACE(command);
+    const ProcessResult explained = run(command + " --help");
+    EXPECT_EQ(explained.exit_code, 0);
+    EXPECT_EQ(explained.err, "");
+    for (const char* word : {"INPUT", "--quiet", "Examples", "Exit codes"})
+      EXPECT_NE(explained.out.find(word), std::string::npos) << word;
+    expect_error(run(command), 2, {"chronormal " + command + ": ", command + " --help"});
+    expect_error(run(command + " x.obj -o y --no-such-option"), 2, {"--no-such-option", command + " --help"});
+  }
+}
+
 TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"extensionsUsed":["E"],"extensionsRequired":["\u001b[31mE\n"]})";

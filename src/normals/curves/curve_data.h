@@ -25,10 +25,10 @@ struct CurveData {
     std::size_t offset = 0;  ///< of the first block, in blocks
     BlockKind kind = BlockKind::kUnit;
 
-    /// The elements of these blocks; of them, only those below `size` exist.
-    [[nodiscard]] IndexRange elements(std::size_t size) const noexcept {
+    /// The elements of these blocks; of them, only the first `count` of the curves exist.
+    [[nodiscard]] IndexRange elements(std::size_t count) const noexcept {
       const std::size_t first = first_block * kTile, end = first + block_count * kTile;
-      return {first, (end < size ? end : size) - first};
+      return {first, (end < count ? end : count) - first};
     }
   };
 
