@@ -423,8 +423,14 @@ TEST(LinearScaled, meets_an_element_of_degree_1_by_the_ratio_of_its_areas) {
   struct Case {
     double ratio, turn;
   };
-  for (const auto& [ratio, turn] : {Case{0.2035, 1.3639}, {2.5507, 1.5899}, {1.4755, 1.5553}, {0.2189, 2.0712},
-                                    {4.8312, 1.9857}, {0.0225, 1.0805}, {100, 2.5}, {1, 0.7}}) {
+  for (const auto& [ratio, turn] : {Case{0.2035, 1.3639},
+                                    {2.5507, 1.5899},
+                                    {1.4755, 1.5553},
+                                    {0.2189, 2.0712},
+                                    {4.8312, 1.9857},
+                                    {0.0225, 1.0805},
+                                    {100, 2.5},
+                                    {1, 0.7}}) {
     const double y1 = ratio * std::cos(turn), z1 = ratio * std::sin(turn);
     const Motion motion = fixtures::make_motion(fixtures::make_triangles(3, {0, 1, 2}),
                                                 {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, y1, z1}});
