@@ -119,7 +119,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
         "bake a.obj -o o.glb --max-bytes", "bake a.obj -o o.glb --tolerance"}) {
     for (const char* const value : {"''", "x", "nan", "inf", "1e999"}) {
       const std::string name = std::string(option).substr(std::string(option).rfind("--"));
-      expect_error(run(std::string(option) + ' ' + value), 2, {name, "is not a number"});
+      expect_error(run(std::string(option) + ' ' + value), 2, {name, "number"});
     }
   }
   expect_error(run("compare a.obj b.obj -o ''"), 2, {"name of the output"});
