@@ -81,8 +81,8 @@ void warn_if_worse(const BakeReport& report) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit)});
 }
 
-// What audit(how) says of what was there before, and audit() of the file that was written; nothing where there is nothing
-// to judge. Errors: kFailed where the file cannot be read.
+// Audits the input, by audit_before, and the file that was written. The result is empty where neither has anything that an
+// audit can judge. Errors: kFailed where the written file cannot be read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const Options& options,
                                                  const AuditBefore& audit_before) {

@@ -11,7 +11,7 @@
 
 namespace chronormal::cli {
 
-/// What audit finds before and after.
+/// The audit of the input, and the audit of the file that bake made of it.
 struct BeforeAndAfter {
   Audit before, after;
 

@@ -80,6 +80,8 @@ struct Outcome {
 // Every fault, or one of so many.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
+// The shards under sanitizers leave these tests out; whoever runs the sanitized program by hand learns why they cannot
+// run: the fault layer and the address sanitizer would both replace malloc.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {

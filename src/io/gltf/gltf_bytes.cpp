@@ -120,7 +120,7 @@ const Expansion& Bytes::expansion() {
   for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
     const std::optional<std::string>& uri = model_.buffers[i].uri;
     if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
-    // What is wrong with it is said where it is read.
+    // A buffer that cannot be read counts nothing here; whoever reads its data reports the error.
     if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
   }
   expansion_ = found;

@@ -30,7 +30,7 @@ namespace chronormal::inline internal {
 
 class ExactCurve {
  public:
-  /// Of one polygon, by its vertices; or of faces, whose normals are added up.
+  /// Makes the curve of one polygon, which is given by its vertices, or of several faces, whose normals it adds up.
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 

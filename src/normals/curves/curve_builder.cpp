@@ -175,7 +175,7 @@ struct Part {
   std::array<std::size_t, 3> degree_counts{};
 };
 
-// What a closer look at an element finds.
+// The result of examining one element that the quick test in float32 did not settle.
 struct Examined {
   ControlNormals normals;              // in double, as right as its direction needs
   std::optional<Precision> precision;  // nothing: it is flagged
@@ -189,7 +189,7 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   Examined result;
   result.normals = rounded.normals;
   double share = rounded.largest_share();
-  // What is given is the truth, and there is nothing more exact.
+  // Control normals that a caller gave are exact by definition: there are no positions to compute better ones from.
   constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
   if constexpr (kHasExact) {
     if (!(share <= kLargestShare)) {

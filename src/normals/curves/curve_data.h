@@ -42,7 +42,8 @@ struct CurveData {
   /// Elements that are evaluated in double, ascending, and what from.
   std::vector<std::size_t> flagged;
   std::vector<FlaggedNormals> flagged_normals;
-  /// Those of them for which double is not enough at every t, ascending, and where their ExactCurve lies in exact_digits.
+  /// The flagged elements for which double does not suffice at every t, in ascending order. `digits` is the place in
+  /// exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
     std::size_t element = 0;
     std::size_t digits = 0;

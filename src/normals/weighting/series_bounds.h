@@ -37,7 +37,8 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return result;
 }
 
-/// What the remainder of a series about all of [c - half, c + half] may add anywhere there.
+/// Bounds the remainder of a series: the interval that holds its value at every point of [c - half, c + half]. The
+/// coefficients of the series `around` hold for every center in that interval.
 [[nodiscard]] inline Interval remainder(const Series<kTerms>& around, double half) noexcept {
   Interval power = Interval::point(1);
   for (std::size_t k = 1; k < kTerms; ++k) power = half * power;
