@@ -87,7 +87,7 @@ std::string headline(const Audited& input) {
   text += '\n';
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
-      audit.stored ? "the stored normals" : "normals that a player computes at keyframes, where none are stored";
+      audit.stored ? "the stored normals" : "normals that a host computes at keyframes, where none are stored";
   if (audit.rule == AuditRule::kFlat) source = "the faces";
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));

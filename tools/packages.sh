@@ -1,4 +1,4 @@
-# Sourced by ./run and ./test: installs what tools/packages.txt and tests/clients/package-lock.json list and the machine
+# Sourced by ./run and ./test: installs what tools/packages.txt and tests/hosts/package-lock.json list and the machine
 # lacks.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
@@ -47,15 +47,15 @@ has_node() {
   command -v npm >/dev/null && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null
 }
 
-# install_clients: the npm packages that the tests in real glTF clients run; silent where nothing is missing.
-install_clients() {
-  local clients=$root/tests/clients
-  local installed=$clients/node_modules/.installed
-  cmp -s "$clients/package-lock.json" "$installed" && return 0
-  say "installing the npm packages of tests/clients"
-  if ! (cd "$clients" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error) </dev/null >&2; then
+# install_hosts: the npm packages that the tests in real glTF hosts run; silent where nothing is missing.
+install_hosts() {
+  local hosts=$root/tests/hosts
+  local installed=$hosts/node_modules/.installed
+  cmp -s "$hosts/package-lock.json" "$installed" && return 0
+  say "installing the npm packages of tests/hosts"
+  if ! (cd "$hosts" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error) </dev/null >&2; then
     say "the npm packages could not be installed; does npm reach its registry (npm says why above)?"
     return 1
   fi
-  cp "$clients/package-lock.json" "$installed"
+  cp "$hosts/package-lock.json" "$installed"
 }

@@ -56,9 +56,9 @@ expect_skipped() {
   }
 }
 
-show_clients() {
+show_hosts() {
   say "what Node's test runner counted:"
-  grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' build/release/clients.tap
+  grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' build/release/hosts.tap
 }
 
 print_parts() {

@@ -156,7 +156,7 @@ TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_playe
   EXPECT_GT(json["worst_degrees"], 4);
   expect_words(
       text_of("bare.obj a.obj --rule slerp"),
-      {"normals that a player computes at keyframes, where none are stored", "right at keyframes, and off by up to"});
+      {"normals that a host computes at keyframes, where none are stored", "right at keyframes, and off by up to"});
 }
 
 TEST_F(AuditCli, built_in_morphs_and_targets_of_a_base_are_inputs) {

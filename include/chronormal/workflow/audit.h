@@ -156,7 +156,7 @@ struct AuditFinding {
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
   Weighting weighting = Weighting::kArea;
-  /// Whether normals are stored for every keyframe; else a player computes them there.
+  /// Whether normals are stored for every keyframe; else a host computes them there.
   bool stored = true;
   std::vector<AuditSubject> subjects;
   std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
@@ -182,7 +182,7 @@ struct Audit {
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
 /// then. Without stored
-/// normals, a player computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
+/// normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
 /// between. Errors: kUsage for the rule gltf, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);

@@ -1,4 +1,4 @@
-// Audits of sequences: what a player shows that interpolates normals between keyframes.
+// Audits of sequences: what a host shows that interpolates normals between keyframes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -54,7 +54,7 @@ class SequenceSource {
 
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
     if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
-    // What a player computes at the keyframes, as it keeps it.
+    // What a host computes at the keyframes, as it keeps it.
     const auto computed = [](const Vec3d& normal) { return to_double(to_float(unit(normal))); };
     return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
   }

@@ -1,5 +1,5 @@
 // What tinygltf and Assimp make of a baked file: the variant with zeros as bytes, which older readers need. Other
-// clients are in tests/clients.
+// hosts are in tests/hosts.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
@@ -16,7 +16,7 @@
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chronormal::bake_clients_test {
+namespace chronormal::bake_hosts_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -156,4 +156,4 @@ TEST_F(BakedQuad, is_exact_as_assimp_reads_it) {
 }
 
 }  // namespace
-}  // namespace chronormal::bake_clients_test
+}  // namespace chronormal::bake_hosts_test

@@ -1,4 +1,4 @@
-// Babylon.js as a client, in the page: its loader, its animation groups, and the normals that its own glTF material
+// Babylon.js as a host, in the page: its loader, its animation groups, and the normals that its own glTF material
 // computes, which shows them instead of colours when asked to.
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';

@@ -1,10 +1,10 @@
 // What `chronormal bake` writes, held against other people's glTF: the validator of Khronos, a reader that adds up
-// targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. Run by ctest as `clients`.
+// targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. Run by ctest as `hosts`.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
 //   CHRONORMAL_DATA           moving files by other people, where it is set
-//   CHRONORMAL_FULL=1         every file in every client
+//   CHRONORMAL_FULL=1         every file in every host
 //   CHRONORMAL_UPDATE_DOCS=1  writes docs/pictures/shading.png, which is rendered here
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -64,7 +64,7 @@ async function assertExact(input, output) {
 }
 
 before(async () => {
-  folder = mkdtempSync(join(tmpdir(), 'chronormal_clients_'));
+  folder = mkdtempSync(join(tmpdir(), 'chronormal_hosts_'));
   for (const [name, write] of Object.entries(fixtures)) await write(original(name));
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -167,15 +167,15 @@ describe('glTF Transform keeps normals exact', () => {
   }
 });
 
-// What a client draws of a file as it was and of the baked one, against exact normals, at some times: wrong by more
+// What a host draws of a file as it was and of the baked one, against exact normals, at some times: wrong by more
 // than `wrong` degrees before in at least 7 of them, and less than 1 in every one after.
-async function assertDrawn(page, client, input, { wrong = 5, count = 15 } = {}) {
+async function assertDrawn(page, host, input, { wrong = 5, count = 15 } = {}) {
   const output = bake(input, '--encode', 'exact');
   const times = timesOf((await read(input)).animations[0], count);
   const moments = await stillMoments(input, 0, times);
   const unbaked = Buffer.from(await newIO().writeBinary(await newIO().read(input)));
   const files = [unbaked, readFileSync(output)].map((bytes) => bytes.toString('base64'));
-  const rows = await page.evaluate((...all) => window.compareInClient(...all), client, files, 0, moments, SIZE);
+  const rows = await page.evaluate((...all) => window.compareInHost(...all), host, files, 0, moments, SIZE);
   const shown = JSON.stringify(rows.map((row) => row.map(({ pixels, p99 }) => [pixels, p99])));
   assert.ok(rows.every(([, after]) => after.pixels > 2000 && after.p99 < 1), shown);
   assert.ok(rows.filter(([before]) => before.p99 > wrong).length >= 7, shown);
@@ -183,15 +183,15 @@ async function assertDrawn(page, client, input, { wrong = 5, count = 15 } = {}) 
 
 // A mesh of some primitives that no animation moves: a program sets weights, and then those of the extra targets by what
 // the file says (examples/drive.mjs). Without the latter the normals are wrong.
-async function assertDriven(page, client, parts) {
+async function assertDriven(page, host, parts) {
   const WEIGHTS = [0.8, 0.6];
-  const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${client}.glb`));
+  const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${host}.glb`));
   await writeStill(still, { parts });
   await writeStill(moved, { parts, weights: WEIGHTS });
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
   const compare = (...all) => window.compareDriven(...all);
-  const [before, after] = await page.evaluate(compare, client, base64, WEIGHTS, moment, SIZE);
+  const [before, after] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
   assert.ok(before.p99 > 5, JSON.stringify(before));
   assert.ok(after.pixels > 2000 && after.p99 < 1, JSON.stringify(after));
 }
@@ -241,10 +241,10 @@ describe('Chromium', () => {
   const drawn = FULL
     ? Object.keys(fixtures)
     : ['twist', 'spline', 'two_primitives', 'one_flat_primitive', 'instances', 'keyframes', 'pair'];
-  for (const client of ['three', 'babylon']) {
+  for (const host of ['three', 'babylon']) {
     for (const name of drawn) {
-      test(`shows right normals of ${name} in ${client}`, async () =>
-        assertDrawn(browser.page, client, original(name)));
+      test(`shows right normals of ${name} in ${host}`, async () =>
+        assertDrawn(browser.page, host, original(name)));
     }
     // The largest error of the cube is 4.02 degrees, and for most of the time it stands still; that of the stress test
     // is 2.69, on few vertices.
@@ -253,21 +253,21 @@ describe('Chromium', () => {
       ['AnimatedMorphCube', { wrong: 2, count: 41 }],
       ['MorphStressTest', { wrong: 0.5 }],
     ]) {
-      test(`shows right normals of ${name} in ${client}`, { skip: NO_DATA }, async () => {
+      test(`shows right normals of ${name} in ${host}`, { skip: NO_DATA }, async () => {
         const input = join(DATA, 'gltf', name, 'glTF', `${name}.gltf`);
-        await assertDrawn(browser.page, client, input, how);
+        await assertDrawn(browser.page, host, input, how);
       });
     }
-    test(`shows right normals of the face of RobotExpressive in ${client}`, { skip: NO_DATA }, async () => {
+    test(`shows right normals of the face of RobotExpressive in ${host}`, { skip: NO_DATA }, async () => {
       const face = join(folder, 'robot_face.glb');
       await writeMovingFace(join(DATA, 'gltf', 'RobotExpressive', 'RobotExpressive.glb'), face);
-      await assertDrawn(browser.page, client, face);
+      await assertDrawn(browser.page, host, face);
     });
   }
-  for (const client of ['three', 'babylon'])
+  for (const host of ['three', 'babylon'])
     for (const parts of [1, 2])
-      test(`shows right normals in ${client} of ${parts} primitives whose weights a program sets`, async () =>
-        assertDriven(browser.page, client, parts));
+      test(`shows right normals in ${host} of ${parts} primitives whose weights a program sets`, async () =>
+        assertDriven(browser.page, host, parts));
   test('draws the wrong beside the right as docs/pictures/shading.png has it', () => assertPicture(browser.page));
 });
 

@@ -1,5 +1,5 @@
 // A moving file at one time as a file that does not move: positions and exact normals as the mesh has them then. What a
-// client draws of it is the truth that its own drawing of the moving file is held against.
+// host draws of it is the truth that its own drawing of the moving file is held against.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';

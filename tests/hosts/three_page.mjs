@@ -1,4 +1,4 @@
-// three.js as a client, in the page: its loader, its animation mixer, its normal material.
+// three.js as a host, in the page: its loader, its animation mixer, its normal material.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';

@@ -1,23 +1,23 @@
-// The page's entry: both clients behind the same three functions, and the comparison, so that pixels stay in the page.
+// The page's entry: both hosts behind the same three functions, and the comparison, so that pixels stay in the page.
 import * as babylon from './babylon_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
 import { compareNormals } from './pixels.mjs';
 import * as three from './three_page.mjs';
 
-const clients = { three, babylon };
+const hosts = { three, babylon };
 
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
-const loaded = (client, base64) => clients[client].load(bytesOf(base64));
+const loaded = (host, base64) => hosts[host].load(bytesOf(base64));
 
-// For each moment {time, truth, view}: what the client draws of each file at that time of an animation, against the
+// For each moment {time, truth, view}: what the host draws of each file at that time of an animation, against the
 // still file `truth`. Files are GLB in base64. Returns, for each moment, what compareNormals() says of each file.
-window.compareInClient = async (client, files, animation, moments, size) => {
-  const { play, drawNormals } = clients[client];
+window.compareInHost = async (host, files, animation, moments, size) => {
+  const { play, drawNormals } = hosts[host];
   const models = [];
-  for (const file of files) models.push(await loaded(client, file));
+  for (const file of files) models.push(await loaded(host, file));
   const results = [];
   for (const { time, truth, view } of moments) {
-    const still = await loaded(client, truth);
+    const still = await loaded(host, truth);
     play(still, null, 0);
     const expected = await drawNormals(still, view, size);
     const row = [];
@@ -32,11 +32,11 @@ window.compareInClient = async (client, files, animation, moments, size) => {
   return results;
 };
 
-// What the client draws of a file when a program has set the weights of its own targets, and when it has driven the extra
+// What the host draws of a file when a program has set the weights of its own targets, and when it has driven the extra
 // ones too, against the still file of the moment.
-window.compareDriven = async (client, file, weights, { truth, view }, size) => {
-  const { play, drawNormals, setWeights, drive } = clients[client];
-  const [still, model] = [await loaded(client, truth), await loaded(client, file)];
+window.compareDriven = async (host, file, weights, { truth, view }, size) => {
+  const { play, drawNormals, setWeights, drive } = hosts[host];
+  const [still, model] = [await loaded(host, truth), await loaded(host, file)];
   play(still, null, 0);
   play(model, null, 0);
   const expected = await drawNormals(still, view, size);
