@@ -2,7 +2,7 @@
 import { angle } from './exact.mjs';
 
 // Pictures are RGBA in float32, (n + 1) / 2, alpha 0 where nothing was drawn. A pixel counts where it and its eight
-// neighbours are covered in both, so that silhouettes are left out. Degrees: {pixels, p99, max}.
+// neighbours are covered in both, so that silhouettes are left out. Degrees: {pixels, mean, p99, max}.
 export function compareNormals(shown, truth, { width, height }) {
   const covered = (x, y) => {
     const alpha = 4 * (y * width + x) + 3;
@@ -20,5 +20,6 @@ export function compareNormals(shown, truth, { width, height }) {
   }
   degrees.sort((a, b) => a - b);
   const pixels = degrees.length;
-  return { pixels, p99: degrees[Math.floor(0.99 * pixels)] ?? NaN, max: degrees[pixels - 1] ?? NaN };
+  const mean = degrees.reduce((sum, angle) => sum + angle, 0) / pixels;
+  return { pixels, mean, p99: degrees[Math.floor(0.99 * pixels)] ?? NaN, max: degrees[pixels - 1] ?? NaN };
 }
