@@ -2,7 +2,7 @@
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
-import { compareNormals } from './pixels.mjs';
+import { compareNormals, middleOf, normalAt } from './pixels.mjs';
 import * as playcanvas from './playcanvas_page.mjs';
 import * as three from './three_page.mjs';
 
@@ -33,6 +33,27 @@ window.compareInHost = async (host, files, animation, moments, size) => {
   models.forEach(dispose);
   return results;
 };
+
+// What a function makes of each picture of normals that a host draws of a file, at times of its first animation.
+async function ofPictures(host, file, times, view, size, made) {
+  const { play, drawNormals, dispose } = hosts[host];
+  const model = await loaded(host, file);
+  const results = [];
+  for (const time of times) {
+    play(model, 0, time);
+    results.push(made(await drawNormals(model, view, size)));
+  }
+  dispose(model);
+  return results;
+}
+
+// The normals at the pixels [x, y] of each picture; null where nothing is.
+window.normalsInHost = (host, file, times, view, size, pixels) =>
+  ofPictures(host, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
+
+// The middle of all that is drawn, in pixels; null where nothing is.
+window.middlesInHost = (host, file, times, view, size) =>
+  ofPictures(host, file, times, view, size, (picture) => middleOf(picture, size));
 
 // What the host draws of a file when a program has set the weights of its own targets, and when it has driven the extra
 // ones too, against the still file of the moment.
