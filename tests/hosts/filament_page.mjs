@@ -13,8 +13,8 @@ let host;
 
 function createHost() {
   const { Filament } = window;
-  const canvas = document.createElement('canvas');
-  const engine = Filament.Engine.create(canvas, { alpha: true, preserveDrawingBuffer: true });
+  const gl = framebuffersNoted(document.createElement('canvas').getContext('webgl2'));
+  const engine = Filament.Engine.create(gl.canvas);
   const light = (sh) => Filament.IndirectLight.Builder().irradianceSh(2, sh).intensity(38400).build(engine);
   const camera = engine.createCamera(Filament.EntityManager.get().create());
   camera.setExposure(...EXPOSURE);
@@ -27,7 +27,17 @@ function createHost() {
   renderer.setClearOptions({ clearColor: [0, 0, 0, 0], clear: true });
   const lights = [NORMALS, WHITE].map(light);
   const [swapChain, loader] = [engine.createSwapChain(), engine.createAssetLoader()];
-  return { canvas, camera, engine, lights, loader, renderer, scene, swapChain, view };
+  return { gl, camera, engine, lights, loader, renderer, scene, swapChain, view };
+}
+
+// Notes the framebuffer that was drawn into last: Filament has no function in JavaScript that reads one.
+function framebuffersNoted(gl) {
+  const bind = gl.bindFramebuffer.bind(gl);
+  gl.bindFramebuffer = (target, framebuffer) => {
+    if (framebuffer) gl.lastFramebuffer = framebuffer;
+    bind(target, framebuffer);
+  };
+  return gl;
 }
 
 export async function load(bytes) {
@@ -70,9 +80,16 @@ export function dispose({ asset }) {
 
 // World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
 export async function drawNormals({ asset }, { eye, at, degrees, near, far }, size) {
-  const { canvas, camera, lights, scene, view } = host;
+  const { camera, engine, lights, scene, view } = host;
   const { Filament } = window;
-  Object.assign(canvas, size);
+  const texture = (format, usage) => {
+    const builder = Filament.Texture.Builder().width(size.width).height(size.height).levels(1);
+    return builder.format(Filament.Texture$InternalFormat[format]).usage(usage).build(engine);
+  };
+  const [colors, depths] = [texture('RGBA32F', 1), texture('DEPTH24', 2)];
+  const { COLOR, DEPTH } = Filament.RenderTarget$AttachmentPoint;
+  const target = Filament.RenderTarget.Builder().texture(COLOR, colors).texture(DEPTH, depths).build(engine);
+  view.setRenderTarget(target);
   view.setViewport([0, 0, size.width, size.height]);
   camera.lookAt(eye, at, [0, 1, 0]);
   camera.setProjectionFov(degrees, size.width / size.height, near, far, Filament.Camera$Fov.VERTICAL);
@@ -81,11 +98,13 @@ export async function drawNormals({ asset }, { eye, at, degrees, near, far }, si
   const normals = await drawn(lights[0], size);
   const white = await drawn(lights[1], size);
   entities.forEach((entity) => scene.remove(entity));
-  return Float32Array.from(normals, (value, i) => (i % 4 === 3 ? value : value / white[i]));
+  engine.destroyRenderTarget(target);
+  [colors, depths].forEach((made) => engine.destroyTexture(made));
+  return normals.map((value, i) => (i % 4 === 3 ? value : value / white[i]));
 }
 
 async function drawn(light, { width, height }) {
-  const { canvas, engine, renderer, scene, swapChain, view } = host;
+  const { engine, gl, renderer, scene, swapChain, view } = host;
   scene.setIndirectLight(light);
   // A frame is refused until the browser has said, in a task of its own, that an earlier one is done.
   while (!renderer.beginFrame(swapChain)) {
@@ -95,9 +114,8 @@ async function drawn(light, { width, height }) {
   renderer.renderView(view);
   renderer.endFrame();
   engine.execute();
-  const gl = canvas.getContext('webgl2');
-  const pixels = new Uint8Array(4 * width * height);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const pixels = new Float32Array(4 * width * height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.lastFramebuffer);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
   return pixels;
 }
