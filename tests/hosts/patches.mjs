@@ -18,17 +18,17 @@ export const BOARD_VIEW = viewOf(BOARD);
 export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
   [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
 
-// `patches` has, for each square, {normal, deltas}: one vector, and one for each target. `rows` are the weights at times
-// 0, 1, 2, ...
+// `patches` has, for each square, {normal, deltas}: one vector, and one for each target; null for all squares where the
+// target has no normals. `rows` are the weights at times 0, 1, 2, ...
 export function writeBoard(path, patches, rows) {
   const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
   const places = patches.flatMap((_, p) =>
     corners.flatMap(([x, y]) => [(p % BOARD) + x - BOARD / 2, Math.floor(p / BOARD) + y - BOARD / 2, 0]));
   const positions = Float32Array.from(places);
   const ofCorners = (vector) => Float32Array.from(patches.flatMap((patch) => corners.flatMap(() => vector(patch))));
-  const targets = patches[0].deltas.map((_, k) => ({
+  const targets = patches[0].deltas.map((first, k) => ({
     positions: new Float32Array(positions.length),
-    normals: ofCorners(({ deltas }) => deltas[k]),
+    normals: first && ofCorners(({ deltas }) => deltas[k]),
   }));
   const indices = Uint16Array.from(patches.flatMap((_, p) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * p + corner)));
   const primitives = [{ positions, normals: ofCorners(({ normal }) => normal), indices, targets }];

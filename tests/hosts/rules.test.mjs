@@ -143,6 +143,21 @@ describe('a real host', () => {
   }
   if (!FULL) return;
 
+  // Where some targets have normals and others have none, three.js takes the base normal for what is missing, Babylon.js
+  // shows the base normal alone where the first has none, and PlayCanvas counts only those that have some.
+  for (const host of Object.keys(hosts)) {
+    const right = host === 'filament';
+    test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${host}`, async () => {
+      const [normal, to] = [[0, 0, 1], [0.6, 0, 0.8]];
+      const patches = Array.from({ length: BOARD * BOARD }, () => ({ normal, deltas: [null, minus(to, normal)] }));
+      const path = join(folder, 'mixed.glb');
+      await writeBoard(path, patches, [[0.5, 1], [0.5, 1]]);
+      const [[shown]] = await draw(browser.page, 'normalsInHost', host, path, [0.5], BOARD_VIEW, SIZE, BOARD_PIXELS);
+      const off = angle(shown, to);
+      assert.ok(right ? off < 0.02 : off > 10, String(off));
+    });
+  }
+
   // Where a target has moved a square at some times, as weights. A pixel is 0.02.
   async function weightsInHost(host, track, times, { page, targets = 1 }) {
     const path = join(folder, 'mover.glb');
