@@ -51,6 +51,8 @@ export function setWeights({ scene }, weights) {
 }
 export const drive = ({ scene }) => driveBabylon(scene);
 
+export const dispose = ({ scene }) => scene.dispose();
+
 // World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
 export async function drawNormals({ scene }, { eye, at, degrees, near, far }, size) {
   engine.setSize(size.width, size.height);

@@ -1,10 +1,29 @@
-// Headless Chromium with the page of page.mjs in it. Nothing is loaded from anywhere: the page is one script.
-import { existsSync } from 'node:fs';
+// Headless Chromium with the page of page.mjs in it. Nothing is loaded from anywhere: whatever the page asks for is one
+// of the files below, or is refused.
+import { existsSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import puppeteer from 'puppeteer-core';
 
+const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+
+// Filament is a script that makes a global of that name, and asks for its program when it starts.
+const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
+<script src="filament.js"></script><script src="page.js"></script>`;
+
+const ofFilament = (name) => readFileSync(fileURLToPath(new URL(`node_modules/filament/${name}`, import.meta.url)));
+
+function serve(page, files) {
+  page.on('request', (request) => {
+    const url = request.url();
+    const file = url.startsWith(ADDRESS) && files[url.slice(ADDRESS.length)];
+    if (file) request.respond(file);
+    else if (/^(data|blob):/.test(url)) request.continue();
+    else request.abort();
+  });
+  return page.setRequestInterception(true);
+}
 
 export async function openPage() {
   const executablePath = process.env.CHRONORMAL_CHROMIUM ?? CHROMIUM.find((path) => existsSync(path));
@@ -28,7 +47,13 @@ export async function openPage() {
   page.on('console', (message) => {
     if (message.type() === 'error') faults.push(message.text());
   });
-  await page.setContent('<!doctype html><title>chronormal</title>');
-  await page.addScriptTag({ content: bundle.outputFiles[0].text });
+  const script = (body) => ({ contentType: 'text/javascript', body });
+  await serve(page, {
+    '': { contentType: 'text/html', body: HTML },
+    'page.js': script(Buffer.from(bundle.outputFiles[0].contents)),
+    'filament.js': script(ofFilament('filament.js')),
+    'filament.wasm': { contentType: 'application/wasm', body: ofFilament('filament.wasm') },
+  });
+  await page.goto(ADDRESS);
   return { page, faults, close: () => browser.close() };
 }

@@ -76,7 +76,7 @@ function part(primitive, from, to) {
 }
 
 // {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?} as one GLB.
-async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights = null }) {
+export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights = null }) {
   const document = new Document();
   const buffer = document.createBuffer();
   const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
@@ -118,7 +118,7 @@ async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks
   await newIO().write(path, document);
 }
 
-const linear = (values, node = 0, times = values.map((_, k) => 0.75 * k)) => ({
+export const linear = (values, node = 0, times = values.map((_, k) => 0.75 * k)) => ({
   node,
   interpolation: 'LINEAR',
   times,

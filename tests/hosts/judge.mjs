@@ -11,6 +11,11 @@ export function timesOf(animation, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * i) / (count - 1));
 }
 
+// The middles of equal parts of an animation: times at which hosts agree that they are in it.
+export function timesWithin({ start, end }, count) {
+  return Array.from({ length: count }, (_, i) => start + ((end - start) * (i + 0.5)) / count);
+}
+
 // Whether any target of a mesh moves any vertex.
 export function moves(mesh) {
   const somewhere = (array) => array?.some((number) => number !== 0) ?? false;

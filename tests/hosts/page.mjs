@@ -1,10 +1,12 @@
-// The page's entry: both hosts behind the same three functions, and the comparison, so that pixels stay in the page.
+// The page's entry: all hosts behind the same functions, and the comparison, so that pixels stay in the page.
 import * as babylon from './babylon_page.mjs';
+import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
-import { compareNormals } from './pixels.mjs';
+import { compareNormals, middleOf, normalAt } from './pixels.mjs';
+import * as playcanvas from './playcanvas_page.mjs';
 import * as three from './three_page.mjs';
 
-const hosts = { three, babylon };
+const hosts = { three, babylon, playcanvas, filament };
 
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (host, base64) => hosts[host].load(bytesOf(base64));
@@ -12,7 +14,7 @@ const loaded = (host, base64) => hosts[host].load(bytesOf(base64));
 // For each moment {time, truth, view}: what the host draws of each file at that time of an animation, against the
 // still file `truth`. Files are GLB in base64. Returns, for each moment, what compareNormals() says of each file.
 window.compareInHost = async (host, files, animation, moments, size) => {
-  const { play, drawNormals } = hosts[host];
+  const { play, drawNormals, dispose } = hosts[host];
   const models = [];
   for (const file of files) models.push(await loaded(host, file));
   const results = [];
@@ -25,17 +27,38 @@ window.compareInHost = async (host, files, animation, moments, size) => {
       play(model, animation, time);
       row.push(compareNormals(await drawNormals(model, view, size), expected, size));
     }
-    still.scene.dispose?.();
+    dispose(still);
     results.push(row);
   }
-  for (const model of models) model.scene.dispose?.();
+  models.forEach(dispose);
   return results;
 };
+
+// What a function makes of each picture of normals that a host draws of a file, at times of its first animation.
+async function ofPictures(host, file, times, view, size, made) {
+  const { play, drawNormals, dispose } = hosts[host];
+  const model = await loaded(host, file);
+  const results = [];
+  for (const time of times) {
+    play(model, 0, time);
+    results.push(made(await drawNormals(model, view, size)));
+  }
+  dispose(model);
+  return results;
+}
+
+// The normals at the pixels [x, y] of each picture; null where nothing is.
+window.normalsInHost = (host, file, times, view, size, pixels) =>
+  ofPictures(host, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
+
+// The middle of all that is drawn, in pixels; null where nothing is.
+window.middlesInHost = (host, file, times, view, size) =>
+  ofPictures(host, file, times, view, size, (picture) => middleOf(picture, size));
 
 // What the host draws of a file when a program has set the weights of its own targets, and when it has driven the extra
 // ones too, against the still file of the moment.
 window.compareDriven = async (host, file, weights, { truth, view }, size) => {
-  const { play, drawNormals, setWeights, drive } = hosts[host];
+  const { play, drawNormals, setWeights, drive, dispose } = hosts[host];
   const [still, model] = [await loaded(host, truth), await loaded(host, file)];
   play(still, null, 0);
   play(model, null, 0);
@@ -45,8 +68,7 @@ window.compareDriven = async (host, file, weights, { truth, view }, size) => {
     step();
     results.push(compareNormals(await drawNormals(model, view, size), expected, size));
   }
-  still.scene.dispose?.();
-  model.scene.dispose?.();
+  [still, model].forEach(dispose);
   return results;
 };
 

@@ -1,24 +1,47 @@
-// Compares two pictures of normals, pixel by pixel.
+// Pictures of normals: RGBA in float32, (n + 1) / 2, alpha 0 where nothing was drawn, the lowest row first.
 import { angle } from './exact.mjs';
 
-// Pictures are RGBA in float32, (n + 1) / 2, alpha 0 where nothing was drawn. A pixel counts where it and its eight
-// neighbours are covered in both, so that silhouettes are left out. Degrees: {pixels, p99, max}.
+// The normal of a pixel, and null where nothing is.
+export function normalAt(picture, { width }, x, y) {
+  const i = 4 * (y * width + x);
+  return picture[i + 3] > 0 ? normalIn(picture, i) : null;
+}
+
+const normalIn = (picture, i) => [2 * picture[i] - 1, 2 * picture[i + 1] - 1, 2 * picture[i + 2] - 1];
+
+// The mean of the places of all pixels where something is, and null where there are none.
+export function middleOf(picture, { width, height }) {
+  const sum = [0, 0];
+  let count = 0;
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      if (picture[4 * (y * width + x) + 3] === 0) continue;
+      sum[0] += x + 0.5;
+      sum[1] += y + 0.5;
+      ++count;
+    }
+  }
+  return count > 0 ? sum.map((c) => c / count) : null;
+}
+
+// Compares two pictures pixel by pixel. A pixel counts where it and its eight neighbours are covered in both, so that
+// silhouettes are left out. Degrees: {pixels, mean, p99, max}.
 export function compareNormals(shown, truth, { width, height }) {
   const covered = (x, y) => {
     const alpha = 4 * (y * width + x) + 3;
     return shown[alpha] > 0 && truth[alpha] > 0;
   };
-  const normal = (picture, i) => [2 * picture[i] - 1, 2 * picture[i + 1] - 1, 2 * picture[i + 2] - 1];
   const degrees = [];
   for (let y = 1; y + 1 < height; ++y) {
     for (let x = 1; x + 1 < width; ++x) {
       let inside = true;
       for (let dy = -1; dy <= 1; ++dy) for (let dx = -1; dx <= 1; ++dx) inside &&= covered(x + dx, y + dy);
       const i = 4 * (y * width + x);
-      if (inside) degrees.push(angle(normal(shown, i), normal(truth, i)));
+      if (inside) degrees.push(angle(normalIn(shown, i), normalIn(truth, i)));
     }
   }
   degrees.sort((a, b) => a - b);
   const pixels = degrees.length;
-  return { pixels, p99: degrees[Math.floor(0.99 * pixels)] ?? NaN, max: degrees[pixels - 1] ?? NaN };
+  const mean = degrees.reduce((sum, angle) => sum + angle, 0) / pixels;
+  return { pixels, mean, p99: degrees[Math.floor(0.99 * pixels)] ?? NaN, max: degrees[pixels - 1] ?? NaN };
 }

@@ -27,6 +27,9 @@ export async function stillMoments(path, animation, times) {
       node.setMesh(frozen(document, meshes[m], file.meshes[m], exact[m], weights)).setWeights([]);
     });
     root.listAnimations().forEach((moving) => moving.dispose());
+    // Filament aborts at targets of a mesh that no node shows.
+    const shown = new Set(root.listNodes().map((node) => node.getMesh()));
+    for (const mesh of meshes) if (!shown.has(mesh)) mesh.dispose();
     moments.push({
       time,
       truth: Buffer.from(await io.writeBinary(document)).toString('base64'),

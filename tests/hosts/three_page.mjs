@@ -37,6 +37,10 @@ export function setWeights({ scene }, weights) {
 }
 export const drive = ({ scene }) => driveThree(scene);
 
+export function dispose({ scene }) {
+  scene.traverse(({ geometry }) => geometry?.dispose());
+}
+
 export function cameraOf({ eye, at, degrees, near, far }, size) {
   const camera = new THREE.PerspectiveCamera(degrees, size.width / size.height, near, far);
   camera.position.fromArray(eye);

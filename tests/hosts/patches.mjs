@@ -1,0 +1,54 @@
+// Files whose pictures can be read as numbers: a board of squares with a normal and deltas of its own each, and a square
+// that one target moves.
+import { linear, writeFile } from './fixtures.mjs';
+
+export const BOARD = 12;      // squares in a row, and rows
+export const SIZE = { width: 192, height: 192 };
+const DISTANCE = 20;
+
+// A camera in front of a square of some width around the origin, which fills the picture.
+function viewOf(width) {
+  const degrees = (2 * Math.atan(width / 2 / DISTANCE) * 180) / Math.PI;
+  return { eye: [0, 0, DISTANCE], at: [0, 0, 0], degrees, near: DISTANCE / 2, far: 2 * DISTANCE };
+}
+
+export const BOARD_VIEW = viewOf(BOARD);
+
+// The pixel in the middle of each square.
+export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
+  [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
+
+// `patches` has, for each square, {normal, deltas}: one vector, and one for each target; null for all squares where the
+// target has no normals. `rows` are the weights at times 0, 1, 2, ...
+export function writeBoard(path, patches, rows) {
+  const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
+  const places = patches.flatMap((_, p) =>
+    corners.flatMap(([x, y]) => [(p % BOARD) + x - BOARD / 2, Math.floor(p / BOARD) + y - BOARD / 2, 0]));
+  const positions = Float32Array.from(places);
+  const ofCorners = (vector) => Float32Array.from(patches.flatMap((patch) => corners.flatMap(() => vector(patch))));
+  const targets = patches[0].deltas.map((first, k) => ({
+    positions: new Float32Array(positions.length),
+    normals: first && ofCorners(({ deltas }) => deltas[k]),
+  }));
+  const indices = Uint16Array.from(patches.flatMap((_, p) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * p + corner)));
+  const primitives = [{ positions, normals: ofCorners(({ normal }) => normal), indices, targets }];
+  return writeFile(path, { primitives, tracks: [linear(rows, 0, rows.map((_, k) => k))] });
+}
+
+const REACH = 4;  // how far the last target moves the square to the right at a weight of 1
+
+export const MOVER_VIEW = viewOf(4 * REACH);
+
+// The weight that has moved the middle of the square there.
+export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
+
+// A square, half a reach left of the middle, that the last of some targets moves. A track is as writeFile() takes it.
+export function writeMover(path, { targets = 1, ...track }) {
+  const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
+  const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
+  const still = () => ({ positions: new Float32Array(12), normals: new Float32Array(12) });
+  const all = Array.from({ length: targets }, still);
+  all[targets - 1].positions = Float32Array.from([REACH, 0, 0, REACH, 0, 0, REACH, 0, 0, REACH, 0, 0]);
+  const primitives = [{ positions, normals, indices: Uint16Array.from([0, 1, 2, 0, 2, 3]), targets: all }];
+  return writeFile(path, { primitives, tracks: [{ node: 0, ...track }] });
+}

@@ -1,0 +1,22 @@
+// Numbers and directions at hazard, the same everywhere for the same seed.
+import { length } from './exact.mjs';
+
+// mulberry32: numbers from 0 to 1.
+export function randomNumbers(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+// A vector of length 1 whose z is at least some number.
+export function randomDirection(random, leastZ = -1) {
+  for (;;) {
+    const v = [0, 1, 2].map(() => 2 * random() - 1);
+    const size = length(v);
+    if (size > 0.1 && size < 1 && v[2] >= leastZ * size) return v.map((c) => c / size);
+  }
+}
