@@ -13,6 +13,6 @@ if (!existsSync(here('node_modules/three'))) {
 }
 const tap = process.argv[2] ? ['--test-reporter=tap', `--test-reporter-destination=${process.argv[2]}`] : [];
 const spec = ['--test-reporter=spec', '--test-reporter-destination=stdout'];
-const options = ['--test', ...spec, ...tap, here('hosts.test.mjs')];
+const options = ['--test', ...spec, ...tap, here('hosts.test.mjs'), here('filters.test.mjs')];
 const { status } = spawnSync(process.execPath, options, { stdio: 'inherit' });
 process.exit(status ?? 1);
