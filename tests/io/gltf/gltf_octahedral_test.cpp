@@ -39,7 +39,7 @@ std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
 template <class T>
 std::vector<T> decoded(const std::vector<T>& elements) {
   std::string bytes = test::bytes_of(elements);
-  decode_octahedral(bytes, 4 * sizeof(T));
+  gltf::decode_octahedral(bytes, 4 * sizeof(T));
   std::vector<T> result(elements.size());
   std::memcpy(result.data(), bytes.data(), bytes.size());
   return result;
