@@ -11,7 +11,9 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { fixtures } from './fixtures.mjs';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { drive, driveThree } from '../../examples/drive.mjs';
+import { fixtures, writeStill } from './fixtures.mjs';
 import { audited, largestDelta, makeWorkshop, runLine, webOf, writePlainEndPoints } from './pipelines.mjs';
 import { chronormal } from './program.mjs';
 import { read } from './reader.mjs';
@@ -115,6 +117,28 @@ async function assertExactLast(name, lines) {
 describe('bake is exact after tools', () => {
   test('pair', () => assertExactLast('pair', FULL ? LINES : QUICK_LINES));
   for (const name of Object.keys(REAL)) test(name, { skip: NO_DATA }, () => assertExactLast(name, LINES));
+});
+
+test('gltfpack -ke leaves what drives extra targets where audit and three.js find it', async () => {
+  const [still, baked, packed] = ['still', 'baked', 'packed'].map((name) => join(folder, `${name}.glb`));
+  await writeStill(still, { parts: 1 });
+  chronormal('bake', still, '-o', baked, '--encode', 'exact', '--no-audit', '--quiet');
+  runLine(`gltfpack -ke -i ${baked} -o ${packed}`, folder);
+  const [before, after] = [await read(baked), await read(packed)].map(({ meshes }) => meshes[0]);
+  assert.ok(before.extras.chronormal.extras.length > 0 && !after.extras.chronormal);
+  const { findings } = JSON.parse(chronormal('audit', packed, '--json', '--quiet'));
+  assert.ok(findings.some(({ kind }) => kind === 'baked'), JSON.stringify(findings));
+
+  const weights = before.weights.map((_, i) => [0.8, 0.6][i] ?? 0);
+  const { scene } = await new GLTFLoader().parseAsync(new Uint8Array(readFileSync(packed)).buffer, '');
+  const meshes = [];
+  scene.traverse((object) => object.morphTargetInfluences && meshes.push(object));
+  assert.equal(meshes.length, 1);
+  const shown = meshes[0].morphTargetInfluences;
+  weights.forEach((weight, i) => (shown[i] = weight));
+  driveThree(scene);
+  drive(before.extras.chronormal, weights);
+  weights.forEach((weight, i) => assert.ok(Math.abs(shown[i] - weight) < 1e-6, String(shown)));
 });
 
 // docs/pipelines.md: tables under a line <!-- measured: NAME -->, whose rows begin with a line in backticks.
