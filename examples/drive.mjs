@@ -14,18 +14,28 @@ export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
+// What drives the extra targets of a mesh: its own mark, or else that of the nearest object above. A mesh of several
+// primitives is a node with a child for each, and gltfpack puts a mesh into a new node below that with the extras.
+function markAbove(mesh, extrasOf) {
+  for (let object = mesh; object; object = object.parent) {
+    const mark = extrasOf(object)?.chronormal;
+    if (mark) return mark;
+  }
+}
+
 // three.js hands on the extras of meshes and of nodes.
 export function driveThree(scene) {
-  scene.traverse(({ userData: { chronormal }, morphTargetInfluences }) => {
-    if (chronormal && morphTargetInfluences) drive(chronormal, morphTargetInfluences);
+  scene.traverse((object) => {
+    if (!object.morphTargetInfluences) return;
+    const chronormal = markAbove(object, ({ userData }) => userData);
+    if (chronormal) drive(chronormal, object.morphTargetInfluences);
   });
 }
 
-// Babylon.js hands on those of nodes; a mesh of several primitives is a node with a child for each.
+// Babylon.js hands on those of nodes.
 export function driveBabylon(scene) {
   for (const mesh of scene.meshes) {
-    const node = mesh.metadata?.gltf?.extras ? mesh : mesh.parent;
-    const chronormal = node?.metadata?.gltf?.extras?.chronormal;
+    const chronormal = markAbove(mesh, ({ metadata }) => metadata?.gltf?.extras);
     const targets = mesh.morphTargetManager;
     if (!chronormal || !targets) continue;
     const w = Array.from({ length: targets.numTargets }, (_, i) => targets.getTarget(i).influence);

@@ -75,9 +75,13 @@ expect_skipped_under_sanitizers() {
   }
 }
 
-show_hosts() {
-  say "what Node's test runner counted:"
-  grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' build/release/hosts.tap
+# show_counts NAME...: what Node's test runner counted in these.
+show_counts() {
+  local name
+  for name; do
+    say "what Node's test runner counted in $name:"
+    grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' "build/release/$name.tap"
+  done
 }
 
 print_parts() {

@@ -1,6 +1,6 @@
-// Runs the tests in real hosts: what they say goes to standard output, and as TAP to a file.
+// Runs tests of this folder: what they say goes to standard output, and as TAP to a file.
 //
-//   CHRONORMAL_PROGRAM=build/release/chronormal node tests/hosts/run.mjs build/release/hosts.tap
+//   CHRONORMAL_PROGRAM=build/release/chronormal node tests/hosts/run.mjs build/release/hosts.tap hosts.test.mjs
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -11,8 +11,9 @@ if (!existsSync(here('node_modules/three'))) {
   console.error('The npm packages of tests/hosts are missing: run ./test once, or `npm ci --ignore-scripts` there');
   process.exit(1);
 }
-const tap = process.argv[2] ? ['--test-reporter=tap', `--test-reporter-destination=${process.argv[2]}`] : [];
+const [log, ...files] = process.argv.slice(2);
+const tap = ['--test-reporter=tap', `--test-reporter-destination=${log}`];
 const spec = ['--test-reporter=spec', '--test-reporter-destination=stdout'];
-const options = ['--test', ...spec, ...tap, ...['hosts', 'rules', 'closer'].map((name) => here(`${name}.test.mjs`))];
+const options = ['--test', ...spec, ...tap, ...files.map(here)];
 const { status } = spawnSync(process.execPath, options, { stdio: 'inherit' });
 process.exit(status ?? 1);

@@ -24,6 +24,14 @@ template <class T>
   return std::bit_cast<T>(raw);
 }
 
+/// Writes the bytes of a number to `at` and behind it.
+template <class T>
+void store(char* at, T value, std::endian order) noexcept {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  std::memcpy(at, raw.data(), raw.size());
+}
+
 template <class T>
 void append(std::string& text, T value, std::endian order) {
   auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
+#include "io/gltf/gltf_octahedral.h"
 #include "io/gltf/gltf_uri.h"
 
 namespace chronormal::inline internal::gltf {
@@ -152,7 +153,7 @@ Result<std::string> Bytes::decompress(std::size_t view_index, const Compression&
     case Compression::Filter::kNone:
       break;
     case Compression::Filter::kOctahedral:
-      meshopt_decodeFilterOct(result.data(), compression.count, compression.stride);
+      decode_octahedral(result, compression.stride);
       break;
     case Compression::Filter::kQuaternion:
       meshopt_decodeFilterQuat(result.data(), compression.count, compression.stride);

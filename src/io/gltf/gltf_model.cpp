@@ -7,7 +7,11 @@
 #include <string_view>
 #include <utility>
 
+<<<<<<< HEAD
+#include "io/gltf/gltf_bake_mark.h"
+=======
 #include "chronormal/io/expansion.h"
+>>>>>>> main
 #include "io/gltf/gltf_model_parser.h"
 
 namespace chronormal::inline internal::gltf {
@@ -235,6 +239,10 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   if (const auto mesh = item.find_index("mesh", kMostNodes, "meshes")) node.mesh = static_cast<std::uint32_t>(*mesh);
   node.weights = parse_weights(item);
   parse_transform(item, index);
+  if (const auto extras = value.find("extras"); extras != value.end() && extras->is_object()) {
+    if (const auto mark = extras->find("chronormal"); mark != extras->end())
+      marked_["nodes"][std::to_string(index)]["extras"]["chronormal"] = *mark;
+  }
   const std::optional<JsonView> children = item.array("children");
   for (std::size_t c = 0; children && c < children->size(); ++c) {
     const std::optional<std::size_t> child = children->item(c).as_index(kMostNodes, "nodes");
@@ -295,6 +303,7 @@ void Parser::check_nodes(const JsonView& root) {
       check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
   }
   if (!complaint_.first()) connect_nodes();
+  if (!complaint_.first() && !marked_.empty()) read_marks_of_nodes();
 }
 
 void Parser::connect_nodes() {
@@ -318,6 +327,21 @@ void Parser::connect_nodes() {
       at = *model_.nodes[at].parent;
       if (seen_from[at] == mark) return complaint_.add(node_pointer(at), "the node is its own ancestor");
     }
+  }
+}
+
+// Other programs drop the extras of meshes and keep those of nodes, and some hang the mesh into a node of its own below.
+void Parser::read_marks_of_nodes() {
+  for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+    const GltfNode& node = model_.nodes[i];
+    if (!node.mesh) continue;
+    GltfMesh& mesh = model_.meshes[*node.mesh];
+    const auto read = [&](std::size_t index) {
+      const bool is_known = mesh.mark || mesh.mark_fault;
+      if (!is_known) read_bake_mark(marked_, node_pointer(index), complaint_.place(""), mesh);
+    };
+    read(i);
+    if (node.parent && !model_.nodes[*node.parent].mesh) read(*node.parent);
   }
 }
 

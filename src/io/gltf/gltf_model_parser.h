@@ -56,6 +56,8 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
+  /// Gives meshes without a mark of a bake the one of a node that carries them, or of the node above that.
+  void read_marks_of_nodes();
   /// The member "weights" of a mesh or node; empty where there is none.
   static std::vector<double> parse_weights(const JsonView& item);
   void check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count);
@@ -81,6 +83,7 @@ class Parser {
   bool quantized_ = false;
   Model model_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
+  nlohmann::json marked_;                                          // extras.chronormal of nodes, each at its pointer
 };
 
 }  // namespace chronormal::inline internal::gltf

@@ -217,6 +217,46 @@ TEST(GltfStructure, target_names_count_only_when_there_is_one_for_each) {
   }
 }
 
+// Programs that rewrite a file keep the extras of nodes alone, and gltfpack hangs the mesh into a new node below.
+TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
+  using Json = nlohmann::json;
+  const auto mark = [](double factor) -> Json {
+    return {{"version", 2},
+            {"encode", "exact"},
+            {"sequence", false},
+            {"extras", {{{"target", 1}, {"linear", Json::array()}, {"quadratic", {{0, 0, factor}}}}}}};
+  };
+  // The factor of the mark that the mesh has; 0 for none.
+  const auto factor_of = [](const GltfBuilder& builder) {
+    const GltfFixture file(builder);
+    EXPECT_TRUE(file.ok()) << file.error();
+    const std::optional<GltfBakeMark>& found = file->meshes()[0].mark;
+    return found && found->extras.size() == 1 ? found->extras[0].quadratic[0].q : 0.0;
+  };
+  GltfBuilder builder = test::quad_document();
+  builder.json["nodes"] = Json::array({{{"children", {1}}}, {{"mesh", 0}}});
+  EXPECT_EQ(factor_of(builder), 0);
+  builder.json["nodes"][0]["extras"]["chronormal"] = mark(1);
+  EXPECT_EQ(factor_of(builder), 1);
+  builder.json["nodes"][1]["extras"]["chronormal"] = mark(2);
+  EXPECT_EQ(factor_of(builder), 2);
+  builder.json["meshes"][0]["extras"]["chronormal"] = mark(3);
+  EXPECT_EQ(factor_of(builder), 3);
+
+  builder.json["meshes"][0].erase("extras");
+  builder.json["nodes"][1]["extras"]["chronormal"] = {{"version", 7}};
+  const GltfFixture broken(builder);
+  ASSERT_TRUE(broken.ok()) << broken.error();
+  ASSERT_TRUE(broken->meshes()[0].mark_fault);
+  EXPECT_EQ(broken->meshes()[0].mark_fault->place, "a.gltf, /nodes/1/extras/chronormal/version");
+
+  // A node with a mesh of its own speaks of that alone.
+  builder.json["meshes"].push_back(builder.json["meshes"][0]);
+  builder.json["nodes"][0]["mesh"] = 1;
+  builder.json["nodes"][1].erase("extras");
+  EXPECT_EQ(factor_of(builder), 0);
+}
+
 TEST(GltfStructure, what_is_not_read_is_not_checked) {
   GltfBuilder builder = test::quad_document();
   builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 99}}}}}}};

@@ -1,0 +1,214 @@
+// What is left of a bake after other people's tools: gltf-transform and gltfpack, as people run them. Run by ctest as
+// `pipelines`; docs/pipelines.md has the tables, whose lines and figures are checked here.
+//
+//   CHRONORMAL_PROGRAM        the program
+//   CHRONORMAL_DATA           moving files by other people, where it is set
+//   CHRONORMAL_FULL=1         every tool, on every file; else one file, with the tools that do the most
+//   CHRONORMAL_UPDATE_DOCS=1  writes the figures of docs/pipelines.md, with the two above
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { drive, driveThree } from '../../examples/drive.mjs';
+import { fixtures, writeStill } from './fixtures.mjs';
+import { audited, largestDelta, makeWorkshop, runLine, webOf, writePlainEndPoints } from './pipelines.mjs';
+import { chronormal } from './program.mjs';
+import { read } from './reader.mjs';
+import { newComplaints } from './validator.mjs';
+
+const FULL = process.env.CHRONORMAL_FULL === '1';
+const DATA = process.env.CHRONORMAL_DATA;
+const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
+const PAGE = fileURLToPath(new URL('../../docs/pipelines.md', import.meta.url));
+
+// Tools, and by how many degrees a baked file may be worse after them than a file with plain end-point deltas.
+const PACK_12 = '-vn 12 -vtf -af 0';
+const LINES = [
+  ['gltf-transform quantize head.glb web.glb', 1],
+  ['gltf-transform meshopt head.glb web.glb', 1],
+  ['gltf-transform draco head.glb web.glb', 1],
+  ['gltf-transform optimize --simplify false head.glb web.glb', 1],
+  ['gltfpack -ke -i head.glb -o web.glb', 1],
+  ['gltfpack -c -ke -i head.glb -o web.glb', 1],
+  ['gltf-transform quantize --quantize-normal 12 head.glb web.glb', 0.15],
+  ['gltf-transform meshopt --level medium --quantize-normal 12 head.glb web.glb', 0.15],
+  ['gltf-transform draco --quantize-normal 12 head.glb web.glb', 0.15],
+  [`gltfpack -ke ${PACK_12} -i head.glb -o web.glb`, 0.15],
+  [`gltfpack -c -ke ${PACK_12} -i head.glb -o web.glb`, 0.15],
+];
+const QUICK_LINES = LINES.filter(([line]) => /optimize|gltfpack -c -ke -i/.test(line));
+
+const REAL = {
+  Suzanne: 'rigs/blender_suzanne_two_keys.glb',
+  MorphStressTest: 'gltf/MorphStressTest/glTF/MorphStressTest.gltf',
+  AnimatedMorphCube: 'gltf/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf',
+  RobotExpressive: 'gltf/RobotExpressive/RobotExpressive.glb',
+};
+
+let folder;
+before(() => (folder = makeWorkshop(mkdtempSync(join(tmpdir(), 'chronormal_pipelines_')))));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+// A file in the forms that are sent through tools, by name.
+const inputs = new Map();
+async function inputsOf(name) {
+  if (!inputs.has(name)) {
+    const at = (kind) => join(folder, `${name}.${kind}.glb`);
+    if (REAL[name]) runLine(`gltf-transform copy ${join(DATA, REAL[name])} ${at('exported')}`, folder);
+    else await fixtures[name](at('exported'));
+    await writePlainEndPoints(at('exported'), at('plain'));
+    chronormal('bake', at('exported'), '-o', at('baked'), '--no-audit', '--quiet');
+    inputs.set(name, { exported: at('exported'), plain: at('plain'), baked: at('baked') });
+  }
+  return inputs.get(name);
+}
+
+// What a tool makes of one of these, in degrees.
+const measured = new Map();
+async function measure(line, name, kind) {
+  const key = [line, name, kind].join('\n');
+  if (!measured.has(key)) {
+    const result = join(folder, `${measured.size}.glb`);
+    const path = webOf(line, (await inputsOf(name))[kind], result, folder);
+    measured.set(key, { path, ...audited(path) });
+  }
+  return measured.get(key);
+}
+
+async function assertKept(context, name, lines) {
+  const { exported, baked } = await inputsOf(name);
+  const faults = [];
+  // Tools cut what is beyond 1. A vertex may keep a delta of its author that is.
+  const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
+  if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
+  for (const [line, allowed] of lines) {
+    const plain = await measure(line, name, 'plain');
+    const kept = await measure(line, name, 'baked');
+    const text = ({ mean, worst }) => `${mean.toFixed(3)} / ${worst.toFixed(2)}`;
+    const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
+    context.diagnostic(outcome);
+    if (!(kept.worst <= plain.worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
+  }
+  assert.deepEqual(faults, []);
+}
+
+describe('a baked file is no worse than one with plain end-point deltas, after tools', () => {
+  const names = FULL ? Object.keys(fixtures) : ['pair'];
+  for (const name of names) test(name, (context) => assertKept(context, name, FULL ? LINES : QUICK_LINES));
+  for (const name of Object.keys(REAL))
+    test(name, { skip: NO_DATA }, (context) => assertKept(context, name, LINES));
+});
+
+// Whatever tools did to positions, base normals and tracks: what is baked then is right for that.
+async function assertExactLast(name, lines) {
+  for (const [line] of lines) {
+    const { path } = await measure(line, name, 'exported');
+    const output = join(folder, 'exact_last.glb');
+    chronormal('bake', path, '-o', output, '--encode', 'exact', '--force', '--no-audit', '--quiet');
+    assert.deepEqual(await newComplaints(output, path), []);
+    const { worst } = audited(output);
+    assert.ok(worst < 0.01, `${line}: ${worst}`);
+  }
+}
+
+describe('bake is exact after tools', () => {
+  test('pair', () => assertExactLast('pair', FULL ? LINES : QUICK_LINES));
+  for (const name of Object.keys(REAL)) test(name, { skip: NO_DATA }, () => assertExactLast(name, LINES));
+});
+
+test('gltfpack -ke leaves what drives extra targets where audit and three.js find it', async () => {
+  const [still, baked, packed] = ['still', 'baked', 'packed'].map((name) => join(folder, `${name}.glb`));
+  await writeStill(still, { parts: 1 });
+  chronormal('bake', still, '-o', baked, '--encode', 'exact', '--no-audit', '--quiet');
+  runLine(`gltfpack -ke -i ${baked} -o ${packed}`, folder);
+  const [before, after] = [await read(baked), await read(packed)].map(({ meshes }) => meshes[0]);
+  assert.ok(before.extras.chronormal.extras.length > 0 && !after.extras.chronormal);
+  const { findings } = JSON.parse(chronormal('audit', packed, '--json', '--quiet'));
+  assert.ok(findings.some(({ kind }) => kind === 'baked'), JSON.stringify(findings));
+
+  const weights = before.weights.map((_, i) => [0.8, 0.6][i] ?? 0);
+  const { scene } = await new GLTFLoader().parseAsync(new Uint8Array(readFileSync(packed)).buffer, '');
+  const meshes = [];
+  scene.traverse((object) => object.morphTargetInfluences && meshes.push(object));
+  assert.equal(meshes.length, 1);
+  const shown = meshes[0].morphTargetInfluences;
+  weights.forEach((weight, i) => (shown[i] = weight));
+  driveThree(scene);
+  drive(before.extras.chronormal, weights);
+  weights.forEach((weight, i) => assert.ok(Math.abs(shown[i] - weight) < 1e-6, String(shown)));
+});
+
+// docs/pipelines.md: tables under a line <!-- measured: NAME -->, whose rows begin with a line in backticks.
+const lines = readFileSync(PAGE, 'utf8').split('\n');
+
+function blocksOfPage() {
+  const blocks = [];
+  lines.forEach((line, i) => {
+    if (line === '```sh') blocks.push(lines.slice(i + 1, lines.indexOf('```', i)).join('\n'));
+  });
+  return blocks;
+}
+
+// The tables about a file: their columns, and {index, line} of their rows.
+function tablesOfPage(name) {
+  const tables = [];
+  lines.forEach((line, begin) => {
+    if (line !== `<!-- measured: ${name} -->`) return;
+    const columns = lines[begin + 1].split('|').slice(2, -1).map((title) => title.trim());
+    const rows = [];
+    for (let index = begin + 3; lines[index].startsWith('|'); ++index)
+      rows.push({ index, line: lines[index].split('`')[1] });
+    tables.push({ columns, rows });
+  });
+  return tables;
+}
+
+async function measureCell(column, line, name) {
+  if (column === 'as exported') return measure(line, name, 'exported');
+  if (column === 'baked, then') return measure(line, name, 'baked');
+  assert.equal(column, 'then baked');
+  const { path } = await measure(line, name, 'exported');
+  const output = join(folder, 'then_baked.glb');
+  chronormal('bake', path, '-o', output, '--force', '--no-audit', '--quiet');
+  return audited(output);
+}
+
+async function measureRow(columns, line, name) {
+  const cells = [`\`${line}\``];
+  for (const column of columns) {
+    const { mean, worst } = await measureCell(column, line, name);
+    cells.push(`${mean.toFixed(2)} / ${worst.toFixed(1)}`);
+  }
+  return `| ${cells.join(' | ')} |`;
+}
+
+describe('docs/pipelines.md', () => {
+  test('has lines that run', async () => {
+    const blocks = blocksOfPage();
+    assert.ok(blocks.length >= 3);
+    for (const [i, block] of blocks.entries()) {
+      const here = makeWorkshop(join(folder, `block ${i}`));
+      await fixtures.pair(join(here, 'head.glb'));
+      runLine(block, here);
+    }
+  });
+  for (const name of ['Suzanne', 'MorphStressTest']) {
+    test(`has the figures of ${name}`, { skip: NO_DATA }, async () => {
+      const tables = tablesOfPage(name);
+      assert.ok(tables.length > 0);
+      const faults = [];
+      for (const { columns, rows } of tables) {
+        for (const { index, line } of rows) {
+          const row = await measureRow(columns, line, name);
+          if (row !== lines[index]) faults.push(`line ${index + 1} should be ${row}`);
+          lines[index] = row;
+        }
+      }
+      if (process.env.CHRONORMAL_UPDATE_DOCS === '1') writeFileSync(PAGE, lines.join('\n'));
+      else assert.deepEqual(faults, []);
+    });
+  }
+});
