@@ -21,8 +21,8 @@ constexpr int kExitBeyond = 4;
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::string rule;  // empty: what is usual for the input
-  std::string weighting = "area";
+  std::string rule;       // empty: what is usual for the input
+  std::string weighting;  // empty: what the stored base normals follow
   std::optional<std::size_t> samples;
   std::optional<double> tolerance;
   bool no_weld = false;
@@ -79,9 +79,11 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
     if (!rule) return misuse("--rule", rule.error().message);
     how.rule = rule.value();
   }
-  const Result<Weighting> weighting = make_weighting(options.weighting);
-  if (!weighting) return misuse("--weighting", weighting.error().message);
-  how.weighting = weighting.value();
+  if (!options.weighting.empty()) {
+    const Result<Weighting> weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    how.weighting = weighting.value();
+  }
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (options.input.world)

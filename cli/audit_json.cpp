@@ -52,6 +52,7 @@ Json subject_json(const AuditSubject& subject) {
                {"target", or_null(subject.target)},
                {"animation", or_null(subject.animation)},
                {"node", or_null(subject.node)},
+               {"weighting", weighting_name(subject.weighting)},
                {"segments", subject.segments},
                {"samples", subject.samples},
                {"vertices", subject.vertices}};
@@ -66,9 +67,12 @@ Json subject_json(const AuditSubject& subject) {
 Json offset_json(const AuthoredOffset& offset) {
   return {{"mesh", or_null(offset.mesh)},
           {"vertices", offset.vertices},
+          {"weighting", weighting_name(offset.weighting)},
+          {"weighting_detected", offset.is_detected},
           {"worst_degrees", offset.worst},
           {"mean_degrees", offset.mean()},
           {"worst_at", offset.worst > 0 ? place_json(offset.worst_at, nullptr) : Json()},
+          {"area_mean_degrees", offset.area_mean},
           {"closest_weighting", weighting_name(offset.closest)},
           {"closest_mean_degrees", offset.closest_mean},
           {"closest_worst_degrees", offset.closest_worst}};
@@ -93,7 +97,7 @@ std::string audit_json(const Audited& input) {
   Json json = json_of_command("audit");
   json["input"] = {{"name", input.name()}};
   json["rule"] = audit_rule_name(audit.rule);
-  json["weighting"] = weighting_name(audit.weighting);
+  json["weighting"] = audit.weighting ? Json(weighting_name(*audit.weighting)) : Json();
   json["stored_normals"] = audit.stored;
   json["tolerance_degrees"] = or_null(input.tolerance);
   json["passed"] = input.tolerance ? Json(input.passed()) : Json();

@@ -168,7 +168,7 @@ std::string offset_lines(const Audited& input) {
     }
     text += formatted("  {}: mean {}, worst {} degrees from {}-weighted normals",
                       offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0", degrees(offset.mean()),
-                      degrees(offset.worst), weighting_name(input.audit.weighting));
+                      degrees(offset.worst), weighting_name(offset.weighting));
     if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
     if (offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
       text += formatted("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),

@@ -68,8 +68,10 @@ struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals
   std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
-  Weighting weighting = Weighting::kArea;  ///< of the right normals: that of the program which the file comes from
-  bool weld = true;                        ///< sequences: vertices at one point in all keyframes are one
+  /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
+  /// one that its stored base normals follow clearly, or else area.
+  std::optional<Weighting> weighting = {};
+  bool weld = true;  ///< sequences: vertices at one point in all keyframes are one
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -111,6 +113,7 @@ struct AuditSubject {
   std::string name;                                   ///< of the target or the animation; may be empty
   std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
   std::optional<std::size_t> animation, track, node;  ///< of a track
+  Weighting weighting = Weighting::kArea;             ///< of its right normals
   std::size_t segments = 0, samples = 0;              ///< samples of each segment
   std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
   MotionError error;
@@ -119,11 +122,14 @@ struct AuditSubject {
 
 /// How far stored base normals are from the geometry.
 struct AuthoredOffset {
-  std::optional<std::size_t> mesh;  ///< of a glTF file
-  std::size_t vertices = 0;         ///< that have both
+  std::optional<std::size_t> mesh;         ///< of a glTF file
+  Weighting weighting = Weighting::kArea;  ///< of the right normals
+  bool is_detected = false;                ///< nobody asked for it: the stored normals follow it, or none clearly
+  std::size_t vertices = 0;                ///< that have both
   double sum = 0, worst = 0;
   AuditPlace worst_at;
-  /// The weighting that comes closest to the stored normals, and how close.
+  double area_mean = 0;  ///< the same by area
+  /// The weighting that comes closest to the stored normals in the mean, and how close.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
 
@@ -155,7 +161,8 @@ struct AuditFinding {
 
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
-  Weighting weighting = Weighting::kArea;
+  /// Of the right normals of all subjects; nothing where they differ from mesh to mesh.
+  std::optional<Weighting> weighting = Weighting::kArea;
   /// Whether normals are stored for every keyframe; else a host computes them there.
   bool stored = true;
   std::vector<AuditSubject> subjects;

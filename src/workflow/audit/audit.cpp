@@ -91,39 +91,26 @@ Status check_samples(const AuditOptions& options) {
   return Success{};
 }
 
-AuthoredOffset authored_offset(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups,
-                               Weighting weighting, std::span<const JudgedOutput> outputs,
-                               const std::function<Vec3d(const JudgedOutput&)>& stored) {
-  const Segment still{&topology, positions, positions, 0, 1, 0};
+AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked) {
   AuthoredOffset result;
+  result.weighting = asked.value_or(authored.detected);
+  result.is_detected = !asked;
+  const WeightingDistance& distance = authored.of(result.weighting);
+  result.vertices = distance.count;
+  result.sum = distance.sum;
+  result.worst = distance.worst;
+  result.worst_at.vertex = distance.worst_at;
+  result.area_mean = authored.of(Weighting::kArea).mean();
+  const WeightingDistance* closest = authored.distances.data();
   for (const WeightingInfo& tried : kWeightings) {
-    const std::vector<Vec3d> normals = all_weighted_normals_at(still, groups, tried.weighting, 0);
-    double sum = 0, worst = 0;
-    std::size_t count = 0, worst_vertex = 0;
-    for (const JudgedOutput& output : outputs) {
-      const Vec3d normal = stored(output);
-      if (normal == Vec3d{} || normals[output.element] == Vec3d{}) continue;
-      const double angle = angle_between(normal, normals[output.element]) * kDegreesPerRadian;
-      ++count;
-      sum += angle;
-      if (angle > worst) {
-        worst = angle;
-        worst_vertex = output.vertex;
-      }
-    }
-    const double mean = count > 0 ? sum / static_cast<double>(count) : 0;
-    if (tried.weighting == weighting) {
-      result.vertices = count;
-      result.sum = sum;
-      result.worst = worst;
-      result.worst_at.vertex = worst_vertex;
-    }
-    if (tried.weighting == kWeightings[0].weighting || mean < result.closest_mean) {
+    const WeightingDistance& of_tried = authored.of(tried.weighting);
+    if (of_tried.mean() < closest->mean()) {
+      closest = &of_tried;
       result.closest = tried.weighting;
-      result.closest_mean = mean;
-      result.closest_worst = worst;
     }
   }
+  result.closest_mean = closest->mean();
+  result.closest_worst = closest->worst;
   return result;
 }
 
@@ -151,6 +138,8 @@ void finish(Audit& result) {
   for (std::size_t s = 0; s < result.subjects.size(); ++s) {
     if (result.subjects[s].error.worst > result.error.worst) result.worst = s;
     result.error.add(result.subjects[s].error);
+    if (s == 0) result.weighting = result.subjects[s].weighting;
+    if (result.weighting != result.subjects[s].weighting) result.weighting = std::nullopt;
   }
   std::stable_partition(result.findings.begin(), result.findings.end(),
                         [](const AuditFinding& finding) { return finding.is_fault(); });

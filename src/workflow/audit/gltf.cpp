@@ -10,6 +10,7 @@
 #include "workflow/audit/blend_source.h"
 #include "workflow/audit/gltf_findings.h"
 #include "workflow/audit/measure.h"
+#include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
 
 namespace chronormal {
@@ -20,6 +21,7 @@ struct MeshAudit {
   const GltfDocument& document;
   const AuditOptions& options;
   const GltfShading& shading;
+  Weighting weighting;  // of the right normals
   AuditRule rule;
   std::function<void()> progress;
 };
@@ -38,23 +40,22 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// How far base normals are from the geometry; nothing where there are none.
-std::optional<AuthoredOffset> offset_of(const GltfShading& shading, Weighting weighting) {
-  std::vector<JudgedOutput> outputs;
-  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)
-    if (shading.element_of_vertex[v] != GltfShading::kNoElement)
-      outputs.push_back({v, shading.element_of_vertex[v], 0, 0});
-  if (outputs.empty()) return std::nullopt;
-  const auto positions = VectorView<const float>::packed(shading.set.base.data(), shading.set.topology.vertex_count());
-  const auto stored = [&](const JudgedOutput& output) { return to_double(vector_at(shading.normals, output.vertex)); };
-  AuthoredOffset offset = authored_offset(shading.set.topology, positions, shading.groups, weighting, outputs, stored);
+// Notes how far base normals are from the geometry, where there are any. Returns the weighting of the right normals.
+Weighting note_offset(const GltfShading& shading, std::optional<Weighting> asked, Audit& result) {
+  const AuthoredWeighting authored = find_authored_weighting(shading);
+  const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
+                                      [](std::uint32_t e) { return e != GltfShading::kNoElement; });
+  AuthoredOffset offset = authored_offset(authored, asked);
+  const Weighting weighting = offset.weighting;
+  if (!any_shaded) return weighting;
   offset.mesh = shading.mesh;
   offset.worst_at = place_of(shading, offset.worst_at.vertex);
-  return offset;
+  result.offsets.push_back(std::move(offset));
+  return weighting;
 }
 
 JudgedPart part_of(const MeshAudit& mesh, const std::vector<bool>& involved) {
-  return {mesh.shading.set.topology, mesh.shading.groups, mesh.options.weighting,
+  return {mesh.shading.set.topology, mesh.shading.groups, mesh.weighting,
           moving_outputs(mesh.shading, involved, mesh.rule), mesh.rule == AuditRule::kFlat};
 }
 
@@ -86,6 +87,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const std::vector<std::string>& names = mesh.document.meshes()[shading.mesh].target_names;
   if (!names.empty()) subject.name = names[k];
   subject.mesh = shading.mesh;
+  subject.weighting = mesh.weighting;
   subject.target = k;
   subject.segments = 1;
   subject.samples = samples_per_segment(mesh.options, 1);
@@ -121,6 +123,7 @@ Result<std::optional<AuditSubject>> audit_track(const MeshAudit& mesh, std::size
   subject.kind = AuditSubject::Kind::kTrack;
   subject.name = mesh.document.animations()[animation].name;
   subject.mesh = mesh.shading.mesh;
+  subject.weighting = mesh.weighting;
   subject.animation = animation;
   subject.track = index;
   subject.node = track.node;
@@ -195,7 +198,7 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
     only = animation.value();
   }
   Audit result;
-  result.weighting = options.weighting;
+  result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kGltf);
   const std::size_t total = count_segments(document, only);
   std::size_t done = 0;
@@ -209,12 +212,11 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
     Result<GltfShading> read = read_gltf_shading(document, m);
     if (!read) return read.error();
     GltfShading& shading = read.value();
-    if (const std::optional<AuthoredOffset> offset = offset_of(shading, result.weighting))
-      result.offsets.push_back(*offset);
-    if (result.weighting == Weighting::kArea) shading.groups.forget_corners();
+    const Weighting weighting = note_offset(shading, options.weighting, result);
+    if (weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
 
-    const MeshAudit mesh{document, options, shading, result.rule, progress};
+    const MeshAudit mesh{document, options, shading, weighting, result.rule, progress};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
     const std::size_t first = result.subjects.size();
     for (std::size_t k = 0; k < document.meshes()[m].target_count && are_targets_judged; ++k)

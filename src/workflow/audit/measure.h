@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
-#include "chronormal/core/views.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
 #include "workflow/audit/judged_part.h"
+#include "workflow/shading/authored_weighting.h"
 
 namespace chronormal::inline internal {
 
@@ -31,13 +31,8 @@ inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditMan
 
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
-/// The offset of stored normals (zero: none) from the geometry of some positions by a weighting, a normal for each
-/// output.
-/// groups must be those of the topology
-[[nodiscard]] AuthoredOffset authored_offset(const Topology& topology, VectorView<const float> positions,
-                                             const NormalGroups& groups, Weighting weighting,
-                                             std::span<const JudgedOutput> outputs,
-                                             const std::function<Vec3d(const JudgedOutput&)>& stored);
+/// The offset of stored normals from the geometry by the weighting that was asked for, or else the detected one.
+[[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
 /// The fault of a subject whose stored normals are off by more than kAuditFault: where they cannot be lit, or else at
 /// keys, or else between them.
