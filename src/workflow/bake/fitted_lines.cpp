@@ -261,7 +261,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
   // Calls body(n, direction) for elements that are judged in a pose, on all cores.
   const auto judge = [&](const std::vector<double>& pose, const auto& body) {
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
-    const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.at(pose) : std::vector<Vec3d>();
+    const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();
     const std::vector<Vec3d>& exact = terms.is_fitted() ? weighted : by_area;
     parallel_each(elements.size(), kBlock, [&](std::size_t n) {
       const std::uint32_t e = elements[n].index;

@@ -44,14 +44,28 @@ NormalTerms::NormalTerms(const GltfShading& shading, Weighting weighting)
 }
 
 Vec3d NormalTerms::sample(const Segment& segment, std::uint32_t element, double t) const {
+  const NormalGroups& groups = shading_.groups;
   const auto normal_of_face = [&](std::uint32_t face) {
     Vec3d normal;
     face_normals_at(segment, t, {face, 1}, {&normal, 1});
     return normal;
   };
-  const NormalGroups& groups = shading_.groups;
   return sample_normal(segment, normal_of_face, groups.corners(element), groups.faces(element), weighting_, t)
       .with_area_length();
+}
+
+std::vector<Vec3d> NormalTerms::sample_all(const Segment& segment) const {
+  const NormalGroups& groups = shading_.groups;
+  std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
+  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
+    face_normals_at(segment, 1, faces, std::span(of_faces).subspan(faces.first, faces.count));
+  });
+  const auto normal_of_face = [&](std::uint32_t face) { return of_faces[face]; };
+  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+    result[e] =
+        sample_normal(segment, normal_of_face, groups.corners(e), groups.faces(e), weighting_, 1).with_area_length();
+  });
+  return result;
 }
 
 void NormalTerms::fit_targets() {
@@ -60,10 +74,7 @@ void NormalTerms::fit_targets() {
   for (const std::uint32_t e : shading_.element_of_vertex) {
     if (e != GltfShading::kNoElement) is_shown[e] = true;
   }
-  base_.resize(shading_.groups.size());
-  const Segment still = segment_to(set, set.base);
-  parallel_each(base_.size(), kBlock,
-                [&](std::size_t e) { base_[e] = sample(still, static_cast<std::uint32_t>(e), 0); });
+  base_ = sample_all(segment_to(set, set.base));
   fits_.resize(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) {
     if (set.targets[i].vertices.empty()) continue;
@@ -151,16 +162,12 @@ bool NormalTerms::overlap(std::size_t i, std::size_t j) const {
   return is_fitted() ? !common(fits_[i].elements, fits_[j].elements).empty() : by_area_.overlap(i, j);
 }
 
-std::vector<Vec3d> NormalTerms::at(std::span<const double> weights) const {
+std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const {
   if (!is_fitted()) return by_area_at(weights);
   std::vector<double> blended(shading_.set.base.size());
   blend_positions(shading_.set, weights, blended);
   const std::vector<float> to(blended.begin(), blended.end());
-  const Segment segment = segment_to(shading_.set, to);
-  std::vector<Vec3d> normals(shading_.groups.size());
-  parallel_each(normals.size(), kBlock,
-                [&](std::size_t e) { normals[e] = sample(segment, static_cast<std::uint32_t>(e), 1); });
-  return normals;
+  return sample_all(segment_to(shading_.set, to));
 }
 
 ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {

@@ -46,7 +46,8 @@ class NormalTerms {
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
   /// The right normals at some weights from the blended positions, with the length by area; and those by area whatever
   /// the weighting.
-  [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const;
+  [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
+  [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const { return exact_at(weights); }
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
@@ -63,8 +64,9 @@ class NormalTerms {
     double error = 0;
   };
   void fit_targets();
-  // The weighted normal of an element at t of a segment, with the length by area.
+  // The weighted normal of an element at t of a segment, and those of all at its end, with the length by area.
   [[nodiscard]] Vec3d sample(const Segment& segment, std::uint32_t element, double t) const;
+  [[nodiscard]] std::vector<Vec3d> sample_all(const Segment& segment) const;
 
   const GltfShading& shading_;
   Weighting weighting_;

@@ -1,0 +1,154 @@
+#include "cli/audit_advice.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/audit_words.h"
+#include "cli/format.h"
+
+namespace chronormal::cli {
+namespace {
+
+// What would help.
+enum class Remedy {
+  kNone,      // nothing is off
+  kTangents,  // normals are right, and bake writes no tangents
+  kRule,      // what was judged is not what a glTF file makes hosts show
+  kOriginal,  // what is off was baked before, and is never baked twice
+  kTargets,   // bake takes no targets over a base
+  kBake,
+};
+
+// A normal that is off by more is worth a line: a fault, or what was asked for.
+double limit_of(const Audited& input) { return std::min(kAuditFault, input.tolerance.value_or(kAuditFault)); }
+
+bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
+
+bool was_baked(const Audited& input, const AuditSubject& subject) {
+  return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
+}
+
+bool is_driven(const GltfDocument& document, std::size_t mesh) {
+  return std::any_of(document.animations().begin(), document.animations().end(), [&](const GltfAnimation& animation) {
+    return std::any_of(animation.tracks.begin(), animation.tracks.end(),
+                       [&](const GltfTrack& track) { return document.nodes()[track.node].mesh == mesh; });
+  });
+}
+
+// The motions that are off, of meshes that were baked before or of all others.
+std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
+  std::vector<const AuditSubject*> result;
+  for (const AuditSubject& subject : input.audit.subjects)
+    if (is_wrong(subject, limit_of(input)) && was_baked(input, subject) == baked) result.push_back(&subject);
+  return result;
+}
+
+Remedy remedy_of(const Audited& input) {
+  const Audit& audit = input.audit;
+  const bool any_fresh = !wrong_subjects(input, false).empty(), any_baked = !wrong_subjects(input, true).empty();
+  if (!any_fresh && !any_baked) {
+    const bool any_fault = std::any_of(audit.findings.begin(), audit.findings.end(),
+                                       [](const AuditFinding& finding) { return finding.is_fault(); });
+    return any_fault ? Remedy::kTangents : Remedy::kNone;
+  }
+  if (input.document() != nullptr && audit.rule != AuditRule::kGltf) return Remedy::kRule;
+  if (!any_fresh) return Remedy::kOriginal;
+  return input.bake.empty() ? Remedy::kTargets : Remedy::kBake;
+}
+
+// What a bake would get, as far as that is known beforehand.
+std::string outcome(const Audited& input) {
+  const MotionError& error = input.audit.error;
+  if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
+  bool all_driven = true, all_by_area = true, any_driven = false;
+  for (const AuditSubject* subject : wrong_subjects(input, false)) {
+    const bool driven = is_driven(*input.document(), *subject->mesh);
+    all_driven = all_driven && driven;
+    any_driven = any_driven || driven;
+    all_by_area = all_by_area && subject->weighting == Weighting::kArea;
+  }
+  const std::string now = error.unlit > 0 ? formatted("the {} that cannot be lit", pairs(error.unlit))
+                                          : formatted("the worst of {} degrees", degrees(error.worst));
+  if (!any_driven)
+    return formatted(
+        "makes every target right at weight 1 and as near as one delta can be on the way, in place of {}; no animation "
+        "drives them, which could make it right throughout",
+        now);
+  if (!all_driven)
+    return formatted("makes what animations drive right throughout, and the other targets right at weight 1, in place of {}",
+                     now);
+  if (!all_by_area) {
+    std::string names;
+    for (const AuditSubject* subject : wrong_subjects(input, false)) {
+      const std::string name(weighting_name(subject->weighting));
+      if (names.find(name + "-weighted") == std::string::npos) names += (names.empty() ? "" : " and ") + name + "-weighted";
+    }
+    return formatted("brings {} down to what a fit of {} normals leaves, and says how much that is", now, names);
+  }
+  if (error.unlit > 0) return formatted("repairs {}, but for base normals that are zero", now);
+  return formatted("brings {} to about 0.01 or less", now);
+}
+
+std::string original_words(const Audited& input) {
+  bool all_single = true, any_driven = false;
+  for (const AuditSubject* subject : wrong_subjects(input, true)) {
+    all_single = all_single && input.document()->meshes()[*subject->mesh].mark->encoding == BakeEncoding::kEndpoint;
+    any_driven = any_driven || is_driven(*input.document(), *subject->mesh);
+  }
+  const std::string baked = "what is off was baked before, and bake changes it no more: ";
+  if (!all_single)
+    return baked +
+           "positions, normals or weights were changed after that, or --weighting was another; start again from the file "
+           "before its bake";
+  if (any_driven)
+    return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
+  return baked + "one delta for each target is all that there is where no animation drives them";
+}
+
+}  // namespace
+
+std::string advice(const Audited& input) {
+  if (input.audit.subjects.empty()) return "";
+  switch (remedy_of(input)) {
+    case Remedy::kNone:
+      return formatted("\nnothing to do: no normal is off by more than {:g} {}\n", limit_of(input),
+                       limit_of(input) == 1 ? "degree" : "degrees");
+    case Remedy::kTangents:
+      return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
+             "hosts compute them\n";
+    case Remedy::kRule:
+      return formatted("\nhosts do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
+                       audit_rule_name(input.audit.rule));
+    case Remedy::kOriginal:
+      return '\n' + original_words(input) + '\n';
+    case Remedy::kTargets:
+      return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
+    case Remedy::kBake:
+      return formatted("\nchronormal bake {} -o baked.glb {}\n", input.bake, outcome(input));
+  }
+  return "";
+}
+
+std::string verdict(const Audited& input) {
+  if (input.audit.subjects.empty()) return "nothing moves";
+  if (input.tolerance)
+    return formatted("{} {:g}", input.audit.error.is_within(*input.tolerance) ? "within" : "beyond", *input.tolerance);
+  switch (remedy_of(input)) {
+    case Remedy::kNone:
+      return "right";
+    case Remedy::kTangents:
+      return "wrong tangents";
+    case Remedy::kRule:
+    case Remedy::kTargets:
+      return "wrong";
+    case Remedy::kOriginal:
+      return "wrong, baked before";
+    case Remedy::kBake:
+      return "wrong: bake it";
+  }
+  return "";
+}
+
+}  // namespace chronormal::cli
