@@ -15,6 +15,7 @@ namespace {
 enum class Remedy {
   kNone,      // nothing is off
   kTangents,  // normals are right, and bake writes no tangents
+  kHosts,     // right by the specification, and not in hosts that do otherwise
   kRule,      // what was judged is not what a glTF file makes hosts show
   kOriginal,  // what is off was baked before, and is never baked twice
   kTargets,   // bake takes no targets over a base
@@ -45,10 +46,20 @@ std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked
   return result;
 }
 
+// The hosts in which something is off, by their titles.
+std::string wrong_hosts(const Audited& input) {
+  std::string titles;
+  for (const HostAudit& host : input.audit.hosts) {
+    if (!host.error.is_within(limit_of(input))) titles.append(titles.empty() ? "" : ", ").append(host.host.title);
+  }
+  return titles;
+}
+
 Remedy remedy_of(const Audited& input) {
   const Audit& audit = input.audit;
   const bool any_fresh = !wrong_subjects(input, false).empty(), any_baked = !wrong_subjects(input, true).empty();
   if (!any_fresh && !any_baked) {
+    if (!wrong_hosts(input).empty()) return Remedy::kHosts;
     const bool any_fault = std::any_of(audit.findings.begin(), audit.findings.end(),
                                        [](const AuditFinding& finding) { return finding.is_fault(); });
     return any_fault ? Remedy::kTangents : Remedy::kNone;
@@ -77,13 +88,14 @@ std::string outcome(const Audited& input) {
         "drives them, which could make it right throughout",
         now);
   if (!all_driven)
-    return formatted("makes what animations drive right throughout, and the other targets right at weight 1, in place of {}",
-                     now);
+    return formatted(
+        "makes what animations drive right throughout, and the other targets right at weight 1, in place of {}", now);
   if (!all_by_area) {
     std::string names;
     for (const AuditSubject* subject : wrong_subjects(input, false)) {
       const std::string name(weighting_name(subject->weighting));
-      if (names.find(name + "-weighted") == std::string::npos) names += (names.empty() ? "" : " and ") + name + "-weighted";
+      if (names.find(name + "-weighted") == std::string::npos)
+        names += (names.empty() ? "" : " and ") + name + "-weighted";
     }
     return formatted("brings {} down to what a fit of {} normals leaves, and says how much that is", now, names);
   }
@@ -100,7 +112,8 @@ std::string original_words(const Audited& input) {
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
   if (!all_single)
     return baked +
-           "positions, normals or weights were changed after that, or --weighting was another; start again from the file "
+           "positions, normals or weights were changed after that, or --weighting was another; start again from the "
+           "file "
            "before its bake";
   if (any_driven)
     return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
@@ -118,6 +131,8 @@ std::string advice(const Audited& input) {
     case Remedy::kTangents:
       return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
              "hosts compute them\n";
+    case Remedy::kHosts:
+      return formatted("\nright where a host adds up targets as stored, which these do not: {}\n", wrong_hosts(input));
     case Remedy::kRule:
       return formatted("\nhosts do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
                        audit_rule_name(input.audit.rule));
@@ -133,13 +148,14 @@ std::string advice(const Audited& input) {
 
 std::string verdict(const Audited& input) {
   if (input.audit.subjects.empty()) return "nothing moves";
-  if (input.tolerance)
-    return formatted("{} {:g}", input.audit.error.is_within(*input.tolerance) ? "within" : "beyond", *input.tolerance);
+  if (input.tolerance) return formatted("{} {:g}", input.passed() ? "within" : "beyond", *input.tolerance);
   switch (remedy_of(input)) {
     case Remedy::kNone:
       return "right";
     case Remedy::kTangents:
       return "wrong tangents";
+    case Remedy::kHosts:
+      return "wrong in hosts";
     case Remedy::kRule:
     case Remedy::kTargets:
       return "wrong";

@@ -28,12 +28,14 @@ std::vector<Group> groups_of(const Audit& audit, bool faults) {
   std::vector<Group> groups;
   for (const AuditFinding& finding : audit.findings) {
     if (finding.is_fault() != faults) continue;
-    const auto is_same = [&](const Group& g) { return g.worst->kind == finding.kind && g.worst->mesh == finding.mesh; };
+    const auto is_same = [&](const Group& g) {
+      return g.worst->kind == finding.kind && g.worst->mesh == finding.mesh && g.worst->host == finding.host;
+    };
     auto group = std::find_if(groups.begin(), groups.end(), is_same);
     if (group == groups.end()) group = groups.insert(groups.end(), Group{&finding});
     if (finding.degrees > group->worst->degrees) group->worst = &finding;
-    group->targets += finding.target ? 1 : 0;
-    group->animations += finding.target ? 0 : 1;
+    group->targets += finding.target ? 1U : 0U;
+    group->animations += finding.target ? 0U : 1U;
     group->count += finding.count;
   }
   if (faults)
@@ -97,6 +99,9 @@ std::string group_words(const Audited& input, const Group& group) {
     case Kind::kSequenceTargets:
       return formatted("{}: {} baked keyframes: only animations were judged", who,
                        counted(found.count, "target is one of its", "targets are"));
+    case Kind::kBeyondHost:
+      return formatted("{}: {} more than {} takes: {}", who, counted(found.count, "target", "targets"),
+                       found.host->title, found.host->beyond);
   }
   return "";
 }

@@ -20,15 +20,25 @@ namespace {
 using Align = Table::Align;
 
 constexpr std::size_t kLongestBar = 40;
-constexpr double kSeen = 0.005;  // degrees: what two decimals show
+constexpr double kSeen = 0.005;                     // degrees: what two decimals show
+constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the pairs
+constexpr double kDisplaced = 1e-5;                 // a share of the size that is worth a word
+
+std::string tolerance_words(const Audited& input) {
+  const std::vector<HostAudit>& hosts = input.audit.hosts;
+  if (hosts.empty()) return formatted("{} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  const auto within = std::count_if(hosts.begin(), hosts.end(), [&](const HostAudit& h) { return input.passed(h); });
+  return formatted("within {} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
+}
 
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = printable(input.name()) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += formatted("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
-                    degrees(audit.error.rms()));
-  if (input.tolerance) text += formatted(", {} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", degrees(audit.error.worst),
+                    degrees(audit.error.mean()), degrees(audit.error.percentile(kMost)),
+                    degrees(audit.error.percentile(kNearlyAll)));
+  if (input.tolerance) text += ", " + tolerance_words(input);
   text += '\n';
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
@@ -37,9 +47,9 @@ std::string headline(const Audited& input) {
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
   if (audit.weighting != Weighting::kArea)
-    text += formatted("  right are {} normals, as the base normals of {} file\n",
-                      audit.weighting ? std::string(weighting_name(*audit.weighting)) + "-weighted" : "differently weighted",
-                      "the");
+    text += formatted(
+        "  right are {} normals, as the base normals of {} file\n",
+        audit.weighting ? std::string(weighting_name(*audit.weighting)) + "-weighted" : "differently weighted", "the");
   if (audit.still > 0)
     text += formatted("  {} nothing that could be judged\n",
                       counted(audit.still, "target or track moves", "targets or tracks move"));
@@ -60,7 +70,8 @@ std::string subject_table(const Audited& input) {
   table.add_column("motion", "", Align::kLeft);
   table.add_column("worst", "degrees", Align::kRight);
   table.add_column("mean", "degrees", Align::kRight);
-  table.add_column("rms", "degrees", Align::kRight);
+  table.add_column("99 %", "degrees", Align::kRight);
+  table.add_column("99.9 %", "degrees", Align::kRight);
   table.add_column("at keys", "degrees", Align::kRight);
   table.add_column("worst at", "vertex", Align::kRight);
   table.add_column("", "", Align::kLeft);
@@ -70,16 +81,44 @@ std::string subject_table(const Audited& input) {
     const AuditSubject& subject = subjects[s];
     const bool some = subject.error.worst > 0;
     table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),
-                   degrees(subject.error.rms()), degrees(subject.at_keys.worst),
-                   some ? formatted("{}", subject.error.worst_at.vertex) : "-",
+                   degrees(subject.error.percentile(kMost)), degrees(subject.error.percentile(kNearlyAll)),
+                   degrees(subject.at_keys.worst), some ? formatted("{}", subject.error.worst_at.vertex) : "-",
                    some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
                    subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
                                         : formatted("{}", subject.samples)});
   }
   std::string text = table.text();
   if (subjects.size() > kMostAuditRows)
-    text += formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostAuditRows));
+    text +=
+        formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostAuditRows));
   return text;
+}
+
+// What each host shows, the specification first, which the tables below are about.
+std::string host_table(const Audited& input) {
+  const Audit& audit = input.audit;
+  if (audit.hosts.empty()) return "";
+  Table table;
+  table.add_column("host", "", Align::kLeft);
+  for (const char* const title : {"mean", "99 %", "99.9 %", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  table.add_column("unlit", "pairs", Align::kRight);
+  table.add_column("displaced", "% of size", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
+                           const std::string& note) {
+    table.add_row({std::string(title), degrees(error.mean()), degrees(error.percentile(kMost)),
+                   degrees(error.percentile(kNearlyAll)), degrees(error.worst), grouped(error.unlit), displaced, note});
+  };
+  add_row("(specification)", audit.error, "-", "");
+  for (const HostAudit& found : audit.hosts) {
+    const auto has_limit = [&](const AuditFinding& f) { return f.host && *f.host == found.host; };
+    std::string note = input.passed(found) ? "" : "beyond the tolerance";
+    if (std::any_of(audit.findings.begin(), audit.findings.end(), has_limit))
+      note += std::string(note.empty() ? "" : ", ") + "too many targets";
+    add_row(found.host.title, found.error,
+            found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
+  }
+  return '\n' + table.text();
 }
 
 std::string bin_words(std::size_t bin) {
@@ -142,6 +181,10 @@ std::string worst_label(const Audited& input) {
   return place_words(input, subject, subject.error.worst_at);
 }
 
+std::string worst_label(const Audited& input, const HostAudit& host) {
+  return host.worst ? place_words(input, input.audit.subjects[*host.worst], host.error.worst_at) : "";
+}
+
 std::string unlit_label(const Audited& input) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =
@@ -151,7 +194,8 @@ std::string unlit_label(const Audited& input) {
 
 std::string audit_text(const Audited& input) {
   std::string text = headline(input);
-  if (!input.audit.subjects.empty()) text += '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
+  if (!input.audit.subjects.empty())
+    text += host_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
   return text + offset_lines(input) + fault_lines(input) + note_lines(input) + advice(input);
 }
 
