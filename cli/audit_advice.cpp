@@ -31,11 +31,14 @@ bool was_baked(const Audited& input, const AuditSubject& subject) {
   return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
 }
 
-bool is_driven(const GltfDocument& document, std::size_t mesh) {
-  return std::any_of(document.animations().begin(), document.animations().end(), [&](const GltfAnimation& animation) {
-    return std::any_of(animation.tracks.begin(), animation.tracks.end(),
-                       [&](const GltfTrack& track) { return document.nodes()[track.node].mesh == mesh; });
-  });
+// Whether an animation gives a weight to what moves here.
+bool is_driven(const Audited& input, const AuditSubject& subject) {
+  if (subject.kind != AuditSubject::Kind::kTarget) return true;
+  const auto drives = [&](const AuditSubject& other) {
+    return other.mesh == subject.mesh &&
+           std::find(other.driven.begin(), other.driven.end(), *subject.target) != other.driven.end();
+  };
+  return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
 // The motions that are off, of meshes that were baked before or of all others.
@@ -69,45 +72,48 @@ Remedy remedy_of(const Audited& input) {
   return input.bake.empty() ? Remedy::kTargets : Remedy::kBake;
 }
 
-// What a bake would get, as far as that is known beforehand.
+// "angle-weighted", "angle- and max-weighted": of the motions that are off.
+std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
+  std::string text;
+  for (const WeightingInfo& info : kWeightings) {
+    const auto has = [&](const AuditSubject* subject) { return subject->weighting == info.weighting; };
+    if (std::any_of(subjects.begin(), subjects.end(), has))
+      text += (text.empty() ? "" : "- and ") + std::string(info.name);
+  }
+  return text + "-weighted";
+}
+
+// What a bake gets for this file, as far as that is known beforehand.
 std::string outcome(const Audited& input) {
-  const MotionError& error = input.audit.error;
   if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
-  bool all_driven = true, all_by_area = true, any_driven = false;
-  for (const AuditSubject* subject : wrong_subjects(input, false)) {
-    const bool driven = is_driven(*input.document(), *subject->mesh);
-    all_driven = all_driven && driven;
-    any_driven = any_driven || driven;
-    all_by_area = all_by_area && subject->weighting == Weighting::kArea;
-  }
-  const std::string now = error.unlit > 0 ? formatted("the {} that cannot be lit", pairs(error.unlit))
-                                          : formatted("the worst of {} degrees", degrees(error.worst));
-  if (!any_driven)
+  const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);
+  const auto driven = static_cast<std::size_t>(std::count_if(
+      wrong.begin(), wrong.end(), [&](const AuditSubject* subject) { return is_driven(input, *subject); }));
+  const bool by_area = std::all_of(wrong.begin(), wrong.end(),
+                                   [](const AuditSubject* subject) { return subject->weighting == Weighting::kArea; });
+  const MotionError& error = input.audit.error;
+  const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
+                                          : formatted("{} degrees", degrees(error.worst));
+  if (driven == 0)
     return formatted(
-        "makes every target right at weight 1 and as near as one delta can be on the way, in place of {}; no animation "
-        "drives them, which could make it right throughout",
+        "makes each target right at weight 1, and between 0 and 1 as near as one delta comes, and says what is left of "
+        "{}",
         now);
-  if (!all_driven)
+  if (driven < wrong.size())
     return formatted(
-        "makes what animations drive right throughout, and the other targets right at weight 1, in place of {}", now);
-  if (!all_by_area) {
-    std::string names;
-    for (const AuditSubject* subject : wrong_subjects(input, false)) {
-      const std::string name(weighting_name(subject->weighting));
-      if (names.find(name + "-weighted") == std::string::npos)
-        names += (names.empty() ? "" : " and ") + name + "-weighted";
-    }
-    return formatted("brings {} down to what a fit of {} normals leaves, and says how much that is", now, names);
-  }
-  if (error.unlit > 0) return formatted("repairs {}, but for base normals that are zero", now);
-  return formatted("brings {} to about 0.01 or less", now);
+        "makes right what animations move, comes as near as one delta can elsewhere, and says what is left of {}", now);
+  if (!by_area)
+    return formatted("fits {} normals, as the file has them, and says what is left of {}", weighting_words(wrong), now);
+  if (error.unlit > 0)
+    return formatted("makes right all but base normals that are zero, and says what is left of {}", now);
+  return formatted("brings the worst from {} to about 0.01 or less", now);
 }
 
 std::string original_words(const Audited& input) {
   bool all_single = true, any_driven = false;
   for (const AuditSubject* subject : wrong_subjects(input, true)) {
     all_single = all_single && input.document()->meshes()[*subject->mesh].mark->encoding == BakeEncoding::kEndpoint;
-    any_driven = any_driven || is_driven(*input.document(), *subject->mesh);
+    any_driven = any_driven || is_driven(input, *subject);
   }
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
   if (!all_single)
@@ -117,7 +123,7 @@ std::string original_words(const Audited& input) {
            "before its bake";
   if (any_driven)
     return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
-  return baked + "one delta for each target is all that there is where no animation drives them";
+  return baked + "one delta for each target is all that there is where no animation moves them";
 }
 
 }  // namespace

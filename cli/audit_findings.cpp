@@ -65,6 +65,15 @@ std::string subject_of(const Audited& input, const Group& group) {
   return text + (group.worst->mesh ? " of " + of_mesh(input, *group.worst) : "");
 }
 
+// The worst error that a target of the mesh has alone.
+double worst_alone(const Audit& audit, const AuditFinding& found) {
+  double worst = 0;
+  for (const AuditSubject& subject : audit.subjects)
+    if (subject.kind == AuditSubject::Kind::kTarget && subject.mesh == found.mesh)
+      worst = std::max(worst, subject.error.worst);
+  return worst;
+}
+
 std::string group_words(const Audited& input, const Group& group) {
   const AuditFinding& found = *group.worst;
   const bool is_one = group.size() == 1;
@@ -83,8 +92,13 @@ std::string group_words(const Audited& input, const Group& group) {
     case Kind::kWrongBetween:
       return formatted("{}: right at {}, and off by up to {} degrees on the way", who,
                        found.target ? "weights 0 and 1" : "keyframes", worst);
-    case Kind::kWrongTogether:
-      return formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+    case Kind::kWrongTogether: {
+      const double alone = worst_alone(input.audit, found);
+      return alone > kAuditFault
+                 ? formatted("{}: targets together are off by up to {} degrees, alone by up to {}", who, worst,
+                             degrees(alone))
+                 : formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+    }
     case Kind::kStaleTangents:
       return formatted("{}: {} up to {} degrees from perpendicular to the right normal", who,
                        counted(group.count, "tangent is", "tangents are"), worst);

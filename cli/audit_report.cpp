@@ -31,6 +31,16 @@ std::string tolerance_words(const Audited& input) {
   return formatted("within {} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
 }
 
+// Which normals are right, where these are others than usual.
+std::string weighting_words(const Audited& input) {
+  const Audit& audit = input.audit;
+  if (audit.weighting == Weighting::kArea) return "";
+  if (!audit.weighting) return "  the right normals are weighted as the base normals of each mesh are: see below\n";
+  const bool is_detected = !audit.offsets.empty() && audit.offsets.front().is_detected;
+  return formatted("  the right normals are {}-weighted, as {}\n", weighting_name(*audit.weighting),
+                   is_detected ? "the base normals of the file are" : "--weighting says");
+}
+
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = printable(input.name()) + ": ";
@@ -46,10 +56,7 @@ std::string headline(const Audited& input) {
   if (audit.rule == AuditRule::kFlat) source = "the faces";
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
-  if (audit.weighting != Weighting::kArea)
-    text += formatted(
-        "  right are {} normals, as the base normals of {} file\n",
-        audit.weighting ? std::string(weighting_name(*audit.weighting)) + "-weighted" : "differently weighted", "the");
+  text += weighting_words(input);
   if (audit.still > 0)
     text += formatted("  {} nothing that could be judged\n",
                       counted(audit.still, "target or track moves", "targets or tracks move"));
@@ -152,7 +159,7 @@ std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
                                degrees(offset.worst), weighting);
   if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
   if (offset.is_detected && offset.weighting != Weighting::kArea)
-    text += formatted(", which they follow; by area it would be {}", degrees(offset.area_mean));
+    text += formatted(", which they follow; by area the mean would be {}", degrees(offset.area_mean));
   else if (!offset.is_detected && offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
     text += formatted("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
                       degrees(offset.closest_mean), degrees(offset.closest_worst));

@@ -125,6 +125,7 @@ struct AuditSubject {
   std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
   std::optional<std::size_t> animation, track, node;  ///< of a track
   Weighting weighting = Weighting::kArea;             ///< of its right normals
+  std::vector<std::size_t> driven;                    ///< the targets that a track gives other weights than 0
   std::size_t segments = 0, samples = 0;              ///< samples of each segment
   std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
   MotionError error;
@@ -153,7 +154,7 @@ struct AuditFinding {
     kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
     kWrongBetween,    ///< right there, and off on the way
-    kWrongTogether,   ///< targets right one by one, and off where an animation has several at once
+    kWrongTogether,   ///< off where an animation has several targets at once, by more than each of them alone
     kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
     kSkinned,         ///< a note: skins turn the shown and the right normal alike

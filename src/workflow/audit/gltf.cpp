@@ -187,6 +187,8 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   subject.animation = animation;
   subject.track = index;
   subject.node = track.node;
+  for (std::size_t k = 0; k < width; ++k)
+    if (involved[k]) subject.driven.push_back(k);
   const bool moves = times.size() > 1;
   subject.segments = moves ? times.size() - 1 : 1;
   subject.samples = moves ? samples_per_segment(mesh.options, subject.segments) : 1;

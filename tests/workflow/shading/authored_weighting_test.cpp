@@ -152,7 +152,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   apart.targets[0].positions.back() = 1;
   EXPECT_EQ(detected_in(apart), "area");
   // Normals of a sphere far below, on a sheet that is none.
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     ShadedMesh bent = sheet("angle", seed);
     for (std::size_t v = 0; v < bent.vertices(); ++v) {
       const test::Vector up = test::unit_of(test::plus(test::vector_at(bent.positions, v), {-4, -4, 10}));
