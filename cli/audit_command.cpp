@@ -211,7 +211,8 @@ Command audit_command() {
          "what a host makes of stored normals between keyframes: gltf (default for\n"
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
         {"--weighting NAME", &options->weighting,
-         "of the right normals: area (default), angle, uniform, area-angle, max"},
+         "of the right normals: area, angle, uniform, area-angle, max (default: the one\n"
+         "that the base normals of the file follow, else area)"},
         {"--host NAME,...", &options->hosts,
          "judge what these show of a glTF file: three, babylon, playcanvas, godot,\n"
          "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
@@ -227,9 +228,11 @@ Command audit_command() {
        options->common.table(false)},
       "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
       "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
+      "Several glTF files, or a folder of them, are judged one by one: a row each, and the worst exit code.\n"
       "\nExamples:\n"
       "  chronormal audit face.glb\n"
       "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
+      "  chronormal audit models/ intro.glb --tolerance 1\n"
       "  chronormal audit face.glb --host three,godot,gltfpack\n"
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",

@@ -215,7 +215,8 @@ Command bake_command() {
              "endpoint: the best single delta per target, by least squares where several are\n"
              "active at once. Default: exact where an animation drives the weights"},
             {"--weighting NAME", &options->weighting,
-             "how faces count: area (default, exact), angle, uniform, area-angle, max"},
+             "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
+             "base normals of each mesh, else area)"},
             {"--crease DEG", &options->crease_angle,
              "of sequences, and with --smooth: edges between faces that differ by\n"
              "more than this are hard (default 180: none)"},

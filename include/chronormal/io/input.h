@@ -66,10 +66,10 @@ struct InputOptions {
 [[nodiscard]] Status check_input(const InputOptions& options);
 
 /// The glTF files that inputs stand for, where each is an input of its own: names, patterns, and folders, of which all
-/// glTF files in them and in their folders count, but for names that begin with a dot and links to folders. Patterns
-/// and folders are sorted by number. Empty where no input stands for one. Nothing is opened, so that a name may be one
-/// of no file. Errors: kFailed where a folder cannot be listed; kUsage for glTF files beside other inputs, which would
-/// be keyframes, or beside meshes in one folder.
+/// glTF files in them and in the folders in them count, but for names that begin with a dot and links to folders. A
+/// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. Empty where no input
+/// stands for a glTF file. Nothing is opened, so that a name may be one of no file. Errors: kUsage for glTF files beside
+/// other inputs, and beside meshes in one folder.
 [[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
 
 /// Normals that files store beside a motion, (corners, 3) each, of any length.

@@ -21,10 +21,11 @@ bool holds(const std::string& path, Holds kind) {
   return format != nullptr && format->holds == kind;
 }
 
-// The glTF files in a folder and in the folders in it; none where its own files are meshes.
+// The glTF files in a folder and in the folders in it; none where its own files are meshes. What cannot be listed is for the
+// one who opens it to say.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
-  fs::recursive_directory_iterator entries(folder, code);
+  fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, code);
   std::vector<std::string> files;
   std::string own_mesh, own_gltf;
   while (!code && entries != fs::recursive_directory_iterator{}) {
@@ -40,7 +41,6 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
     }
     entries.increment(code);
   }
-  if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (!own_mesh.empty() && !own_gltf.empty())
     return Error{ErrorCode::kUsage, folder,
                  "it has glTF files, which are inputs one by one, and keyframes of a sequence, such as " +
