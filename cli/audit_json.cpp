@@ -1,15 +1,15 @@
+#include "cli/audit_json.h"
+
 #include <string>
 
 #include "chronormal/normals/weighting.h"
-#include "cli/audit_report.h"
-#include "cli/json.h"
 
 namespace chronormal::cli {
 namespace {
 
 constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",  "wrong_between",
                                   "wrong_together", "stale_tangents",  "flat_primitive", "skin",
-                                  "baked",          "baked_keyframes"};
+                                  "baked",          "baked_keyframes", "beyond_host"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -30,6 +30,8 @@ void add_error(const MotionError& error, Json& json) {
   json["worst_degrees"] = error.worst;
   json["mean_degrees"] = error.mean();
   json["rms_degrees"] = error.rms();
+  json["percentile_99_degrees"] = error.percentile(0.99);
+  json["percentile_99_9_degrees"] = error.percentile(0.999);
   json["judged"] = error.judged;
   json["no_normal"] = error.no_normal;
   json["unlit"] = error.unlit;
@@ -52,6 +54,7 @@ Json subject_json(const AuditSubject& subject) {
                {"target", or_null(subject.target)},
                {"animation", or_null(subject.animation)},
                {"node", or_null(subject.node)},
+               {"weighting", weighting_name(subject.weighting)},
                {"segments", subject.segments},
                {"samples", subject.samples},
                {"vertices", subject.vertices}};
@@ -66,9 +69,12 @@ Json subject_json(const AuditSubject& subject) {
 Json offset_json(const AuthoredOffset& offset) {
   return {{"mesh", or_null(offset.mesh)},
           {"vertices", offset.vertices},
+          {"weighting", weighting_name(offset.weighting)},
+          {"weighting_detected", offset.is_detected},
           {"worst_degrees", offset.worst},
           {"mean_degrees", offset.mean()},
           {"worst_at", offset.worst > 0 ? place_json(offset.worst_at, nullptr) : Json()},
+          {"area_mean_degrees", offset.area_mean},
           {"closest_weighting", weighting_name(offset.closest)},
           {"closest_mean_degrees", offset.closest_mean},
           {"closest_worst_degrees", offset.closest_worst}};
@@ -82,18 +88,37 @@ Json finding_json(const AuditFinding& finding) {
           {"animation", or_null(finding.animation)},
           {"node", or_null(finding.node)},
           {"count", finding.count},
+          {"host", finding.host ? Json(finding.host->name) : Json()},
           {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
           {"worst_at", finding.worst_at ? place_json(*finding.worst_at, finding.target ? "weight" : "time") : Json()}};
 }
 
+Json host_json(const Audited& input, const HostAudit& found) {
+  constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
+  constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration"};
+  Json json = {{"name", found.host.name},
+               {"title", found.host.title},
+               {"normals", kNormals[static_cast<std::size_t>(found.host.normals)]},
+               {"tracks", kTracks[static_cast<std::size_t>(found.host.tracks)]},
+               {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
+               {"source", found.host.source},
+               {"passed", input.tolerance ? Json(input.passed(found)) : Json()}};
+  add_error(found.error, json);
+  json["worst_subject"] = or_null(found.worst);
+  json["worst_at"] =
+      found.worst ? place_json(found.error.worst_at, moment_of(input.audit.subjects[*found.worst])) : Json();
+  json["displaced_share"] = found.displaced;
+  return json;
+}
+
 }  // namespace
 
-std::string audit_json(const Audited& input) {
+Json audit_object(const Audited& input) {
   const Audit& audit = input.audit;
-  Json json = json_of_command("audit");
+  Json json;
   json["input"] = {{"name", input.name()}};
   json["rule"] = audit_rule_name(audit.rule);
-  json["weighting"] = weighting_name(audit.weighting);
+  json["weighting"] = audit.weighting ? Json(weighting_name(*audit.weighting)) : Json();
   json["stored_normals"] = audit.stored;
   json["tolerance_degrees"] = or_null(input.tolerance);
   json["passed"] = input.tolerance ? Json(input.passed()) : Json();
@@ -104,10 +129,18 @@ std::string audit_json(const Audited& input) {
   json["still"] = audit.still;
   json["subjects"] = Json::array();
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
+  json["hosts"] = Json::array();
+  for (const HostAudit& found : audit.hosts) json["hosts"].push_back(host_json(input, found));
   json["authored_offsets"] = Json::array();
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();
   for (const AuditFinding& finding : audit.findings) json["findings"].push_back(finding_json(finding));
+  return json;
+}
+
+std::string audit_json(const Audited& input) {
+  Json json = json_of_command("audit");
+  json.update(audit_object(input));
   return json_text(json);
 }
 

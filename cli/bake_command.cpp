@@ -24,8 +24,8 @@ constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::string encode;  // empty: by what drives the weights
-  std::string weighting = "area";
+  std::string encode;     // empty: by what drives the weights
+  std::string weighting;  // empty: what the stored base normals follow
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
@@ -40,9 +40,11 @@ Result<BakeOptions> understand(const Options& options) {
     how.encoding = find_bake_encoding(options.encode);
     if (!how.encoding) return misuse("--encode", "it must be exact or endpoint");
   }
-  const Result<Weighting> weighting = make_weighting(options.weighting);
-  if (!weighting) return misuse("--weighting", weighting.error().message);
-  how.weighting = weighting.value();
+  if (!options.weighting.empty()) {
+    const Result<Weighting> weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    how.weighting = weighting.value();
+  }
   if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
   if (!(options.tolerance >= 0 && options.tolerance <= 90))
@@ -213,7 +215,8 @@ Command bake_command() {
              "endpoint: the best single delta per target, by least squares where several are\n"
              "active at once. Default: exact where an animation drives the weights"},
             {"--weighting NAME", &options->weighting,
-             "how faces count: area (default, exact), angle, uniform, area-angle, max"},
+             "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
+             "base normals of each mesh, else area)"},
             {"--crease DEG", &options->crease_angle,
              "of sequences, and with --smooth: edges between faces that differ by\n"
              "more than this are hard (default 180: none)"},

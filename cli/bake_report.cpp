@@ -1,5 +1,6 @@
 #include "cli/bake_report.h"
 
+#include "chronormal/normals/weighting.h"
 #include "cli/format.h"
 #include "cli/json.h"
 #include "cli/table.h"
@@ -12,6 +13,10 @@ constexpr std::size_t kLongestName = 32;
 
 std::string headline(const BakeReport& report) {
   return formatted("{} -> {}\n", printable(report.input), printable(report.output));
+}
+
+std::string mesh_name(const BakedMesh& mesh) {
+  return mesh.name.empty() ? formatted("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
 }
 
 // How far the deltas are from what they stand for, as the bake computes it: of its targets, and of what its animations
@@ -27,8 +32,7 @@ std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& re
 }
 
 void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
-  std::vector<std::string> cells = {mesh.name.empty() ? formatted("mesh {}", mesh.mesh)
-                                                      : printable(mesh.name, kLongestName)};
+  std::vector<std::string> cells = {mesh_name(mesh)};
   if (mesh.already_baked)
     cells.insert(cells.end(), {"baked before", "", "", ""});
   else if (mesh.elements == 0)
@@ -49,6 +53,25 @@ std::string change_words(const BeforeAndAfter& audit) {
       formatted("worst {}, mean {} degrees", change(before.worst, after.worst), change(before.mean(), after.mean()));
   if (before.unlit + after.unlit > 0)
     text += formatted(", {} -> {} that cannot be lit", grouped(before.unlit), counted(after.unlit, "pair", "pairs"));
+  return text;
+}
+
+// Which meshes were baked for normals that are not weighted by area.
+std::string weighting_lines(const GltfBake& bake) {
+  std::string text;
+  for (const WeightingInfo& info : kWeightings) {
+    std::string names;
+    std::size_t count = 0;
+    constexpr std::size_t kMostNamed = 4;
+    for (const BakedMesh& mesh : bake.meshes) {
+      if (mesh.already_baked || mesh.elements == 0 || mesh.weighting != info.weighting) continue;
+      if (++count <= kMostNamed) names.append(count > 1 ? ", " : "").append(mesh_name(mesh));
+    }
+    if (count == 0 || info.weighting == Weighting::kArea) continue;
+    if (count > kMostNamed) names += formatted(" and {} more", count - kMostNamed);
+    text +=
+        formatted("{}: for {}-weighted normals, which are fitted (by area they would be exact)\n", names, info.name);
+  }
   return text;
 }
 
@@ -85,6 +108,7 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
   return {{"mesh", mesh.mesh},
           {"name", mesh.name},
           {"encoding", name_of(mesh.encoding)},
+          {"weighting", mesh.already_baked ? Json() : Json(weighting_name(mesh.weighting))},
           {"already_baked", mesh.already_baked},
           {"different_normals", mesh.elements},
           {"extra_targets", std::move(extras)},
@@ -148,6 +172,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     text += formatted("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
                                           "weight tracks are cubic splines"));
   text += '\n';
+  text += weighting_lines(bake);
   std::size_t fitted = 0;
   for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
   if (fitted > 0)

@@ -234,7 +234,6 @@ TEST_F(BakeCli, sequences_become_an_animated_glb) {
 TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb -o out.glb --encode best", 2, "--encode");
   expect_error("moving.glb -o out.glb --weighting heavy", 2, "--weighting");
-  expect_error("moving.glb -o out.glb --weighting angle", 2, "--encode endpoint");
   expect_error("moving.glb -o out.glb --tolerance -1", 2, "--tolerance");
   expect_error("moving.glb -o out.glb --crease 200", 2, "--crease");
   expect_error("moving.glb -o out.glb --crease 30", 2, "--smooth");

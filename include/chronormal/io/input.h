@@ -65,6 +65,13 @@ struct InputOptions {
 /// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
 [[nodiscard]] Status check_input(const InputOptions& options);
 
+/// The glTF files that inputs stand for, where each is an input of its own: names, patterns, and folders, of which all
+/// glTF files in them and in the folders in them count, but for names that begin with a dot and links to folders. A
+/// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. Empty where no input
+/// stands for a glTF file. Nothing is opened, so that a name may be one of no file. Errors: kUsage for glTF files beside
+/// other inputs, and beside meshes in one folder.
+[[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
+
 /// Normals that files store beside a motion, (corners, 3) each, of any length.
 struct StoredNormals {
   /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.

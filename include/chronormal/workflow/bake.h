@@ -29,9 +29,11 @@ struct BakeOptions {
   /// Nothing: exact where animations drive the weights, and these are not so large that float32 cannot hold their
   /// products; else endpoint.
   std::optional<BakeEncoding> encoding = {};
-  Weighting weighting = Weighting::kArea;  ///< others than area are fitted, with a stated error
-  bool smooth = false;                     ///< primitives without NORMAL get normals, instead of staying flat
-  double crease_angle = 180;               ///< degrees: hard edges of those, and of sequences
+  /// Others than area are fitted, with a stated error. Nothing: for each mesh the one that its stored base normals
+  /// follow clearly (as audit has it), or else area; area where normals are made anew: of sequences, recompute_base.
+  std::optional<Weighting> weighting = {};
+  bool smooth = false;        ///< primitives without NORMAL get normals, instead of staying flat
+  double crease_angle = 180;  ///< degrees: hard edges of those, and of sequences
   /// Of sequences: normals of keyframe 0, one for each corner, which say which edges are hard in place of the crease
   /// angle; or empty.
   VectorView<const float> normal_of_corner = {};
@@ -49,11 +51,12 @@ struct BakedMesh {
   std::size_t mesh = 0;
   std::string name;
   BakeEncoding encoding = BakeEncoding::kExact;
-  std::size_t elements = 0;             ///< different normals
-  std::vector<GltfExtraTarget> extras;  ///< targets that were added, now or by the bake before
-  std::size_t bytes = 0;                ///< of new arrays, without those that an earlier mesh has too, and tracks
-  std::size_t undriven = 0;             ///< of exact: moving targets that no animation drives, baked as endpoint
-  std::size_t left_flat = 0;            ///< primitives without NORMAL that stay flat
+  Weighting weighting = Weighting::kArea;  ///< of the right normals; means nothing where it was baked before
+  std::size_t elements = 0;                ///< different normals
+  std::vector<GltfExtraTarget> extras;     ///< targets that were added, now or by the bake before
+  std::size_t bytes = 0;                   ///< of new arrays, without those that an earlier mesh has too, and tracks
+  std::size_t undriven = 0;                ///< of exact: moving targets that no animation drives, baked as endpoint
+  std::size_t left_flat = 0;               ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
   std::size_t stilled = 0;   ///< targets that moved normals and no position: their deltas are zero now
@@ -82,11 +85,12 @@ struct GltfBake {
 ///
 /// Weights    those of all animations, of nodes and of meshes: where two targets are active at once, their pair gets an
 ///            extra target. Exact is meant at these; other weights are as exact but for pairs that got none.
-/// Fits       by weightings other than area, exact works where no two targets move a normal at once.
+/// Fits       by weightings other than area, n(w) is no polynomial: exact stands for the quadratic form that is right
+///            where one target has the weight 0, 1/2 or 1, and where two have the weight 1.
 ///
 /// Errors: of GltfDocument; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
 /// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
-/// compressed by Draco, or an extension drives weights; kUsage for a weighting that cannot be exact.
+/// compressed by Draco, or an extension drives weights.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {

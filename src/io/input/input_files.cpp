@@ -30,7 +30,18 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-// Whether a stands before b when runs of digits count as numbers of any size; ties are broken by plain order.
+Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
+  glob_t matches{};
+  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
+  std::vector<std::string> files;
+  for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
+  ::globfree(&matches);
+  if (files.empty()) return Error{ErrorCode::kFailed, pattern, "no file of this name, and none that matches it"};
+  return files;
+}
+
+}  // namespace
+
 bool stands_before(const std::string& a, const std::string& b) {
   std::string_view rest_a = a, rest_b = b;
   while (!rest_a.empty() && !rest_b.empty()) {
@@ -47,18 +58,6 @@ bool stands_before(const std::string& a, const std::string& b) {
   if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
   return a < b;
 }
-
-Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
-  glob_t matches{};
-  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
-  std::vector<std::string> files;
-  for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
-  ::globfree(&matches);
-  if (files.empty()) return Error{ErrorCode::kFailed, pattern, "no file of this name, and none that matches it"};
-  return files;
-}
-
-}  // namespace
 
 Result<std::vector<std::string>> find_input_files(const InputOptions& options, const FolderLister& list_folder) {
   if (options.resolve) return options.files;

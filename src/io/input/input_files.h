@@ -32,6 +32,9 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 [[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
                                                                 const FolderLister& list_folder);
 
+/// Whether path a stands before b where runs of digits count as numbers of any size; ties are broken by plain order.
+[[nodiscard]] bool stands_before(const std::string& a, const std::string& b);
+
 /// The last part of a path; "<stdin>" for "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
 

@@ -11,6 +11,7 @@
 #include "core/blocks.h"
 #include "core/vector_area.h"
 #include "normals/weighting/corner_terms.h"
+#include "normals/weighting/sampled_normal.h"
 #include "normals/weighting/series_bounds.h"
 #include "normals/weighting/taylor.h"
 
@@ -268,30 +269,6 @@ struct Element {
   }
 };
 
-// The weighted normal at one time, from positions, and the factor that gives it an area-weighted length: the sum of |n|
-// over the corners as a share of the sum of the lengths of the terms.
-struct Sampled {
-  Vec3d normal;
-  double to_area = 0;
-};
-
-Sampled sample(const Segment& segment, std::span<const Vec3d> of_faces, const Element& element, double t) {
-  Sampled result;
-  double terms = 0, areas = 0;
-  for (std::size_t c = 0; c < element.corners.size(); ++c) {
-    const Vec3d& n = of_faces[element.faces[c]];
-    if (n == Vec3d{}) continue;
-    const Vec3d term = corner_term(segment, corner_vertices(*segment.topology, element.corners[c], element.faces[c]), n,
-                                   element.weighting, t);
-    result.normal = result.normal + term;
-    terms += length(term);
-    areas += length(n);
-  }
-  result.normal = without_rounding(result.normal, kCrossError * terms);
-  result.to_area = terms > 0 ? areas / terms : 0;
-  return result;
-}
-
 // Whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish with its area
 // only; of other polygons that is true of uniform weights.
 bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
@@ -340,9 +317,11 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
       std::array<Vec3d, kSamples + 1> truth;
       std::array<Vec3d, 3> node;
       for (std::size_t i = 0; i <= kSamples; ++i) {
-        const Sampled sampled = sample(segment, of_faces[i], element, sample_time(i));
+        const auto normal_of_face = [&](std::uint32_t f) { return of_faces[i][f]; };
+        const SampledNormal sampled =
+            sample_normal(segment, normal_of_face, element.corners, element.faces, weighting, sample_time(i));
         truth[i] = sampled.normal;
-        if (i % (kSamples / 2) == 0) node[i / (kSamples / 2)] = sampled.to_area * sampled.normal;
+        if (i % (kSamples / 2) == 0) node[i / (kSamples / 2)] = sampled.with_area_length();
       }
       element.fit = {node[0], 2.0 * node[1] - 0.5 * (node[0] + node[2]), node[2]};
       fit.normals[e] = element.fit;

@@ -11,6 +11,22 @@
 namespace chronormal {
 namespace {
 
+// The bin of an angle of [0, 180] degrees among kAuditFineBins.
+std::size_t fine_bin(double degrees) noexcept {
+  if (!(degrees >= std::ldexp(1, kAuditLeastExponent))) return 0;
+  int exponent = 0;
+  const double digits = std::frexp(degrees, &exponent);  // of [1/2, 1)
+  const int of_doubling = static_cast<int>((2 * digits - 1) * kAuditBinsOfDoubling);
+  return static_cast<std::size_t>(1 + (exponent - 1 - kAuditLeastExponent) * kAuditBinsOfDoubling + of_doubling);
+}
+
+// Where such a bin ends, in degrees.
+double end_of_fine_bin(std::size_t bin) noexcept {
+  const int doubling = static_cast<int>(bin) / kAuditBinsOfDoubling,
+            part = static_cast<int>(bin) % kAuditBinsOfDoubling;
+  return std::ldexp(1 + part / static_cast<double>(kAuditBinsOfDoubling), kAuditLeastExponent + doubling);
+}
+
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
 }  // namespace
@@ -43,6 +59,7 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   sum_of_squares += degrees * degrees;
   const auto* const bin = std::upper_bound(kAuditBinEdges.begin(), kAuditBinEdges.end(), degrees);
   ++histogram[static_cast<std::size_t>(bin - kAuditBinEdges.begin())];
+  ++counts[fine_bin(degrees)];
   if (degrees > worst) {
     worst = degrees;
     worst_at = place;
@@ -62,10 +79,21 @@ void MotionError::add(const MotionError& other) noexcept {
   no_normal += other.no_normal;
   unlit += other.unlit;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) histogram[bin] += other.histogram[bin];
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
   if (other.worst > worst) {
     worst = other.worst;
     worst_at = other.worst_at;
   }
+}
+
+double MotionError::percentile(double share) const noexcept {
+  const double wanted = share * static_cast<double>(judged);
+  std::size_t seen = 0;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    seen += counts[bin];
+    if (static_cast<double>(seen) >= wanted) return std::min(end_of_fine_bin(bin), worst);
+  }
+  return worst;
 }
 
 inline namespace internal {
@@ -91,39 +119,26 @@ Status check_samples(const AuditOptions& options) {
   return Success{};
 }
 
-AuthoredOffset authored_offset(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups,
-                               Weighting weighting, std::span<const JudgedOutput> outputs,
-                               const std::function<Vec3d(const JudgedOutput&)>& stored) {
-  const Segment still{&topology, positions, positions, 0, 1, 0};
+AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked) {
   AuthoredOffset result;
+  result.weighting = asked.value_or(authored.detected);
+  result.is_detected = !asked;
+  const WeightingDistance& distance = authored.of(result.weighting);
+  result.vertices = distance.count;
+  result.sum = distance.sum;
+  result.worst = distance.worst;
+  result.worst_at.vertex = distance.worst_at;
+  result.area_mean = authored.of(Weighting::kArea).mean();
+  const WeightingDistance* closest = authored.distances.data();
   for (const WeightingInfo& tried : kWeightings) {
-    const std::vector<Vec3d> normals = all_weighted_normals_at(still, groups, tried.weighting, 0);
-    double sum = 0, worst = 0;
-    std::size_t count = 0, worst_vertex = 0;
-    for (const JudgedOutput& output : outputs) {
-      const Vec3d normal = stored(output);
-      if (normal == Vec3d{} || normals[output.element] == Vec3d{}) continue;
-      const double angle = angle_between(normal, normals[output.element]) * kDegreesPerRadian;
-      ++count;
-      sum += angle;
-      if (angle > worst) {
-        worst = angle;
-        worst_vertex = output.vertex;
-      }
-    }
-    const double mean = count > 0 ? sum / static_cast<double>(count) : 0;
-    if (tried.weighting == weighting) {
-      result.vertices = count;
-      result.sum = sum;
-      result.worst = worst;
-      result.worst_at.vertex = worst_vertex;
-    }
-    if (tried.weighting == kWeightings[0].weighting || mean < result.closest_mean) {
+    const WeightingDistance& of_tried = authored.of(tried.weighting);
+    if (of_tried.mean() < closest->mean()) {
+      closest = &of_tried;
       result.closest = tried.weighting;
-      result.closest_mean = mean;
-      result.closest_worst = worst;
     }
   }
+  result.closest_mean = closest->mean();
+  result.closest_worst = closest->worst;
   return result;
 }
 
@@ -151,6 +166,8 @@ void finish(Audit& result) {
   for (std::size_t s = 0; s < result.subjects.size(); ++s) {
     if (result.subjects[s].error.worst > result.error.worst) result.worst = s;
     result.error.add(result.subjects[s].error);
+    if (s == 0) result.weighting = result.subjects[s].weighting;
+    if (result.weighting != result.subjects[s].weighting) result.weighting = std::nullopt;
   }
   std::stable_partition(result.findings.begin(), result.findings.end(),
                         [](const AuditFinding& finding) { return finding.is_fault(); });

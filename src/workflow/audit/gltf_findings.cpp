@@ -80,6 +80,18 @@ std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShadi
   return notes;
 }
 
+std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts) {
+  std::vector<AuditFinding> notes;
+  const std::size_t targets = shading.set.targets.size();
+  for (const Host& host : hosts) {
+    if (host.most_targets == 0 || targets <= host.most_targets) continue;
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kBeyondHost, shading.mesh));
+    note.count = targets - host.most_targets;
+    note.host = host;
+  }
+  return notes;
+}
+
 std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading, AuditRule rule,
                                            const AuditSubject& subject, const JudgedPart& part,
                                            const Weights& weights) {
@@ -108,7 +120,9 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
   if (!fault || fault->kind == Kind::kUnlit) return fault;
-  if (are_targets_judged && worst_target > kAuditFault) return std::nullopt;  // said of the targets already
+  // What is not more than that is said of the targets already.
+  if (are_targets_judged && worst_target > kAuditFault && subject.error.worst <= worst_target + kAuditFault)
+    return std::nullopt;
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;
   fault->degrees = subject.error.worst;
   fault->worst_at = subject.error.worst_at;

@@ -10,6 +10,7 @@
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
 #include "workflow/audit/measure.h"
+#include "workflow/shading/authored_weighting.h"
 
 namespace chronormal {
 namespace {
@@ -196,10 +197,12 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
-  result.weighting = options.weighting;
+  result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kNlerp);
   if (result.rule == AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
+  if (!options.hosts.empty())
+    return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   const Result<NormalGroups> groups = groups_of(motion, normals, options.weld);
@@ -210,10 +213,19 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
 
   const Topology& topology = motion.topology;
   const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
+  // Where a host computes the normals of keyframes, it does so by area, whatever the program did that made the first.
+  const std::optional<Weighting> asked =
+      result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
+  Weighting weighting = asked.value_or(Weighting::kArea);
   if (!normals.of_keyframes.empty()) {
-    const std::vector<JudgedOutput> all = outputs_of(std::vector<bool>(topology.vertex_count(), true));
-    const auto stored = [&](const JudgedOutput& output) { return stored_normal(normals, 0, output); };
-    result.offsets.push_back(authored_offset(topology, base, groups.value(), result.weighting, all, stored));
+    std::vector<StoredNormal> stored;
+    for (const JudgedOutput& output : outputs_of(std::vector<bool>(topology.vertex_count(), true))) {
+      const Vec3d normal = stored_normal(normals, 0, output);
+      if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
+    }
+    const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), stored);
+    result.offsets.push_back(authored_offset(authored, asked));
+    weighting = result.offsets.back().weighting;
   }
 
   std::size_t done = 0;
@@ -228,9 +240,10 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
       subject.target = segments[0];
       subject.name = motion.keyframes[motion.segments[segments[0]].to].name;
     }
+    subject.weighting = weighting;
     subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const JudgedPart part(topology, groups.value(), result.weighting, outputs_of(moving_vertices(motion, segments)));
+    const JudgedPart part(topology, groups.value(), weighting, outputs_of(moving_vertices(motion, segments)));
     if (part.outputs().empty()) {
       ++result.still;
       for (std::size_t s = 0; s < subject.segments; ++s) progress();
@@ -238,7 +251,7 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
-    measure(source, part, result.rule, progress, subject);
+    measure(source, part, result.rule, progress, subject, [](auto&&...) {});
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

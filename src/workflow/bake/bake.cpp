@@ -20,6 +20,7 @@
 #include "workflow/bake/terms.h"
 #include "workflow/bake/write_mesh.h"
 #include "workflow/bake/write_tracks.h"
+#include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
 
@@ -108,6 +109,12 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
+// The weighting of the right normals. Base normals that are made anew have no author.
+Weighting weighting_of(const GltfShading& shading, const BakeOptions& options) {
+  if (options.weighting) return *options.weighting;
+  return options.recompute_base ? Weighting::kArea : find_authored_weighting(shading).detected;
+}
+
 // The report as far as it follows from the plan.
 void report_plan(const MeshPlan& plan, std::size_t target_count, BakedMesh& report) {
   report.encoding = plan.encoding;
@@ -128,7 +135,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (Status status = check_extras(document, edit, shading.mesh); !status) return status;
   const Result<MeshWeights> weights = read_weights(document, shading);
   if (!weights) return weights.error();
-  const NormalTerms terms(shading, options.weighting);
+  const NormalTerms terms(shading, baked.report.weighting);
   const Result<MeshPlan> planned =
       plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
   if (!planned) return planned.error();
@@ -187,8 +194,9 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   }
   Result<GltfShading> shading = read_gltf_shading(document, index, {options.smooth, options.crease_angle, false});
   if (!shading) return shading.error();
-  if (options.weighting == Weighting::kArea) shading.value().groups.forget_corners();
   if (!any_changes(shading.value())) return std::optional<MeshBake>();
+  baked.report.weighting = weighting_of(shading.value(), options);
+  if (baked.report.weighting == Weighting::kArea) shading.value().groups.forget_corners();
   for (const GltfPrimitive& primitive : mesh.primitives) {
     if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;
   }

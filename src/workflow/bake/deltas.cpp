@@ -145,7 +145,7 @@ TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target) {
   if (!moves(source.shading, target)) return {std::vector<std::vector<float>>(source.shading.parts.size()), 0};
   TargetDeltas deltas = source.plan.is_line[target] ? single_deltas(source, target)
                                                     : deltas_of_term(source, source.terms.linear_by_element(target));
-  deltas.error += source.terms.bound(target);
+  deltas.error += source.terms.fit_error(target);
   return deltas;
 }
 

@@ -131,12 +131,6 @@ Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
     if (!moves(mesh.shading, i)) continue;
     for (std::size_t j = i; j < mesh.use.targets(); ++j) {
       if (!moves(mesh.shading, j) || !mesh.together(i, j) || (i != j && !mesh.terms.overlap(i, j))) continue;
-      if (i != j && mesh.terms.is_fitted()) {
-        return Error{ErrorCode::kUsage, place_of(document, mesh.shading.mesh),
-                     "targets " + std::to_string(i) + " and " + std::to_string(j) +
-                         " move the same normals at once, which only the weighting area can write exactly: "
-                         "use --weighting area, or --encode endpoint"};
-      }
       if (pairs.size() == kMostExtras) {
         return invalid_input(place_of(document, mesh.shading.mesh),
                              "there are more than " + std::to_string(kMostExtras) +

@@ -32,8 +32,7 @@ struct MeshPlan {
 };
 
 /// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
-/// Pure. Errors: kUsage where a fitted weighting is asked for targets that are active together; kInvalidInput where
-/// there would be too many pairs.
+/// Pure. Errors: kInvalidInput where there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
                                          const NormalTerms& terms, const WeightUse& use, bool is_driven,
                                          const BakeOptions& options);

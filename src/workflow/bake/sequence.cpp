@@ -134,7 +134,8 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
   const Result<NormalGroups> groups = groups_of(motion, options);
   if (!groups) return groups.error();
-  const Result<SequenceNormals> made = SequenceNormals::make(motion, groups.value(), options.weighting);
+  const Result<SequenceNormals> made =
+      SequenceNormals::make(motion, groups.value(), options.weighting.value_or(Weighting::kArea));
   if (!made) return made.error();
   const SequenceNormals& normals = made.value();
   SequenceBake report;

@@ -1,23 +1,39 @@
 #include "workflow/bake/terms.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <iterator>
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/transform.h"
 #include "chronormal/normals/weighting.h"
+#include "core/blocks.h"
+#include "normals/weighting/sampled_normal.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-std::vector<float> moved_positions(const BlendSet& set, std::size_t target) {
-  std::vector<float> positions = set.base;
-  const BlendTarget& moved = set.targets[target];
+constexpr std::size_t kBlock = 256;
+constexpr std::size_t kSamples =
+    8;  // of a target from weight 0 to 1: the half and the end are fitted, the rest checked
+
+void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   for (std::size_t n = 0; n < moved.vertices.size(); ++n) {
     for (std::size_t c = 0; c < 3; ++c) positions[3 * std::size_t{moved.vertices[n]} + c] += moved.deltas[3 * n + c];
   }
-  return positions;
+}
+
+// From the base to other positions of its vertices.
+Segment segment_to(const BlendSet& set, const std::vector<float>& positions) {
+  const std::size_t vertices = set.base.size() / 3;
+  return {&set.topology, VectorView<const float>::packed(set.base.data(), vertices),
+          VectorView<const float>::packed(positions.data(), vertices)};
+}
+
+std::vector<std::uint32_t> common(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  std::vector<std::uint32_t> result;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
+  return result;
 }
 
 }  // namespace
@@ -27,39 +43,65 @@ NormalTerms::NormalTerms(const GltfShading& shading, Weighting weighting)
   if (is_fitted()) fit_targets();
 }
 
+Vec3d NormalTerms::sample(const Segment& segment, std::uint32_t element, double t) const {
+  const NormalGroups& groups = shading_.groups;
+  const auto normal_of_face = [&](std::uint32_t face) {
+    Vec3d normal;
+    face_normals_at(segment, t, {face, 1}, {&normal, 1});
+    return normal;
+  };
+  return sample_normal(segment, normal_of_face, groups.corners(element), groups.faces(element), weighting_, t)
+      .with_area_length();
+}
+
+std::vector<Vec3d> NormalTerms::sample_all(const Segment& segment) const {
+  const NormalGroups& groups = shading_.groups;
+  std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
+  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
+    face_normals_at(segment, 1, faces, std::span(of_faces).subspan(faces.first, faces.count));
+  });
+  const auto normal_of_face = [&](std::uint32_t face) { return of_faces[face]; };
+  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+    result[e] =
+        sample_normal(segment, normal_of_face, groups.corners(e), groups.faces(e), weighting_, 1).with_area_length();
+  });
+  return result;
+}
+
 void NormalTerms::fit_targets() {
   const BlendSet& set = shading_.set;
-  const std::size_t vertices = set.base.size() / 3;
   std::vector<bool> is_shown(shading_.groups.size(), false);
   for (const std::uint32_t e : shading_.element_of_vertex) {
     if (e != GltfShading::kNoElement) is_shown[e] = true;
   }
+  base_ = sample_all(segment_to(set, set.base));
   fits_.resize(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) {
     if (set.targets[i].vertices.empty()) continue;
-    const std::vector<float> to = moved_positions(set, i);
-    const Segment segment{&set.topology, VectorView<const float>::packed(set.base.data(), vertices),
-                          VectorView<const float>::packed(to.data(), vertices)};
-    const WeightingFit fit = fit_weighting(segment, shading_.groups, weighting_);
-    if (base_.empty()) {
-      for (const ControlNormals& normals : fit.normals) base_.push_back(normals.n0);
-    }
+    std::vector<float> to = set.base;
+    add_deltas(set.targets[i], to);
+    const Segment segment = segment_to(set, to);
+    Fit& fit = fits_[i];
     // Elements of faces that stand still have terms that are nothing but rounding.
-    std::vector<std::uint32_t>& elements = fits_[i].elements;
-    for (const std::uint32_t face : by_area_.faces(i)) {
-      for (std::size_t c = 0; c < 3; ++c)
-        elements.push_back(shading_.groups.element_of_corner()[3 * std::size_t{face} + c]);
-    }
-    std::sort(elements.begin(), elements.end());
-    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-    for (const std::uint32_t e : elements) {
-      const ControlNormals& n = fit.normals[e];
-      fits_[i].linear.push_back(2.0 * (n.m - n.n0));
-      fits_[i].square.push_back((n.n0 - n.m) + (n.n1 - n.m));
-      if (is_shown[e]) fits_[i].bound = std::fmax(fits_[i].bound, fit.bounds[e]);
-    }
+    fit.elements = by_area_.elements(i);
+    fit.linear.resize(fit.elements.size());
+    fit.square.resize(fit.elements.size());
+    const auto fit_element = [&](std::size_t n, double& error) {
+      const std::uint32_t e = fit.elements[n];
+      const auto at = [&](std::size_t s) { return sample(segment, e, static_cast<double>(s) / kSamples); };
+      const Vec3d base = base_[e], half = at(kSamples / 2), end = at(kSamples);
+      fit.linear[n] = 4.0 * half - 3.0 * base - end;
+      fit.square[n] = 2.0 * (base + end) - 4.0 * half;
+      for (std::size_t s = 1; s < kSamples && is_shown[e]; ++s) {
+        const double t = static_cast<double>(s) / kSamples;
+        const Vec3d right = s == kSamples / 2 ? half : at(s);
+        const Vec3d fitted = base + t * fit.linear[n] + (t * t) * fit.square[n];
+        if (right != Vec3d{}) error = std::fmax(error, angle_between(fitted, right));
+      }
+    };
+    fit.error = parallel_fold<double>(fit.elements.size(), kBlock, fit_element,
+                                      [](double& all, double each) { all = std::fmax(all, each); });
   }
-  if (base_.empty()) base_ = by_area_.base();
 }
 
 BlendTerm NormalTerms::linear(std::size_t i) const {
@@ -70,20 +112,39 @@ BlendTerm NormalTerms::linear(std::size_t i) const {
 }
 
 BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
-  assert(i == j || !is_fitted());
-  if (is_fitted()) return {fits_[i].elements, fits_[i].square, {}};
-  BlendTerm term = by_area_.pair(i, j);
-  term.noise = std::vector<double>();
+  if (!is_fitted()) {
+    BlendTerm term = by_area_.pair(i, j);
+    term.noise = std::vector<double>();
+    return term;
+  }
+  if (i == j) return {fits_[i].elements, fits_[i].square, {}};
+  // What both have at weight 1, beyond what they come to one by one.
+  std::vector<float> to = shading_.set.base;
+  add_deltas(shading_.set.targets[i], to);
+  add_deltas(shading_.set.targets[j], to);
+  const Segment segment = segment_to(shading_.set, to);
+  const NormalTerms::Term linear_i = linear_by_element(i), linear_j = linear_by_element(j);
+  const NormalTerms::Term square_i = pair_by_element(i, i), square_j = pair_by_element(j, j);
+  BlendTerm term{common(fits_[i].elements, fits_[j].elements), {}, {}};
+  term.values.resize(term.elements.size());
+  parallel_each(term.elements.size(), kBlock, [&](std::size_t n) {
+    const std::uint32_t e = term.elements[n];
+    Vec3d value = sample(segment, e, 1) - base_[e];
+    for (const NormalTerms::Term* own : {&linear_i, &linear_j, &square_i, &square_j}) {
+      Vec3d part;
+      if (own->find(e, part)) value = value - part;
+    }
+    term.values[n] = value;
+  });
   return term;
 }
 
 NormalTerms::Term NormalTerms::linear_by_element(std::size_t i) const {
-  return is_fitted() ? Term(fits_[i].elements, fits_[i].linear) : Term(by_area_.linear_by_element(i));
+  return is_fitted() ? Term(linear(i)) : Term(by_area_.linear_by_element(i));
 }
 
 NormalTerms::Term NormalTerms::pair_by_element(std::size_t i, std::size_t j) const {
-  assert(i == j || !is_fitted());
-  return is_fitted() ? Term(fits_[i].elements, fits_[i].square) : Term(by_area_.pair_by_element(i, j));
+  return is_fitted() ? Term(pair(i, j)) : Term(by_area_.pair_by_element(i, j));
 }
 
 bool NormalTerms::Term::find(std::uint32_t element, Vec3d& value) const {
@@ -91,43 +152,22 @@ bool NormalTerms::Term::find(std::uint32_t element, Vec3d& value) const {
     value = (*by_area_)(element);
     return value != Vec3d{};
   }
-  const auto found = std::lower_bound(elements_->begin(), elements_->end(), element);
-  if (found == elements_->end() || *found != element) return false;
-  value = (*values_)[static_cast<std::size_t>(found - elements_->begin())];
+  const auto found = std::lower_bound(fitted_.elements.begin(), fitted_.elements.end(), element);
+  if (found == fitted_.elements.end() || *found != element) return false;
+  value = fitted_.values[static_cast<std::size_t>(found - fitted_.elements.begin())];
   return true;
 }
 
 bool NormalTerms::overlap(std::size_t i, std::size_t j) const {
-  if (!is_fitted()) return by_area_.overlap(i, j);
-  std::vector<std::uint32_t> common;
-  std::set_intersection(fits_[i].elements.begin(), fits_[i].elements.end(), fits_[j].elements.begin(),
-                        fits_[j].elements.end(), std::back_inserter(common));
-  return !common.empty();
-}
-
-std::vector<Vec3d> NormalTerms::at(std::span<const double> weights) const {
-  if (!is_fitted()) return normals_from_positions(shading_, weights);
-  std::vector<Vec3d> normals = base_;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const Fit& fit = fits_[i];
-    for (std::size_t n = 0; weights[i] != 0 && n < fit.elements.size(); ++n) {
-      Vec3d& normal = normals[fit.elements[n]];
-      normal = normal + weights[i] * fit.linear[n] + (weights[i] * weights[i]) * fit.square[n];
-    }
-  }
-  return normals;
+  return is_fitted() ? !common(fits_[i].elements, fits_[j].elements).empty() : by_area_.overlap(i, j);
 }
 
 std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const {
   if (!is_fitted()) return by_area_at(weights);
-  const BlendSet& set = shading_.set;
-  std::vector<double> blended(set.base.size());
-  blend_positions(set, weights, blended);
+  std::vector<double> blended(shading_.set.base.size());
+  blend_positions(shading_.set, weights, blended);
   const std::vector<float> to(blended.begin(), blended.end());
-  const std::size_t vertices = set.base.size() / 3;
-  const Segment segment{&set.topology, VectorView<const float>::packed(set.base.data(), vertices),
-                        VectorView<const float>::packed(to.data(), vertices)};
-  return all_weighted_normals_at(segment, shading_.groups, weighting_, 1);
+  return sample_all(segment_to(shading_.set, to));
 }
 
 ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "normals/blend/blend_terms.h"
@@ -17,18 +18,20 @@
 
 namespace chronormal::inline internal {
 
-/// n(w) of all elements as a quadratic form. By area it is exact, for any targets at once; other weightings are fitted
-/// for one target at a time, and have no term for two.
+/// n(w) of all elements as a quadratic form. By area it is exact. By other weightings n(w) is no polynomial, and the
+/// form is fitted: it has the weighted direction, and the length by area, where one target has the weight 0, 1/2 or 1, and
+/// where two have the weight 1.
 class NormalTerms {
  public:
-  /// The shading must outlive this. Fits all targets where the weighting is not area.
+  /// The shading must outlive this; its groups need no corners where the weighting is area. Fits all targets where it
+  /// is another.
   NormalTerms(const GltfShading& shading, Weighting weighting);
 
   /// n(0) of an element.
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
     return is_fitted() ? base_[element] : by_area_.base_of(element);
   }
-  /// A_i and C_ij, without their noise. i = j where the weighting is fitted
+  /// A_i and C_ij, without their noise.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
   /// The same, element by element.
@@ -41,26 +44,29 @@ class NormalTerms {
   }
   /// Whether there is something between two targets: a face that both move, or for fitted weightings an element.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
-  /// n(w) at some weights.
-  [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const;
-  /// The right normals at some weights from the blended positions, of any length, for fitted weightings too; and
-  /// those by area whatever the weighting.
+  /// The right normals at some weights from the blended positions, with the length by area; and those by area whatever
+  /// the weighting.
   [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
+  [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const { return exact_at(weights); }
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
-  /// A bound in radians of the fits of a target; 0 by area.
-  [[nodiscard]] double bound(std::size_t i) const { return is_fitted() ? fits_[i].bound : 0; }
+  /// How far the fit of a target alone is from the weighted normals that are shown, in radians, at eighths of its
+  /// weight; 0 by area.
+  [[nodiscard]] double fit_error(std::size_t i) const { return is_fitted() ? fits_[i].error : 0; }
 
  private:
   // Of one target: its terms where it moves a face of an element.
   struct Fit {
     std::vector<std::uint32_t> elements;
     std::vector<Vec3d> linear, square;
-    double bound = 0;
+    double error = 0;
   };
   void fit_targets();
+  // The weighted normal of an element at t of a segment, and those of all at its end, with the length by area.
+  [[nodiscard]] Vec3d sample(const Segment& segment, std::uint32_t element, double t) const;
+  [[nodiscard]] std::vector<Vec3d> sample_all(const Segment& segment) const;
 
   const GltfShading& shading_;
   Weighting weighting_;
@@ -78,12 +84,10 @@ class NormalTerms::Term {
  private:
   friend class NormalTerms;
   explicit Term(BlendTerms::Term by_area) : by_area_(std::move(by_area)) {}
-  Term(const std::vector<std::uint32_t>& elements, const std::vector<Vec3d>& values)
-      : elements_(&elements), values_(&values) {}
+  explicit Term(BlendTerm fitted) : fitted_(std::move(fitted)) {}
 
   std::optional<BlendTerms::Term> by_area_;
-  const std::vector<std::uint32_t>* elements_ = nullptr;  // of a fit
-  const std::vector<Vec3d>* values_ = nullptr;
+  BlendTerm fitted_;
 };
 
 /// The control normals of a target alone, from weight 0 to 1.

@@ -392,14 +392,34 @@ TEST(Bake, fitted_weightings_are_within_their_bound_of_the_weighted_normals) {
   EXPECT_GT(test::track_error(baked).worst, 2 * error.worst) << "by area it is another normal";
 }
 
-TEST(Bake, fitted_weightings_of_targets_that_are_active_together_are_refused) {
-  GltfBuilder builder = test::hills_document(2);
-  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
-  BakeOptions options;
-  options.weighting = Weighting::kAngle;
-  EXPECT_NE(test::bake_document(builder, options).error.find("--encode endpoint"), std::string::npos);
-  options.encoding = BakeEncoding::kEndpoint;
-  EXPECT_EQ(test::bake_document(builder, options).error, "");
+TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
+  GltfBuilder builder = test::hills_document(3);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 1, 1, 1});
+  const auto error_at = [&](const Baked& baked, const std::vector<double>& weights) {
+    test::GltfTruth truth(*baked.before, 0);
+    truth.uniform = true;
+    std::vector<float> all(weights.begin(), weights.end());
+    for (const GltfExtraTarget& extra : baked.report.meshes[0].extras)
+      all.push_back(static_cast<float>(extra.weight(weights)));
+    return test::shown_error(truth, *baked.after, 0, {{weights, all}}).worst;
+  };
+  const Baked uniform = test::bake_document(builder, {.weighting = Weighting::kUniform});
+  const Baked area = test::bake_document(builder, {.weighting = Weighting::kArea});
+  ASSERT_EQ(uniform.error, "");
+  EXPECT_EQ(uniform.report.meshes[0].encoding, BakeEncoding::kExact);
+  EXPECT_EQ(uniform.report.meshes[0].extras.size(), 6U);
+  for (const std::vector<double>& weights :
+       {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
+    EXPECT_LT(error_at(uniform, weights), 0.01);
+  // In between and where three are at once it is a fit, and closer than the normals by area.
+  double of_uniform = 0, of_area = 0;
+  for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+    for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {
+      of_uniform += error_at(uniform, weights);
+      of_area += error_at(area, weights);
+    }
+  }
+  EXPECT_LT(of_uniform, 0.5 * of_area);
 }
 
 TEST(Bake, errors_say_what_and_where) {

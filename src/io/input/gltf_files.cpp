@@ -1,0 +1,92 @@
+// The glTF files that inputs stand for. Keyframes and glTF files are told apart by their names alone; a folder whose own
+// files are meshes is a sequence, whatever lies in the folders in it.
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/input.h"
+#include "io/input/formats.h"
+#include "io/input/input_files.h"
+
+namespace chronormal {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds(const std::string& path, Holds kind) {
+  const Format* const format = find_format(file_name_of(path));
+  return format != nullptr && format->holds == kind;
+}
+
+// The glTF files in a folder and in the folders in it; none where its own files are meshes. What cannot be listed is for the
+// one who opens it to say.
+Result<std::vector<std::string>> list_folder(const std::string& folder) {
+  std::error_code code;
+  fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, code);
+  std::vector<std::string> files;
+  std::string own_mesh, own_gltf;
+  while (!code && entries != fs::recursive_directory_iterator{}) {
+    const std::string path = entries->path().string();
+    std::error_code ignored;  // a link to nowhere is no file
+    if (file_name_of(path).starts_with('.')) {
+      entries.disable_recursion_pending();
+    } else if (!fs::is_directory(path, ignored)) {
+      const bool is_own = entries.depth() == 0;
+      if (is_own && holds(path, Holds::kMesh)) own_mesh = path;
+      if (is_own && holds(path, Holds::kGltf)) own_gltf = path;
+      if (holds(path, Holds::kGltf)) files.push_back(path);
+    }
+    entries.increment(code);
+  }
+  if (!own_mesh.empty() && !own_gltf.empty())
+    return Error{ErrorCode::kUsage, folder,
+                 "it has glTF files, which are inputs one by one, and keyframes of a sequence, such as " +
+                     file_name_of(own_gltf) + " and " + file_name_of(own_mesh) + "; use a pattern such as '" +
+                     (fs::path(folder) / "*.glb").string() + "'"};
+  if (!own_mesh.empty()) files.clear();
+  return files;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files;
+  std::string other;
+  for (const std::string& input : inputs) {
+    std::error_code code;
+    const fs::file_status status = fs::status(input, code);
+    const bool is_folder = fs::is_directory(status);
+    const bool is_pattern = !fs::exists(status) && input.find_first_of("*?[") != std::string::npos;
+    std::vector<std::string> found;
+    if (input != "-" && !is_folder && !is_pattern) {
+      found = {input};
+    } else if (is_pattern) {
+      InputOptions pattern;
+      pattern.files = {input};
+      // What matches nothing is for the one who opens it to say.
+      if (Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder); matches)
+        found = std::move(matches).value();
+    } else if (is_folder) {
+      Result<std::vector<std::string>> listed = list_folder(input);
+      if (!listed) return listed.error();
+      found = std::move(listed).value();
+      std::sort(found.begin(), found.end(), stands_before);
+    }
+    const auto first_other =
+        std::find_if(found.begin(), found.end(), [](const std::string& path) { return !holds(path, Holds::kGltf); });
+    if (other.empty() && found.empty()) other = input;
+    if (other.empty() && first_other != found.end()) other = *first_other;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(files),
+                 [](const std::string& path) { return holds(path, Holds::kGltf); });
+  }
+  if (!files.empty() && !other.empty())
+    return Error{ErrorCode::kUsage, other,
+                 "it cannot stand beside " + files.front() +
+                     ": glTF files are inputs one by one, and all other files together are one"};
+  return files;
+}
+
+}  // namespace chronormal

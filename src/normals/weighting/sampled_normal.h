@@ -1,0 +1,46 @@
+/// The weighted normal of one element at one t, and the length that it would have by area: what fits are made of.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/weighting.h"
+#include "core/rounding.h"
+#include "normals/weighting/corner_terms.h"
+
+namespace chronormal::inline internal {
+
+struct SampledNormal {
+  Vec3d normal;
+  double to_area = 0;  ///< the sum of |n| over the corners as a share of the sum of the lengths of their terms
+
+  [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }
+};
+
+/// normal_of_face(f) must give the result of face_normals_at() for a face of the element at this t.
+template <class NormalOfFace>
+[[nodiscard]] SampledNormal sample_normal(const Segment& segment, const NormalOfFace& normal_of_face,
+                                          std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces,
+                                          Weighting weighting, double t) {
+  SampledNormal result;
+  double terms = 0, areas = 0;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const Vec3d n = normal_of_face(faces[c]);
+    if (n == Vec3d{}) continue;
+    const Vec3d term = corner_term(segment, corner_vertices(*segment.topology, corners[c], faces[c]), n, weighting, t);
+    result.normal = result.normal + term;
+    terms += length(term);
+    areas += length(n);
+  }
+  result.normal = without_rounding(result.normal, kCrossError * terms);
+  result.to_area = terms > 0 ? areas / terms : 0;
+  return result;
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
