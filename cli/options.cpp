@@ -105,9 +105,10 @@ int print_or_report(const std::string& text) {
   return printed ? kExitDone : report("", printed.error());
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& names, std::string otherwise) {
+// "; did you mean NAME?", or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(word, names);
-  return nearest.empty() ? otherwise : formatted("; did you mean {}?", nearest);
+  return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
 }
 
 // A word that is no command deserves a better answer than the parser's.
@@ -122,8 +123,10 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
   }
   if (first.empty())
     say("", "name a command: " + list);
+  else if (const std::string nearest = suggestion(first, names); !nearest.empty())
+    say("", formatted("there is no command '{}'{} There are {}", first, nearest, list));
   else
-    say("", formatted("there is no command '{}'{} there are {}", first, suggestion(first, names, ";"), list));
+    say("", formatted("there is no command '{}'; there are {}", first, list));
   say_where_help_is("");
   return false;
 }
@@ -149,7 +152,7 @@ std::optional<Error> find_unknown_option(const Command& command, std::span<char*
     const bool is_long = word.starts_with("--");
     const std::string_view name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
     if (!is_in(names, name))
-      return Error{ErrorCode::kUsage, "", formatted("there is no option '{}'{}", name, suggestion(name, names, ""))};
+      return Error{ErrorCode::kUsage, "", formatted("there is no option '{}'{}", name, suggestion(name, names))};
     if (name == word && is_in(with_value, name)) ++i;
   }
   return std::nullopt;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/nearest.h"
+
 namespace chronormal {
 namespace {
 
@@ -76,38 +78,17 @@ Vec3f kept_direction(const Host& host, const Vec3f& v) noexcept {
   return to_float(host.bits == 32 ? direction : through_unsigned_octahedral(direction, host.bits));
 }
 
-// How many letters have to be put in, left out or replaced to make one word of the other.
-std::size_t distance_between(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
 Error no_such_host(std::string_view name) {
-  constexpr std::size_t kNear = 2, kLongest = 32;
-  std::string names;
-  const Host* nearest = nullptr;
-  std::size_t least = kNear + 1;
+  std::string list;
+  std::vector<std::string> names;
   for (const Host& host : kHosts) {
-    names.append(host.name).append(", ");
-    const std::size_t distance = name.size() > kLongest ? least : distance_between(name, host.name);
-    if (distance < least) {
-      least = distance;
-      nearest = &host;
-    }
+    list.append(host.name).append(", ");
+    names.emplace_back(host.name);
   }
   std::string message = std::string("there is no host '").append(name) + "'";
-  if (nearest != nullptr) message.append("; did you mean ").append(nearest->name).append("?");
-  return Error{ErrorCode::kUsage, "", message.append("; there are ").append(names).append("and all")};
+  const std::string nearest = nearest_name(name, names);
+  message.append(nearest.empty() ? "; there are " : "; did you mean " + nearest + "? There are ");
+  return Error{ErrorCode::kUsage, "", message.append(list).append("and all")};
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(Hosts, an_unknown_name_is_told_all_names_and_the_nearest) {
     ASSERT_FALSE(hosts) << wrong;
     EXPECT_EQ(hosts.error().code, ErrorCode::kUsage);
     EXPECT_EQ(hosts.error().message,
-              "there is no host 'gdot'; did you mean godot?; there are three, babylon, playcanvas, godot, filament, "
+              "there is no host 'gdot'; did you mean godot? There are three, babylon, playcanvas, godot, filament, "
               "bevy, gltfpack, quantize, meshopt, and all");
   }
   for (const char* wrong : {"", ",", "three,", "Three.js 187", "unreal"}) {
