@@ -208,7 +208,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_1) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_player) {
+TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_host) {
   Json json = json_of("a.obj b.obj");
   EXPECT_EQ(json["rule"], "nlerp");
   EXPECT_EQ(json["stored_normals"], true);
@@ -452,7 +452,7 @@ TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
   const float r = std::sqrt(0.5F);
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, r, 0, r};
   // Both corners at vertex 0 and at vertex 2 count alike.
-  for (const std::size_t v : {0, 2}) {
+  for (const std::size_t v : {0U, 2U}) {
     const float x = r, z = 1 + r, length = std::sqrt(x * x + z * z);
     mesh.normals[3 * v] = x / length;
     mesh.normals[3 * v + 2] = z / length;
