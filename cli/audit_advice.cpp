@@ -119,7 +119,8 @@ std::string original_words(const Audited& input) {
   }
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
   if (!all_single && all_fitted)
-    return formatted("what is off is left of a fit of {} normals, and bake comes no nearer", weighting_words(wrong));
+    return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
+                     weighting_words(wrong));
   if (!all_single)
     return baked +
            "positions, normals or weights were changed after that, or --weighting was another; start again from the "

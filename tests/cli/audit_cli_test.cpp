@@ -348,7 +348,12 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
   // Nothing drives the target of a still file: one delta is all, before and after.
-  folder_.write("still.glb", test::hinge().file().glb());
+  test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
+  sheet.targets[0].normals.clear();
+  test::GltfBuilder builder = sheet.file();
+  folder_.write("still.glb", builder.glb());
+  builder.add_track(builder.add_animation("move"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  folder_.write("sheet.glb", builder.glb());
   expect_words(last_line(text_of("still.glb")),
                {"chronormal bake still.glb -o baked.glb makes each target right at weight 1"});
   bake("still.glb -o still_baked.glb -q");
@@ -356,7 +361,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   expect_words(advice, {"was baked before", "where no animation moves them"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
   // One delta where extra targets could be driven.
-  bake("hinge.glb -o endpoint.glb --encode endpoint -q");
+  bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"was baked before", "bake the original with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
