@@ -110,12 +110,17 @@ std::string outcome(const Audited& input) {
 }
 
 std::string original_words(const Audited& input) {
-  bool all_single = true, any_driven = false;
-  for (const AuditSubject* subject : wrong_subjects(input, true)) {
+  bool all_single = true, any_driven = false, all_fitted = true;
+  const std::vector<const AuditSubject*> wrong = wrong_subjects(input, true);
+  for (const AuditSubject* subject : wrong) {
+    all_fitted = all_fitted && subject->weighting != Weighting::kArea;
     all_single = all_single && input.document()->meshes()[*subject->mesh].mark->encoding == BakeEncoding::kEndpoint;
     any_driven = any_driven || is_driven(input, *subject);
   }
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
+  if (!all_single && all_fitted)
+    return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
+                     weighting_words(wrong));
   if (!all_single)
     return baked +
            "positions, normals or weights were changed after that, or --weighting was another; start again from the "

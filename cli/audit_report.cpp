@@ -177,7 +177,7 @@ std::string offset_lines(const Audited& input) {
       ++more;
   }
   if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
-  return text.empty() ? text : "\nStored base normals, whose own offset is no fault:\n" + text;
+  return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_1) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_player) {
+TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_host) {
   Json json = json_of("a.obj b.obj");
   EXPECT_EQ(json["rule"], "nlerp");
   EXPECT_EQ(json["stored_normals"], true);
@@ -348,7 +348,12 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
   // Nothing drives the target of a still file: one delta is all, before and after.
-  folder_.write("still.glb", test::hinge().file().glb());
+  test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
+  sheet.targets[0].normals.clear();
+  test::GltfBuilder builder = sheet.file();
+  folder_.write("still.glb", builder.glb());
+  builder.add_track(builder.add_animation("move"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  folder_.write("sheet.glb", builder.glb());
   expect_words(last_line(text_of("still.glb")),
                {"chronormal bake still.glb -o baked.glb makes each target right at weight 1"});
   bake("still.glb -o still_baked.glb -q");
@@ -356,7 +361,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   expect_words(advice, {"was baked before", "where no animation moves them"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
   // One delta where extra targets could be driven.
-  bake("hinge.glb -o endpoint.glb --encode endpoint -q");
+  bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"was baked before", "bake the original with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
@@ -452,7 +457,7 @@ TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
   const float r = std::sqrt(0.5F);
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, r, 0, r};
   // Both corners at vertex 0 and at vertex 2 count alike.
-  for (const std::size_t v : {0, 2}) {
+  for (const std::size_t v : {0U, 2U}) {
     const float x = r, z = 1 + r, length = std::sqrt(x * x + z * z);
     mesh.normals[3 * v] = x / length;
     mesh.normals[3 * v + 2] = z / length;

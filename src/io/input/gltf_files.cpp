@@ -66,9 +66,9 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
     } else if (is_pattern) {
       InputOptions pattern;
       pattern.files = {input};
-      // What matches nothing is for the one who opens it to say.
-      if (Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder); matches)
-        found = std::move(matches).value();
+      // That it matches nothing is for the one who opens it to say.
+      Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder);
+      found = matches ? std::move(matches).value() : pattern.files;
     } else if (is_folder) {
       Result<std::vector<std::string>> listed = list_folder(input);
       if (!listed) return listed.error();

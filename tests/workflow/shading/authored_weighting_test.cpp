@@ -125,7 +125,9 @@ TEST(AuthoredWeighting, survives_eight_bits_and_normals_that_an_author_bent) {
 
 TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
   for (const std::string weighting : {"area", "angle"}) {
+    // Columns grow in width, so that large quads stand beside small ones.
     ShadedMesh mesh = sheet(weighting);
+    for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.positions[3 * v] *= 0.5F * mesh.positions[3 * v];
     store(weighting, quads_of(mesh), mesh);
     EXPECT_EQ(detected_in(mesh), weighting);
   }
@@ -219,7 +221,7 @@ TEST(AuthoredWeighting, is_what_a_bake_bakes_by_unless_the_base_is_made_anew) {
   const Result<Audit> after = audit(*result, {});
   ASSERT_TRUE(after.ok()) << after.error().text();
   EXPECT_EQ(after.value().weighting, Weighting::kAngle);
-  EXPECT_LT(after.value().error.worst, 0.2);
+  EXPECT_LT(after.value().error.worst, 0.5);
   EXPECT_GT(audit_of(builder).error.worst, 20);
 }
 
