@@ -75,8 +75,8 @@ function part(primitive, from, to) {
   return { ...primitive, indices: primitive.indices.slice(from, to) };
 }
 
-// {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?} as one GLB.
-export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights = null }) {
+// {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?, names?} as one GLB.
+export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights, names }) {
   const document = new Document();
   const buffer = document.createBuffer();
   const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
@@ -87,8 +87,8 @@ export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }],
     primitive.setIndices(accessor(Accessor.Type.SCALAR, indices));
     primitive.setAttribute('POSITION', accessor(Accessor.Type.VEC3, positions));
     if (normals) primitive.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, normals));
-    for (const target of targets) {
-      const morph = document.createPrimitiveTarget();
+    for (const [k, target] of targets.entries()) {
+      const morph = document.createPrimitiveTarget(names?.[k]);
       morph.setAttribute('POSITION', accessor(Accessor.Type.VEC3, target.positions));
       if (normals && target.normals) morph.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, target.normals));
       primitive.addTarget(morph);

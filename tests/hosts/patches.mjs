@@ -42,13 +42,14 @@ export const MOVER_VIEW = viewOf(4 * REACH);
 // The weight that has moved the middle of the square there.
 export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
 
-// A square, half a reach left of the middle, that the last of some targets moves. A track is as writeFile() takes it.
-export function writeMover(path, { targets = 1, ...track }) {
+// A square, half a reach left of the middle, that one of some targets moves, the last where nothing else is said. A track
+// is as writeFile() takes it.
+export function writeMover(path, { targets = 1, moving = targets - 1, names, ...track }) {
   const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
   const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
   const still = () => ({ positions: new Float32Array(12), normals: new Float32Array(12) });
   const all = Array.from({ length: targets }, still);
-  all[targets - 1].positions = Float32Array.from([REACH, 0, 0, REACH, 0, 0, REACH, 0, 0, REACH, 0, 0]);
+  all[moving].positions = Float32Array.from([REACH, 0, 0, REACH, 0, 0, REACH, 0, 0, REACH, 0, 0]);
   const primitives = [{ positions, normals, indices: Uint16Array.from([0, 1, 2, 0, 2, 3]), targets: all }];
-  return writeFile(path, { primitives, tracks: [{ node: 0, ...track }] });
+  return writeFile(path, { primitives, tracks: [{ node: 0, ...track }], names });
 }

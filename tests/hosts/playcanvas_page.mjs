@@ -1,9 +1,9 @@
 // PlayCanvas as a host, in the page: its loader, its animation component, and the normals that its own glTF material
 // computes, which it shows instead of colours when asked to.
 import {
-  ADDRESS_CLAMP_TO_EDGE, AppBase, AppOptions, AnimComponentSystem, Asset, CameraComponentSystem, Color,
-  ContainerHandler, AnimClipHandler, TextureHandler, MaterialHandler, Entity, FILTER_NEAREST, PIXELFORMAT_RGBA32F, RenderComponentSystem,
-  RenderHandler, RenderTarget, SHADERPASS_WORLDNORMAL, Texture, Vec3, createGraphicsDevice,
+  ADDRESS_CLAMP_TO_EDGE, AnimClipHandler, AnimComponentSystem, AppBase, AppOptions, Asset, CameraComponentSystem, Color,
+  ContainerHandler, Entity, FILTER_NEAREST, MaterialHandler, PIXELFORMAT_RGBA32F, RenderComponentSystem, RenderHandler,
+  RenderTarget, SHADERPASS_WORLDNORMAL, Texture, TextureHandler, Vec3, createGraphicsDevice,
 } from 'playcanvas';
 
 let app;
@@ -32,6 +32,7 @@ export async function load(bytes) {
     app.assets.load(asset);
   });
   const entity = asset.resource.instantiateRenderEntity();
+  entity.enabled = false;  // whatever is enabled is drawn
   app.root.addChild(entity);
   return { asset, entity };
 }

@@ -159,9 +159,9 @@ describe('a real host', () => {
   }
 
   // Where a target has moved a square at some times, as weights. A pixel is 0.02.
-  async function weightsInHost(host, track, times, { page, targets = 1 }) {
+  async function weightsInHost(host, track, times, page) {
     const path = join(folder, 'mover.glb');
-    await writeMover(path, { ...track, targets });
+    await writeMover(path, track);
     const middles = await draw(page, 'middlesInHost', host, path, times, MOVER_VIEW, SIZE);
     return middles.map(weightOfMiddle);
   }
@@ -179,7 +179,7 @@ describe('a real host', () => {
     for (const [name, track] of Object.entries(tracks)) {
       const right = splines || name !== 'CUBICSPLINE';
       test(`moves vertices ${right ? 'rightly' : 'wrongly'} by a track that is ${name}: ${host}`, async (context) => {
-        const shown = await weightsInHost(host, track, MOMENTS, browser);
+        const shown = await weightsInHost(host, track, MOMENTS, browser.page);
         const off = farthest(shown, MOMENTS.map((time) => weightsAt(track, time)[0]));
         context.diagnostic(`off by ${off}: ${shown.map((w) => w.toFixed(2))}`);
         assert.ok(right ? off < NEAR : off > 0.1, String(off));
@@ -187,7 +187,7 @@ describe('a real host', () => {
     }
     if (!splines)
       test(`plays a spline wrongly in the way that is known: ${host}`, async () => {
-        const shown = await weightsInHost(host, tracks.CUBICSPLINE, MOMENTS, browser);
+        const shown = await weightsInHost(host, tracks.CUBICSPLINE, MOMENTS, browser.page);
         if (host === 'filament') {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
@@ -198,18 +198,27 @@ describe('a real host', () => {
         }
       });
 
+    // PlayCanvas looks for a target by its name, where it has one: of the same name only the last is found.
+    const mixes = host === 'playcanvas';
+    test(`${mixes ? 'mixes up' : 'tells apart'} targets of the same name: ${host}`, async () => {
+      const track = { interpolation: 'STEP', times: [0, 1], values: [0.75, 0.25, 0.75, 0.25], targets: 2, moving: 0 };
+      const shown = async (names) => (await weightsInHost(host, { ...track, names }, [0.5], browser.page))[0];
+      assert.ok(Math.abs((await shown(['one', 'two'])) - 0.75) < NEAR);
+      assert.equal(Math.abs((await shown(['one', 'one'])) - 0.75) > NEAR, mixes);
+    });
+
     for (const targets of [256, 257, 300]) {
       const shows = targets <= 256 || host !== 'filament';
       test(`${shows ? 'shows' : 'aborts at'} ${targets} targets: ${host}`, async () => {
         const fades = [0, 1].map((w) => Array.from({ length: targets }, (_, k) => (k + 1 < targets ? 0.1 * w : w)));
-        const track = { interpolation: 'LINEAR', times: [0, 1], values: fades.flat() };
-        const weights = (from) => weightsInHost(host, track, [0.25, 0.75], { ...from, targets });
+        const track = { interpolation: 'LINEAR', times: [0, 1], values: fades.flat(), targets };
+        const weights = (page) => weightsInHost(host, track, [0.25, 0.75], page);
         if (shows) {
-          assert.ok(farthest(await weights(browser), [0.25, 0.75]) < NEAR);
+          assert.ok(farthest(await weights(browser.page), [0.25, 0.75]) < NEAR);
           return;
         }
         const lost = await openPage();
-        await assert.rejects(weights(lost), /Aborted|out of bounds/).finally(() => lost.close());
+        await assert.rejects(weights(lost.page), /Aborted|out of bounds/).finally(() => lost.close());
       });
     }
   }
