@@ -38,7 +38,6 @@ HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::
     : part_(part),
       weights_(std::move(weights)),
       size_(size_of(shading)),
-      elsewhere_(part),
       now_(hosts.size(), std::vector<double>(involved.size())),
       last_(hosts.size()),
       errors_(hosts.size()) {
@@ -100,10 +99,11 @@ void HostErrors::add_sample(BlendSource& source, std::size_t segment, double t, 
     const PlacedPart* where = &placed;
     double displaced = 0;
     if (now_[h] != source.now()) {
-      source.place_at(now_[h], elsewhere_.positions);
-      part_.normals(elsewhere_.positions, elsewhere_.normals);
-      where = &elsewhere_;
-      if (size_ > 0) displaced = largest_distance(placed.positions, elsewhere_.positions) / size_;
+      if (!elsewhere_) elsewhere_.emplace(part_);
+      source.place_at(now_[h], elsewhere_->positions);
+      part_.normals(elsewhere_->positions, elsewhere_->normals);
+      where = &*elsewhere_;
+      if (size_ > 0) displaced = largest_distance(placed.positions, elsewhere_->positions) / size_;
     }
     // All hosts that play these weights, those that keep alike once.
     std::vector<const MotionError*> of_kept(kept_.size());

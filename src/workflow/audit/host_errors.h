@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -52,9 +53,9 @@ class HostErrors {
   const JudgedPart& part_;
   std::vector<Weights> weights_;
   std::vector<Kept> kept_;
-  std::vector<std::size_t> kept_by_;  // of each host, in kept_
-  double size_ = 0;                   // of the mesh
-  PlacedPart elsewhere_;              // at weights other than those of the specification
+  std::vector<std::size_t> kept_by_;     // of each host, in kept_
+  double size_ = 0;                      // of the mesh
+  std::optional<PlacedPart> elsewhere_;  // at weights other than those of the specification, once there are any
   bool known_ = false;
   std::vector<double> specified_;         // the weights of the last sample by the specification
   std::vector<std::vector<double>> now_;  // of each host, the weights of the last sample
