@@ -19,8 +19,8 @@ constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
 // Of the tolerance: what straight pieces may leave of it.
 constexpr double kPartOfTracks = 0.25;
 // Poses, as many as these numbers of deltas added up allow.
-constexpr double kSums = 1.2e9;
-constexpr std::size_t kLeastPoses = 32, kMostPoses = 1500;
+constexpr double kSums = 1e9;
+constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
 constexpr std::size_t kFewestSteps = 3, kMostSteps = 16, kFewestMixed = 8, kMostMixed = 96, kPartOfMixed = 4;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
@@ -60,6 +60,24 @@ std::vector<std::uint32_t> judged_vertices(const DeltaSource& source, const std:
   for (std::uint32_t v = 0; v < is_judged.size(); ++v) {
     const std::uint32_t e = shading.element_of_vertex[v];
     if (e != GltfShading::kNoElement && (is_judged[v] || element_moves[e])) result.push_back(v);
+  }
+  return result;
+}
+
+// Which of these each target may turn, as they are numbered there.
+std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
+                                                           const std::vector<VertexVectors>& stored,
+                                                           std::span<const std::uint32_t> vertices) {
+  const GltfShading& shading = source.shading;
+  std::vector<std::vector<std::uint32_t>> result(shading.set.targets.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    std::vector<bool> element_moves(shading.groups.size(), false);
+    if (moves(shading, i))
+      for (const std::uint32_t e : source.terms.elements(i)) element_moves[e] = true;
+    for (std::uint32_t n = 0; n < vertices.size(); ++n) {
+      const bool is_turned = element_moves[shading.element_of_vertex[vertices[n]]];
+      if (is_turned || stored[i].at(vertices[n]) != Vec3f{}) result[i].push_back(n);
+    }
   }
   return result;
 }
@@ -110,7 +128,8 @@ struct Sampling {
 
 std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& weights,
                                std::span<const DrivingTrack> tracks, std::span<const ExtraWeight> extras,
-                               std::span<const Host> hosts, const Sampling& sampling) {
+                               std::span<const Host> hosts, std::span<const std::vector<std::uint32_t>> numbers,
+                               const Sampling& sampling) {
   const std::size_t targets = shading.set.targets.size();
   std::vector<std::size_t> all(hosts.size());
   for (std::size_t h = 0; h < all.size(); ++h) all[h] = h;
@@ -132,14 +151,16 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   }
   const std::vector<std::size_t> changing = changing_targets(shading);
   const std::size_t steps = std::clamp(sampling.most / (changing.size() + 1), kFewestSteps, kMostSteps);
-  PoseSet& still = sets.emplace_back();
-  still.hosts = all;
-  for (const std::vector<double>& pose : weights.poses) still.poses.push_back(with_extras(pose, extras));
-  for (std::vector<double>& pose : alone_poses(changing, targets, extras, steps, sampling.phase))
-    still.poses.push_back(std::move(pose));
+  sets.push_back({PoseSet::Kind::kFile, all, {}});
+  for (const std::vector<double>& pose : weights.poses) sets.back().poses.push_back(with_extras(pose, extras));
+  for (const std::size_t i : changing) {
+    if (!numbers[i].empty())
+      sets.push_back(
+          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
+  }
   const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
-  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras, mixed, sampling.seed)});
-  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed)});
+  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras, mixed, sampling.seed), {}});
+  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
   return sets;
 }
 
@@ -361,9 +382,10 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
     result.pieces[weights.names[t]] = pieces_of(rights, weights.tracks[t], form, vertices, forms[2],
                                                 kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
   }
+  const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, written_tracks(weights, form.weights, result.pieces), form.weights, hosts,
-                     sampling);
+                     numbers, sampling);
   };
   const std::size_t most = enough_poses(shading, forms);
   result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), false);
@@ -404,8 +426,9 @@ ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights
                         options.tolerance.value_or(kHarmlessTolerance));
   const std::size_t most = enough_poses(shading, forms);
   const std::vector<DrivingTrack> tracks = written_tracks(weights, {}, {});
+  const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
-    return pose_sets(shading, weights, tracks, {}, options.hosts, sampling);
+    return pose_sets(shading, weights, tracks, {}, options.hosts, numbers, sampling);
   };
   result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), true);
   result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed}), result.choice_);
