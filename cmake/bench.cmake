@@ -10,7 +10,7 @@ add_executable(chronormal_bench ${bench_sources})
 target_include_directories(chronormal_bench PRIVATE bench src)
 target_compile_definitions(chronormal_bench PRIVATE CHRONORMAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                     "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL)")
-target_link_libraries(chronormal_bench PRIVATE chronormal_io chronormal_flags benchmark::benchmark hwy::hwy
+target_link_libraries(chronormal_bench PRIVATE chronormal_io chronormal_product_flags benchmark::benchmark hwy::hwy
                                                CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json)
 find_package(Eigen3 QUIET NO_MODULE)
 if(TARGET Eigen3::Eigen)

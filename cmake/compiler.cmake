@@ -2,11 +2,19 @@
 #
 #   -ffp-contract=off                   a * b + c stays two roundings: the same bits from every compiler
 #   -fno-math-errno -fno-trapping-math  let sqrt and selects become vector instructions; results do not change
-set(CMAKE_CXX_STANDARD 20)
-set(CMAKE_CXX_STANDARD_REQUIRED ON)
-set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # without NDEBUG: assertions stay on in the builds that have tests
-set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+#
+# A parent project keeps its own build type and flags: what is set for all targets is set where this is the whole project.
+if(PROJECT_IS_TOP_LEVEL)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+  endif()
+  set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # NDEBUG is a matter of the product alone: chronormal_product_flags
+  set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g")
+  set(CMAKE_CXX_STANDARD 20)
+  set(CMAKE_CXX_STANDARD_REQUIRED ON)
+  set(CMAKE_CXX_EXTENSIONS OFF)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+endif()
 
 add_library(chronormal_flags INTERFACE)
 target_compile_options(
@@ -16,9 +24,6 @@ target_compile_options(
 if(CHRONORMAL_WERROR)
   target_compile_options(chronormal_flags INTERFACE -Werror)
 endif()
-if(NOT CHRONORMAL_TESTS AND NOT CHRONORMAL_FUZZ AND CMAKE_BUILD_TYPE STREQUAL "Release")
-  target_compile_definitions(chronormal_flags INTERFACE NDEBUG)
-endif()
 if(CHRONORMAL_SANITIZE)
   target_compile_options(chronormal_flags INTERFACE -fsanitize=${CHRONORMAL_SANITIZE} -fno-sanitize-recover=all
                                                     -fno-omit-frame-pointer)
@@ -26,4 +31,16 @@ if(CHRONORMAL_SANITIZE)
 endif()
 if(CHRONORMAL_FUZZ)
   target_compile_options(chronormal_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# The product as users get it has no assertions in Release, so that this is what tests and benchmarks run. Its assertions
+# are on under sanitizers, in fuzz targets, and in every other build type.
+add_library(chronormal_product_flags INTERFACE)
+target_link_libraries(chronormal_product_flags INTERFACE chronormal_flags)
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CHRONORMAL_FUZZ)
+  target_compile_definitions(chronormal_product_flags INTERFACE NDEBUG)
+endif()
+if(CHRONORMAL_COVERAGE)
+  target_compile_options(chronormal_product_flags INTERFACE -fprofile-instr-generate -fcoverage-mapping)
+  target_link_options(chronormal_product_flags INTERFACE -fprofile-instr-generate)
 endif()

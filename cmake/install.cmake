@@ -1,24 +1,106 @@
-# `cmake --install`: libraries, headers, the program, and what find_package(chronormal) needs.
+# `cmake --install`: what is built of the libraries and the program, headers, and what find_package(chronormal) and
+# pkg-config need. The package has the component `io` where chronormal_io was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/chronormal)
-install(TARGETS chronormal chronormal_io EXPORT chronormalTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS chronormal_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set(config_folder ${PROJECT_BINARY_DIR}/package)
+set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # so that a package may be moved
+
+# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS)
+function(chronormal_install_library target requires libraries)
+  install(TARGETS ${target} EXPORT ${target}Targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT ${target}Targets NAMESPACE chronormal:: DESTINATION ${package_folder})
+  # Static libraries: whoever links them links what they need, so that this is in Requires and not in Requires.private.
+  file(CONFIGURE OUTPUT ${config_folder}/${target}.pc CONTENT
+"prefix=\${pcfiledir}/@prefix_from_pkg_config@
+libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@
+includedir=\${prefix}/@CMAKE_INSTALL_INCLUDEDIR@
+
+Name: @target@
+Description: @PROJECT_DESCRIPTION@
+Version: @PROJECT_VERSION@
+Requires: @requires@
+Cflags: -I\${includedir}
+Libs: -L\${libdir} -l@target@@libraries@
+" @ONLY)
+  install(FILES ${config_folder}/${target}.pc DESTINATION ${pkg_config_folder})
+endfunction()
+
+set(core_requires libhwy)
+if(TBB_FOUND)
+  string(APPEND core_requires " tbb")
+endif()
+chronormal_install_library(chronormal "${core_requires}" "")
+if(CHRONORMAL_IO)
+  chronormal_install_library(chronormal_io "chronormal zlib pugixml draco" " -lmeshoptimizer")
+endif()
+if(CHRONORMAL_C)
+  install(TARGETS chronormal_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/include/chronormal_c.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
+if(CHRONORMAL_PROGRAM)
+  install(TARGETS chronormal_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The program writes its own manual page and completions.
+  set(written ${PROJECT_BINARY_DIR}/share)
+  set(program $<TARGET_FILE:chronormal_cli>)
+  file(MAKE_DIRECTORY ${written})
+  add_custom_command(
+    TARGET chronormal_cli POST_BUILD
+    COMMAND ${program} --manual-page > ${written}/chronormal.1
+    COMMAND ${program} --completions bash > ${written}/chronormal
+    COMMAND ${program} --completions zsh > ${written}/_chronormal
+    COMMAND ${program} --completions fish > ${written}/chronormal.fish
+    VERBATIM)
+  install(FILES ${written}/chronormal.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/chronormal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT chronormalTargets NAMESPACE chronormal:: DESTINATION ${package_folder})
-file(WRITE ${PROJECT_BINARY_DIR}/chronormalConfig.cmake
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+file(CONFIGURE OUTPUT ${config_folder}/chronormalConfig.cmake CONTENT
 "include(CMakeFindDependencyMacro)
-if(${TBB_FOUND})  # whether the library was built over oneTBB
+if(\"@TBB_FOUND@\")  # whether the library was built over oneTBB
   find_dependency(TBB)
 endif()
 find_dependency(hwy)
-find_dependency(ZLIB)
-find_dependency(pugixml)
-find_dependency(meshoptimizer)
-find_dependency(draco)
 include(\${CMAKE_CURRENT_LIST_DIR}/chronormalTargets.cmake)
-")
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/chronormalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/chronormalConfig.cmake ${PROJECT_BINARY_DIR}/chronormalConfigVersion.cmake
+
+# The component io, where it is installed and not something else alone was asked for.
+set(chronormal_io_file \${CMAKE_CURRENT_LIST_DIR}/chronormal_ioTargets.cmake)
+if(EXISTS \${chronormal_io_file} AND (NOT chronormal_FIND_COMPONENTS OR \"io\" IN_LIST chronormal_FIND_COMPONENTS))
+  find_dependency(ZLIB)
+  find_dependency(pugixml)
+  find_dependency(meshoptimizer)
+  find_dependency(draco)
+  include(\${chronormal_io_file})
+  set(chronormal_io_FOUND TRUE)
+endif()
+set(chronormal_core_FOUND TRUE)
+foreach(component \${chronormal_FIND_COMPONENTS})
+  if(chronormal_FIND_REQUIRED_\${component} AND NOT chronormal_\${component}_FOUND)
+    set(chronormal_FOUND FALSE)
+    set(chronormal_NOT_FOUND_MESSAGE \"chronormal has no component \${component} here; there are core and, with CHRONORMAL_IO, io\")
+  endif()
+endforeach()
+" @ONLY)
+write_basic_package_version_file(${config_folder}/chronormalConfigVersion.cmake VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+install(FILES ${config_folder}/chronormalConfig.cmake ${config_folder}/chronormalConfigVersion.cmake
         DESTINATION ${package_folder})
+
+# `cpack` in the build folder makes a Debian package of all of it, which depends on the shared libraries that it uses.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME chronormal)
+set(CPACK_PACKAGE_CONTACT "the authors of chronormal <chronormal@users.noreply.github.com>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libhwy-dev, libtbb-dev, zlib1g-dev, libpugixml-dev, libmeshoptimizer-dev, libdraco-dev")
+include(CPack)

@@ -2,21 +2,26 @@
 # for users and, where tests are built, once more under sanitizers for the tests alone.
 #
 #   chronormal       core, simd, motion, normals, schemes, analysis
-#   chronormal_io    io and workflow
-#   chronormal_cli   the program
+#   chronormal_io    io and workflow                                      (CHRONORMAL_IO)
+#   chronormal_c     the same for C, as a shared library that is only what chronormal_c.h names   (CHRONORMAL_C)
+#   chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
 find_package(hwy REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(pugixml REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(meshoptimizer REQUIRED)
-find_package(draco REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(fmt REQUIRED)
 if(CHRONORMAL_PARALLEL)
   find_package(TBB QUIET)
   if(NOT TBB_FOUND)
     message(STATUS "oneTBB was not found (Debian: libtbb-dev): the build is serial")
   endif()
+endif()
+if(CHRONORMAL_IO)
+  find_package(ZLIB REQUIRED)
+  find_package(pugixml REQUIRED)
+  find_package(nlohmann_json REQUIRED)
+  find_package(meshoptimizer REQUIRED)
+  find_package(draco REQUIRED)
+endif()
+if(CHRONORMAL_PROGRAM)
+  find_package(CLI11 REQUIRED)
+  find_package(fmt REQUIRED)
 endif()
 
 file(GLOB_RECURSE library_sources CONFIGURE_DEPENDS src/core/*.cpp src/simd/*.cpp src/motion/*.cpp src/normals/*.cpp
@@ -30,13 +35,17 @@ set_source_files_properties(src/io/gltf/glb_builder.cpp PROPERTIES COMPILE_DEFIN
 # What the parser of the command line makes of options compiles four times as fast when it is not optimised.
 set_source_files_properties(cli/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
 
+# A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
+set(linkable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
+
 # chronormal_add_product(SUFFIX FLAGS): the three targets with this suffix to their names, compiled with what the
 # interface library FLAGS says.
 function(chronormal_add_product suffix flags)
-  add_library(chronormal${suffix} ${library_sources})
+  add_library(chronormal${suffix} STATIC ${library_sources})
   target_include_directories(chronormal${suffix} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                         $<INSTALL_INTERFACE:include> PRIVATE src)
   target_compile_features(chronormal${suffix} PUBLIC cxx_std_20)
+  set_target_properties(chronormal${suffix} PROPERTIES ${linkable})
   target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}> hwy::hwy)
   # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
   # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
@@ -48,13 +57,20 @@ function(chronormal_add_product suffix flags)
     target_compile_definitions(chronormal${suffix} PRIVATE CHRONORMAL_HAVE_TBB)
   endif()
 
-  add_library(chronormal_io${suffix} ${io_sources})
+  if(NOT CHRONORMAL_IO)
+    return()
+  endif()
+  add_library(chronormal_io${suffix} STATIC ${io_sources})
+  set_target_properties(chronormal_io${suffix} PROPERTIES ${linkable})
   target_include_directories(chronormal_io${suffix} PRIVATE src)
   target_link_libraries(chronormal_io${suffix} PUBLIC chronormal${suffix}
                                                PRIVATE $<BUILD_INTERFACE:${flags}> ZLIB::ZLIB pugixml::pugixml
                                                        $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
                                                        meshoptimizer::meshoptimizer draco::draco)
 
+  if(NOT CHRONORMAL_PROGRAM)
+    return()
+  endif()
   add_executable(chronormal_cli${suffix} ${cli_sources})
   set_target_properties(chronormal_cli${suffix} PROPERTIES OUTPUT_NAME chronormal${suffix})
   target_include_directories(chronormal_cli${suffix} PRIVATE . src)
@@ -63,7 +79,26 @@ function(chronormal_add_product suffix flags)
                                                         nlohmann_json::nlohmann_json)
 endfunction()
 
-chronormal_add_product("" chronormal_flags)
+chronormal_add_product("" chronormal_product_flags)
+# The same names in this build tree as in a package.
+add_library(chronormal::chronormal ALIAS chronormal)
+if(CHRONORMAL_IO)
+  add_library(chronormal::chronormal_io ALIAS chronormal_io)
+endif()
+if(CHRONORMAL_C)
+  set(symbols ${PROJECT_SOURCE_DIR}/capi/chronormal_c.map)
+  add_library(chronormal_c SHARED capi/chronormal_c.cpp)
+  set_target_properties(chronormal_c PROPERTIES ${linkable} VERSION ${PROJECT_VERSION} SOVERSION 0 LINK_DEPENDS ${symbols})
+  target_include_directories(chronormal_c PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                 $<INSTALL_INTERFACE:include>)
+  target_compile_definitions(chronormal_c PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(chronormal_c PRIVATE $<BUILD_INTERFACE:chronormal_io> $<BUILD_INTERFACE:chronormal_product_flags>)
+  target_link_options(chronormal_c PRIVATE -Wl,--version-script=${symbols} -Wl,--no-undefined)
+  add_library(chronormal::chronormal_c ALIAS chronormal_c)
+endif()
+if(CHRONORMAL_COVERAGE)  # static libraries carry no link options of their own
+  target_link_options(chronormal INTERFACE -fprofile-instr-generate)
+endif()
 
 if(CHRONORMAL_FUZZ)
   # What is fuzzed are the readers, which call no kernels; those take a long time to compile under sanitizers.

@@ -15,6 +15,8 @@
 
 #include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
+#include "chronormal/normals/element_curves.h"   // the normals of a segment for every face, vertex or corner
+#include "chronormal/normals/elements.h"         // faces, vertices, corners, and who shares a normal
 #include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/normal_groups.h"    // which corners share a normal, and the sums of those that do

@@ -81,7 +81,7 @@ std::vector<double> random_blend_weights(const BlendWeightOptions& options) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t row = 0; row < options.rows; ++row) {
     for (std::size_t i = 0; i < active; ++i) {
-      std::swap(order[i], order[i + random() % (targets - i)]);
+      std::swap(order[i], order[i + static_cast<std::size_t>(random() % (targets - i))]);
       const double share = static_cast<double>(random() >> 11U) * 0x1p-53;
       weights[row * targets + order[i]] = options.low + share * (options.high - options.low);
     }

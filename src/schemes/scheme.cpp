@@ -60,7 +60,7 @@ Error unknown_scheme(std::string_view name) {
   return {ErrorCode::kUsage, "", std::move(message)};
 }
 
-Error wrong_parameter(std::string_view name, std::string_view what, std::size_t smallest, std::size_t largest) {
+Error wrong_parameter(std::string_view name, std::string_view what, std::uint64_t smallest, std::uint64_t largest) {
   return {ErrorCode::kUsage, "",
           "scheme '" + std::string(name) + "': " + std::string(what) + " must be a whole number from " +
               std::to_string(smallest) + " to " + std::to_string(largest)};

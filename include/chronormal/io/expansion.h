@@ -11,13 +11,20 @@
 #ifndef CHRONORMAL_IO_EXPANSION_H_
 #define CHRONORMAL_IO_EXPANSION_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "chronormal/core/result.h"
 
 namespace chronormal {
+
+/// So many bytes, or all that the machine can address where that is less: its addresses may have 32 bits.
+[[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
+  return static_cast<std::size_t>(std::min<std::uint64_t>(bytes, std::numeric_limits<std::size_t>::max()));
+}
 
 class Expansion {
  public:

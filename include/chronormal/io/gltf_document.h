@@ -172,7 +172,7 @@ struct GltfPart {
 struct GltfOptions {
   bool allow_external = false;  ///< read buffers from files outside the folder of the asset
   /// The most memory that the arrays of one primitive may take: a small file can ask for much.
-  std::size_t most_bytes = std::size_t{4} << 30;
+  std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
   /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
   FileResolver resolve = {};

@@ -39,35 +39,14 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 
 namespace chronormal {
-
-enum class ElementKind { kFaces, kVertices, kCorners };
-
-/// faces, vertices, corners
-[[nodiscard]] std::string_view element_kind_name(ElementKind kind) noexcept;
-
-/// Finds a kind by its name. Errors: kUsage, with all names.
-[[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
-
-/// Which normals. Corners share theirs across smooth edges; which edges are hard comes from one of three sources: the
-/// crease angle, or else what a file says (Input in io/input.h), which the caller keeps alive.
-struct ElementOptions {
-  ElementKind kind = ElementKind::kFaces;
-  bool weld = true;           ///< vertices at one point in all keyframes are one, so that seams do not show
-  double crease_angle = 180;  ///< degrees; corners: edges that are sharper in keyframe 0 are hard
-  std::span<const std::uint32_t> group_of_face = {};  ///< smoothing groups, where not empty
-  VectorView<const float> normal_of_corner = {};      ///< split normals, where not empty
-};
-
-/// The groups of corners that vertices or corners of a motion stand for. Errors: kUsage for a crease angle outside
-/// [0, 180]; kInvalidInput where there is not one smoothing group for each face, or one finite normal for each corner.
-/// The motion may stand still: a keyframe without segments. Preconditions: it is valid else, and the kind is not faces
-[[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
 
 enum class NormalLength {
   kUnit,  ///< 1
@@ -146,7 +125,7 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 
 /// The most bytes that the arrays of one .npy or .npz file may have: they are in memory until the file is written,
 /// those of .npz twice.
-inline constexpr std::size_t kMostSampleBytes = std::size_t{4} << 30;
+inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 /// Moments in the order of the output. One list at most; where both are empty, the mesh stands still.
 struct Moments {

@@ -58,7 +58,7 @@ class ChunkReader {
       return error(at, "the chunk " + scan::quoted(chunk.tag) + " declares " + std::to_string(size) +
                            " bytes, but the file or group has only " + std::to_string(end - chunk.begin) + " more");
     chunk.end = chunk.begin + static_cast<std::size_t>(size);
-    const std::size_t filled = (alignment - size % alignment) % alignment;
+    const auto filled = static_cast<std::size_t>((alignment - size % alignment) % alignment);
     chunk.next = chunk.end + std::min(filled, end - chunk.end);
     return Success{};
   }

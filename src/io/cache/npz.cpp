@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/io/expansion.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 #include "io/bytes/zip.h"
@@ -236,7 +237,7 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_header("<f4", shape)) {
   std::uint64_t count = 1;
   for (const std::uint64_t length : shape) count *= length;
-  bytes_.reserve(bytes_.size() + sizeof(float) * count);
+  bytes_.reserve(addressable(bytes_.size() + sizeof(float) * count));
 }
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values)

@@ -83,14 +83,14 @@ Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
   add_word(head, kJson);
   add_frame(std::move(head));
   result.pieces.insert(result.pieces.end(), json.begin(), json.end());
-  add_frame(std::string(json_padding, ' '));
+  add_frame(std::string(static_cast<std::size_t>(json_padding), ' '));
   if (bin) {
     std::string bin_head;
     add_word(bin_head, bin_size + bin_padding);
     add_word(bin_head, kBin);
     add_frame(std::move(bin_head));
     result.pieces.insert(result.pieces.end(), bin->begin(), bin->end());
-    add_frame(std::string(bin_padding, '\0'));
+    add_frame(std::string(static_cast<std::size_t>(bin_padding), '\0'));
   }
   result.pieces.push_back(rest);
   return result;

@@ -7,12 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "chronormal/io/expansion.h"
 #include "io/gltf/gltf_model_parser.h"
 
 namespace chronormal::inline internal::gltf {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 53;  // what a JSON number holds exactly
+constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // what a JSON number holds exactly
 
 constexpr std::array<std::string_view, 3> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_draco_mesh_compression"};

@@ -17,11 +17,13 @@
 #define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 
@@ -33,7 +35,7 @@ struct GltfMotionOptions {
   /// The largest distance between a cut cubic spline and the true one, in parts of the diagonal of the bounding box.
   double curve_tolerance = 1e-5;
   /// The most memory that keyframes may take, in bytes: a small file can ask for much.
-  std::size_t most_bytes = std::size_t{4} << 30;
+  std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
 };
 
 struct GltfMotion {

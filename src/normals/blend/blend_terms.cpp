@@ -44,7 +44,7 @@ class FacesOfVertices {
     for (const std::uint32_t v : vertices) count += offsets_[v + std::size_t{1}] - offsets_[v];
     result.reserve(count);
     for (const std::uint32_t v : vertices)
-      result.insert(result.end(), faces_.begin() + offsets_[v], faces_.begin() + offsets_[v + std::size_t{1}]);
+      result.insert(result.end(), faces_.data() + offsets_[v], faces_.data() + offsets_[v + std::size_t{1}]);
     make_set(result);
     result.shrink_to_fit();
     return result;

@@ -133,8 +133,8 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
     if (rule == AuditRule::kFlat) return a == b;
     if (!stored) return true;
     return std::all_of(normals.of_keyframes.begin(), normals.of_keyframes.end(), [&](const std::vector<float>& values) {
-      return std::equal(values.begin() + 3 * std::ptrdiff_t{a}, values.begin() + 3 * std::ptrdiff_t{a} + 3,
-                        values.begin() + 3 * std::ptrdiff_t{b});
+      const float* first = values.data() + 3 * std::size_t{a};
+      return std::equal(first, first + 3, values.data() + 3 * std::size_t{b});
     });
   };
   std::vector<JudgedOutput> outputs;

@@ -1,4 +1,4 @@
-#include "chronormal/workflow/sample.h"
+#include "chronormal/normals/elements.h"
 
 #include <array>
 #include <cassert>

@@ -1,0 +1,364 @@
+// The C interface: each function checks what C cannot express, calls its counterpart of the library, and turns errors and
+// exceptions into a status with a message.
+#include "chronormal_c.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/chronormal.h"
+
+namespace {
+
+using namespace chronormal;
+
+thread_local std::string last_message;
+
+chronormal_status fail(const Error& error) noexcept {
+  try {
+    last_message = error.text();
+  } catch (...) {
+    last_message.clear();
+  }
+  return static_cast<chronormal_status>(error.code);
+}
+
+chronormal_status misuse(const char* place, const char* message) noexcept {
+  try {
+    return fail(Error{ErrorCode::kUsage, place, message});
+  } catch (...) {
+    return CHRONORMAL_USAGE;
+  }
+}
+
+// Calls what may throw.
+template <class Body>
+chronormal_status guarded(const Body& body) noexcept {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return fail(Error{ErrorCode::kFailed, "", "there is not enough memory"});
+  } catch (const std::exception& e) {
+    return fail(Error{ErrorCode::kFailed, "", e.what()});
+  } catch (...) {
+    return fail(Error{ErrorCode::kFailed, "", "an unknown exception"});
+  }
+}
+
+double angle_in_degrees(const Vec3d& right, const Vec3d& shown) noexcept {
+  const bool is_right = right != Vec3d{}, is_shown = is_finite(shown) && shown != Vec3d{};
+  if (is_right != is_shown) return 180;
+  return is_right ? angle_between(right, shown) * kDegreesPerRadian : 0;
+}
+
+constexpr std::size_t kPacked = 3 * sizeof(float);
+
+// Errors: kUsage for no memory, or a stride that is no multiple of 4.
+template <class T>
+Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, const char* place) {
+  if (count == 0) return VectorView<T>{};
+  if (data == nullptr) return Error{ErrorCode::kUsage, place, "the pointer is NULL"};
+  if (stride == 0) stride = kPacked;
+  if (stride % sizeof(float) != 0) return Error{ErrorCode::kUsage, place, "the stride is not a multiple of 4 bytes"};
+  return VectorView<T>{data, data + 1, data + 2, count, stride / sizeof(float)};
+}
+
+Result<VectorView<const float>> view_of(const chronormal_vectors& vectors, std::size_t count, const char* place) {
+  return view_of(vectors.data, vectors.stride, count, place);
+}
+
+Result<VectorView<float>> view_of(const chronormal_result& result, std::size_t count) {
+  return view_of(result.data, result.stride, count, "normals");
+}
+
+Result<Topology> topology_of(const chronormal_mesh* mesh) {
+  if (mesh == nullptr) return Error{ErrorCode::kUsage, "mesh", "the pointer is NULL"};
+  if (mesh->face_count == 0) return invalid_input("mesh", "there are no faces");
+  if (mesh->corners == nullptr) return Error{ErrorCode::kUsage, "mesh.corners", "the pointer is NULL"};
+  if (mesh->offsets == nullptr) {
+    if (mesh->face_count > std::numeric_limits<std::size_t>::max() / (3 * sizeof(std::uint32_t)))
+      return invalid_input("mesh.face_count", "there are more faces than memory can hold");
+    return Topology::triangles(mesh->vertex_count, {mesh->corners, mesh->corners + 3 * mesh->face_count});
+  }
+  const std::span<const std::uint32_t> offsets(mesh->offsets, mesh->face_count + 1);
+  return Topology::polygons(mesh->vertex_count, {offsets.begin(), offsets.end()},
+                            {mesh->corners, mesh->corners + offsets.back()});
+}
+
+// Errors: kUsage with the name of the field.
+Result<ElementCurvesOptions> options_of(const chronormal_options* given) {
+  ElementCurvesOptions options;
+  if (given == nullptr) return options;
+  if (given->size < sizeof(chronormal_options)) {
+    return Error{ErrorCode::kUsage, "options.size",
+                 "it is not sizeof(chronormal_options); chronormal_options_init() sets it"};
+  }
+  if (given->elements < CHRONORMAL_FACES || given->elements > CHRONORMAL_CORNERS)
+    return Error{ErrorCode::kUsage, "options.elements", "it must be faces (0), vertices (1) or corners (2)"};
+  if (!std::isfinite(given->tolerance) || given->tolerance <= 0)
+    return Error{ErrorCode::kUsage, "options.tolerance", "it must be a positive number of radians"};
+  if (given->weighting != nullptr) {
+    const Result<Weighting> weighting = make_weighting(given->weighting);
+    if (!weighting) return weighting.error();
+    options.weighting = weighting.value();
+  }
+  options.elements.kind = static_cast<ElementKind>(given->elements);
+  options.elements.weld = given->separate == 0;
+  options.elements.crease_angle = given->crease_angle;
+  options.tolerance = given->tolerance;
+  options.threads = given->all_threads != 0 ? Threads::kAll : Threads::kOne;
+  return options;
+}
+
+}  // namespace
+
+struct chronormal_curves {
+  ElementCurves curves;
+  Threads threads;
+  std::vector<float> exact;  // (size, 3), of chronormal_curves_errors()
+};
+
+struct chronormal_blend {
+  BlendNormals normals;
+  std::vector<std::uint32_t> element_of_output;  // empty where outputs are elements
+  std::vector<float> scratch;                    // (elements, 3), where they are not
+  std::size_t targets;
+  Threads threads;
+};
+
+struct chronormal_motion {
+  Input input;
+  const Motion* motion;
+  NormalSampler sampler;
+};
+
+const char* chronormal_version(void) { return CHRONORMAL_VERSION; }
+
+const char* chronormal_last_message(void) { return last_message.c_str(); }
+
+void chronormal_options_init(chronormal_options* options) {
+  if (options != nullptr)
+    *options = {sizeof(chronormal_options), CHRONORMAL_VERTICES, 0, 180, nullptr, kExactTolerance, 0};
+}
+
+chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from, chronormal_vectors to,
+                                           const chronormal_options* options, chronormal_curves** result) {
+  if (result == nullptr) return misuse("result", "the pointer is NULL");
+  return guarded([&] {
+    const Result<ElementCurvesOptions> chosen = options_of(options);
+    if (!chosen) return fail(chosen.error());
+    Result<Topology> topology = topology_of(mesh);
+    if (!topology) return fail(topology.error());
+    const auto first = view_of(from, mesh->vertex_count, "from"), last = view_of(to, mesh->vertex_count, "to");
+    if (!first) return fail(first.error());
+    if (!last) return fail(last.error());
+    Result<ElementCurves> curves =
+        ElementCurves::make(std::move(topology).value(), first.value(), last.value(), chosen.value());
+    if (!curves) return fail(curves.error());
+    *result = new chronormal_curves{std::move(curves).value(), chosen.value().threads, {}};
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_vectors from, chronormal_vectors to) {
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  return guarded([&] {
+    const std::size_t vertices = curves->curves.topology().vertex_count();
+    const auto first = view_of(from, vertices, "from"), last = view_of(to, vertices, "to");
+    if (!first) return fail(first.error());
+    if (!last) return fail(last.error());
+    const Status status = curves->curves.next(first.value(), last.value());
+    return status ? CHRONORMAL_DONE : fail(status.error());
+  });
+}
+
+size_t chronormal_curves_size(const chronormal_curves* curves) { return curves != nullptr ? curves->curves.size() : 0; }
+
+size_t chronormal_curves_bytes(const chronormal_curves* curves) {
+  return curves != nullptr ? curves->curves.curves().bytes() : 0;
+}
+
+chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t, chronormal_result normals,
+                                                 size_t* zeros) {
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  return guarded([&] {
+    const auto view = view_of(normals, curves->curves.size());
+    if (!view) return fail(view.error());
+    const std::size_t count = curves->curves.unit_normals(t, view.value(), curves->threads);
+    if (zeros != nullptr) *zeros = count;
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t, chronormal_vectors normals,
+                                           float* degrees) {
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  return guarded([&] {
+    const std::size_t size = curves->curves.size();
+    const auto view = view_of(normals, size, "normals");
+    if (!view) return fail(view.error());
+    if (degrees == nullptr && size > 0) return misuse("degrees", "the pointer is NULL");
+    curves->exact.resize(3 * size);
+    const auto exact = VectorView<float>::packed(curves->exact.data(), size);
+    curves->curves.unit_normals(t, exact, curves->threads);
+    for (std::size_t i = 0; i < size; ++i) {
+      degrees[i] = static_cast<float>(angle_in_degrees(to_double(exact[i]), to_double(view.value()[i])));
+    }
+    return CHRONORMAL_DONE;
+  });
+}
+
+void chronormal_curves_destroy(chronormal_curves* curves) { delete curves; }
+
+chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronormal_vectors base,
+                                          const chronormal_target* targets, size_t target_count,
+                                          const chronormal_options* options, chronormal_blend** result) {
+  if (result == nullptr) return misuse("result", "the pointer is NULL");
+  if (targets == nullptr && target_count > 0) return misuse("targets", "the pointer is NULL");
+  return guarded([&] {
+    const Result<ElementCurvesOptions> chosen = options_of(options);
+    if (!chosen) return fail(chosen.error());
+    if (chosen.value().weighting != Weighting::kArea)
+      return misuse("options.weighting", "blend shapes have area alone");
+    if (chosen.value().tolerance != kExactTolerance) return misuse("options.tolerance", "blend shapes have 1e-6 alone");
+    Result<Topology> topology = topology_of(mesh);
+    if (!topology) return fail(topology.error());
+    const auto packed = [](VectorView<const float> view) {
+      std::vector<float> values(3 * view.count);
+      for (std::size_t i = 0; i < view.count; ++i) VectorView<float>::packed(values.data(), view.count).set(i, view[i]);
+      return values;
+    };
+    const auto base_view = view_of(base, mesh->vertex_count, "base");
+    if (!base_view) return fail(base_view.error());
+    BlendSet set{std::move(topology).value(), packed(base_view.value()), {}};
+    for (std::size_t k = 0; k < target_count; ++k) {
+      const chronormal_target& target = targets[k];
+      if (target.vertices == nullptr && target.count != mesh->vertex_count)
+        return misuse("targets", "a target without vertices must have a delta for every vertex");
+      const auto deltas = view_of(target.deltas, target.count, "targets");
+      if (!deltas) return fail(deltas.error());
+      std::vector<float> values = packed(deltas.value());
+      set.targets.push_back(
+          target.vertices == nullptr
+              ? BlendTarget::from_dense(values)
+              : BlendTarget{"", {target.vertices, target.vertices + target.count}, std::move(values)});
+    }
+    if (const Status status = validate(set); !status) return fail(status.error());
+
+    const Threads threads = chosen.value().threads;
+    if (chosen.value().elements.kind == ElementKind::kFaces) {
+      *result = new chronormal_blend{BlendNormals::of_faces(std::move(set)), {}, {}, target_count, threads};
+      return CHRONORMAL_DONE;
+    }
+    Motion still;  // who shares a normal is decided in the base, as the targets move vertices at one point alike or not
+    still.topology = set.topology;
+    still.keyframes = {{set.base, 0, "base"}};
+    for (const BlendTarget& target : set.targets) {
+      std::vector<float> moved = set.base;
+      for (std::size_t n = 0; n < target.vertices.size(); ++n)
+        for (std::size_t c = 0; c < 3; ++c) moved[3 * target.vertices[n] + c] += target.deltas[3 * n + c];
+      still.keyframes.push_back({std::move(moved), 1, ""});
+    }
+    still.connect_as_targets();
+    Result<NormalGroups> groups = make_groups(still, chosen.value().elements);
+    if (!groups) return fail(groups.error());
+    const auto outputs = groups.value().element_of_output();
+    auto blend =
+        std::make_unique<chronormal_blend>(chronormal_blend{BlendNormals::of_groups(std::move(set), groups.value()),
+                                                            {outputs.begin(), outputs.end()},
+                                                            {},
+                                                            target_count,
+                                                            threads});
+    blend->scratch.resize(3 * blend->normals.size());
+    *result = blend.release();
+    return CHRONORMAL_DONE;
+  });
+}
+
+size_t chronormal_blend_size(const chronormal_blend* blend) {
+  if (blend == nullptr) return 0;
+  return blend->element_of_output.empty() ? blend->normals.size() : blend->element_of_output.size();
+}
+
+chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
+                                                chronormal_result normals, size_t* zeros) {
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
+  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL");
+  return guarded([&] {
+    const std::size_t size = chronormal_blend_size(blend);
+    const auto view = view_of(normals, size);
+    if (!view) return fail(view.error());
+    const std::span<const double> given(weights, blend->targets);
+    const bool shares = !blend->element_of_output.empty();
+    const auto elements = VectorView<float>::packed(blend->scratch.data(), shares ? blend->normals.size() : 0);
+    blend->normals.unit_normals(given, shares ? elements : view.value(), blend->threads);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (shares) view.value().set(i, elements[blend->element_of_output[i]]);
+      if (view.value()[i] == Vec3f{}) ++count;
+    }
+    if (zeros != nullptr) *zeros = count;
+    return CHRONORMAL_DONE;
+  });
+}
+
+void chronormal_blend_destroy(chronormal_blend* blend) { delete blend; }
+
+chronormal_status chronormal_motion_read(const char* const* files, size_t file_count, const chronormal_options* options,
+                                         chronormal_motion** result) {
+  if (result == nullptr) return misuse("result", "the pointer is NULL");
+  if (files == nullptr || std::find(files, files + file_count, nullptr) != files + file_count)
+    return misuse("files", "the pointer is NULL");
+  return guarded([&] {
+    const Result<ElementCurvesOptions> chosen = options_of(options);
+    if (!chosen) return fail(chosen.error());
+    InputOptions reading;
+    reading.files.assign(files, files + file_count);
+    Result<Input> input = open_input(reading);
+    if (!input) return fail(input.error());
+    const Result<const Motion*> motion = input.value().motion();
+    if (!motion) return fail(motion.error());
+    SampleOptions sampling;
+    sampling.elements = chosen.value().elements;
+    sampling.weighting = chosen.value().weighting;
+    Result<NormalSampler> sampler = NormalSampler::make(*motion.value(), sampling);
+    if (!sampler) return fail(sampler.error());
+    *result = new chronormal_motion{std::move(input).value(), motion.value(), std::move(sampler).value()};
+    return CHRONORMAL_DONE;
+  });
+}
+
+size_t chronormal_motion_size(const chronormal_motion* motion) {
+  return motion != nullptr ? motion->sampler.output_count() : 0;
+}
+
+void chronormal_motion_times(const chronormal_motion* motion, double* first, double* last) {
+  const bool runs =
+      motion != nullptr && motion->motion->kind != MotionKind::kTargets && !motion->motion->keyframes.empty();
+  if (first != nullptr) *first = runs ? motion->motion->keyframes.front().time : 0;
+  if (last != nullptr) *last = runs ? motion->motion->keyframes.back().time : 0;
+}
+
+chronormal_status chronormal_motion_unit_normals(chronormal_motion* motion, double time, chronormal_result normals) {
+  if (motion == nullptr) return misuse("motion", "the pointer is NULL");
+  return guarded([&] {
+    const std::size_t size = motion->sampler.output_count();
+    const auto view = view_of(normals, size);
+    if (!view) return fail(view.error());
+    const Result<Pose> pose = motion->sampler.at_time(time);
+    if (!pose) return fail(pose.error());
+    const std::vector<float> values = motion->sampler.normals_of_outputs(pose.value());
+    for (std::size_t i = 0; i < size; ++i) view.value().set(i, VectorView<const float>::packed(values.data(), size)[i]);
+    return CHRONORMAL_DONE;
+  });
+}
+
+void chronormal_motion_destroy(chronormal_motion* motion) { delete motion; }

@@ -1,0 +1,180 @@
+/* The C interface as an engine in C99 uses it: normals against cross products that are computed here, in double, and what
+ * it says of arguments that are wrong. Ends with 1 at the first thing that is not as it should be. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "chronormal_c.h"
+
+#define EXPECT(condition)                                                               \
+  do {                                                                                  \
+    if (!(condition)) {                                                                 \
+      fprintf(stderr, "line %d: %s (%s)\n", __LINE__, #condition, chronormal_last_message()); \
+      return 1;                                                                         \
+    }                                                                                   \
+  } while (0)
+
+/* A vertex as an engine has it: its position is not alone. */
+typedef struct vertex {
+  float position[3];
+  float colour[4];
+} vertex;
+
+/* A tent of four faces over a square, whose tip moves sideways while the square is bent. */
+static const uint32_t kCorners[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+static const vertex kFrom[5] = {{{0, 0, 0}, {0}}, {{2, 0, 0}, {0}}, {{2, 2, 0}, {0}}, {{0, 2, 0}, {0}}, {{1, 1, 1}, {0}}};
+static const vertex kTo[5] = {{{0, 0, 1}, {0}}, {{2, 0, -1}, {0}}, {{2, 2, 1}, {0}}, {{0, 2, -1}, {0}}, {{3, 1, 2}, {0}}};
+
+static double at(int v, int c, double t) { return (1 - t) * kFrom[v].position[c] + t * kTo[v].position[c]; }
+
+/* Twice the vector area of a face at t. */
+static void add_face(int face, double t, double n[3]) {
+  double e[3], f[3];
+  for (int c = 0; c < 3; ++c) {
+    e[c] = at((int)kCorners[3 * face + 1], c, t) - at((int)kCorners[3 * face], c, t);
+    f[c] = at((int)kCorners[3 * face + 2], c, t) - at((int)kCorners[3 * face], c, t);
+  }
+  for (int c = 0; c < 3; ++c) n[c] += e[(c + 1) % 3] * f[(c + 2) % 3] - e[(c + 2) % 3] * f[(c + 1) % 3];
+}
+
+/* The normal that element i of a kind should have. */
+static void truth(int elements, int i, double t, double n[3]) {
+  n[0] = n[1] = n[2] = 0;
+  for (int face = 0; face < 4; ++face) {
+    int counts = elements == CHRONORMAL_FACES ? face == i : 0;
+    for (int corner = 0; corner < 3; ++corner)
+      if (elements != CHRONORMAL_FACES) counts |= (int)kCorners[3 * face + corner] == (elements == CHRONORMAL_VERTICES ? i : (int)kCorners[i]);
+    if (counts) add_face(face, t, n);
+  }
+  const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int c = 0; c < 3; ++c) n[c] /= length;
+}
+
+static int check_curves(int elements, size_t size) {
+  const chronormal_mesh mesh = {5, 4, kCorners, NULL};
+  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};
+  chronormal_options options;
+  chronormal_options_init(&options);
+  options.elements = elements;
+  chronormal_curves* curves = NULL;
+  EXPECT(chronormal_curves_create(&mesh, from, to, &options, &curves) == CHRONORMAL_DONE);
+  EXPECT(chronormal_curves_size(curves) == size && chronormal_curves_bytes(curves) > 0);
+  for (int step = 0; step <= 8; ++step) {
+    const double t = step / 8.0;
+    vertex shown[12];
+    size_t zeros = 99;
+    EXPECT(chronormal_curves_unit_normals(curves, t, (chronormal_result){shown[0].position, sizeof(vertex)}, &zeros) == CHRONORMAL_DONE);
+    EXPECT(zeros == 0);
+    float degrees[12];
+    EXPECT(chronormal_curves_errors(curves, t, (chronormal_vectors){shown[0].position, sizeof(vertex)}, degrees) == CHRONORMAL_DONE);
+    for (size_t i = 0; i < size; ++i) {
+      double n[3];
+      truth(elements, (int)i, t, n);
+      for (int c = 0; c < 3; ++c) EXPECT(fabs(shown[i].position[c] - n[c]) < 2e-6);
+      EXPECT(degrees[i] < 1e-3F);
+    }
+  }
+  /* The next segment leads back: its beginning is the end of the first. */
+  float packed[36], first[36];
+  EXPECT(chronormal_curves_unit_normals(curves, 1, (chronormal_result){first, 0}, NULL) == CHRONORMAL_DONE);
+  EXPECT(chronormal_curves_next(curves, to, from) == CHRONORMAL_DONE);
+  EXPECT(chronormal_curves_unit_normals(curves, 0, (chronormal_result){packed, 0}, NULL) == CHRONORMAL_DONE);
+  EXPECT(memcmp(first, packed, 12 * size) == 0);
+  packed[0] = -packed[0], packed[1] = -packed[1], packed[2] = -packed[2];
+  float degrees[12];
+  EXPECT(chronormal_curves_errors(curves, 0, (chronormal_vectors){packed, 0}, degrees) == CHRONORMAL_DONE);
+  EXPECT(fabsf(degrees[0] - 180) < 1e-3F && degrees[1] < 1e-3F);
+  chronormal_curves_destroy(curves);
+  return 0;
+}
+
+static int check_blend(void) {
+  const chronormal_mesh mesh = {5, 4, kCorners, NULL};
+  float deltas[15];
+  for (int v = 0; v < 5; ++v)
+    for (int c = 0; c < 3; ++c) deltas[3 * v + c] = kTo[v].position[c] - kFrom[v].position[c];
+  const uint32_t tip = 4;
+  const float sideways[3] = {0, 1, 0};
+  const chronormal_target targets[2] = {{5, NULL, {deltas, 0}}, {1, &tip, {sideways, 0}}};
+  chronormal_blend* blend = NULL;
+  EXPECT(chronormal_blend_create(&mesh, (chronormal_vectors){kFrom[0].position, sizeof(vertex)}, targets, 2, NULL, &blend) == CHRONORMAL_DONE);
+  EXPECT(chronormal_blend_size(blend) == 5);
+  const double weights[2] = {0.375, 0};
+  float normals[15];
+  size_t zeros = 99;
+  EXPECT(chronormal_blend_unit_normals(blend, weights, (chronormal_result){normals, 0}, &zeros) == CHRONORMAL_DONE && zeros == 0);
+  for (int v = 0; v < 5; ++v) {
+    double n[3];
+    truth(CHRONORMAL_VERTICES, v, 0.375, n);
+    for (int c = 0; c < 3; ++c) EXPECT(fabs(normals[3 * v + c] - n[c]) < 2e-6);
+  }
+  chronormal_blend_destroy(blend);
+  return 0;
+}
+
+static int check_motion(const char* folder) {
+  char names[2][512];
+  const char* files[2] = {names[0], names[1]};
+  for (int k = 0; k < 2; ++k) {
+    snprintf(names[k], sizeof names[k], "%s/tent_%d.obj", folder, k);
+    FILE* file = fopen(names[k], "w");
+    EXPECT(file != NULL);
+    for (int v = 0; v < 5; ++v) fprintf(file, "v %g %g %g\n", at(v, 0, k), at(v, 1, k), at(v, 2, k));
+    for (int f = 0; f < 4; ++f) fprintf(file, "f %u %u %u\n", kCorners[3 * f] + 1, kCorners[3 * f + 1] + 1, kCorners[3 * f + 2] + 1);
+    EXPECT(fclose(file) == 0);
+  }
+  chronormal_motion* motion = NULL;
+  EXPECT(chronormal_motion_read(files, 2, NULL, &motion) == CHRONORMAL_DONE);
+  double first = -1, last = -1;
+  chronormal_motion_times(motion, &first, &last);
+  EXPECT(first == 0 && last == 1 && chronormal_motion_size(motion) == 5);
+  float normals[15];
+  EXPECT(chronormal_motion_unit_normals(motion, 0.25, (chronormal_result){normals, 0}) == CHRONORMAL_DONE);
+  for (int v = 0; v < 5; ++v) {
+    double n[3];
+    truth(CHRONORMAL_VERTICES, v, 0.25, n);
+    for (int c = 0; c < 3; ++c) EXPECT(fabs(normals[3 * v + c] - n[c]) < 2e-6);
+  }
+  EXPECT(chronormal_motion_unit_normals(motion, 7, (chronormal_result){normals, 0}) == CHRONORMAL_USAGE);
+  chronormal_motion_destroy(motion);
+  files[1] = "nothing.obj";
+  EXPECT(chronormal_motion_read(files, 2, NULL, &motion) == CHRONORMAL_FAILED);
+  EXPECT(strstr(chronormal_last_message(), "nothing.obj") != NULL);
+  return 0;
+}
+
+static int check_misuse(void) {
+  const uint32_t beyond[3] = {0, 1, 5};
+  const chronormal_mesh mesh = {5, 4, kCorners, NULL}, wrong = {5, 1, beyond, NULL};
+  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, nothing = {NULL, 0}, crooked = {kFrom[0].position, 13};
+  chronormal_curves* curves = NULL;
+  EXPECT(chronormal_curves_create(NULL, from, from, NULL, &curves) == CHRONORMAL_USAGE);
+  EXPECT(chronormal_curves_create(&mesh, from, nothing, NULL, &curves) == CHRONORMAL_USAGE);
+  EXPECT(strcmp(chronormal_last_message(), "to: the pointer is NULL") == 0);
+  EXPECT(chronormal_curves_create(&mesh, from, crooked, NULL, &curves) == CHRONORMAL_USAGE);
+  EXPECT(chronormal_curves_create(&wrong, from, from, NULL, &curves) == CHRONORMAL_INVALID_INPUT);
+  EXPECT(strstr(chronormal_last_message(), "face 0, corner 2") != NULL);
+  vertex broken[5];
+  memcpy(broken, kTo, sizeof broken);
+  broken[3].position[1] = NAN;
+  const chronormal_vectors to = {broken[0].position, sizeof(vertex)};
+  EXPECT(chronormal_curves_create(&mesh, from, to, NULL, &curves) == CHRONORMAL_INVALID_INPUT);
+  EXPECT(strstr(chronormal_last_message(), "keyframe 1, vertex 3") != NULL);
+  chronormal_options options;
+  memset(&options, 0, sizeof options);
+  EXPECT(chronormal_curves_create(&mesh, from, from, &options, &curves) == CHRONORMAL_USAGE);
+  chronormal_options_init(&options);
+  options.weighting = "weight";
+  EXPECT(chronormal_curves_create(&mesh, from, from, &options, &curves) == CHRONORMAL_USAGE);
+  EXPECT(strstr(chronormal_last_message(), "area-angle") != NULL);
+  EXPECT(curves == NULL && chronormal_curves_size(NULL) == 0);
+  chronormal_curves_destroy(NULL);
+  return 0;
+}
+
+int main(int count, char** arguments) {
+  EXPECT(count == 3 && strcmp(chronormal_version(), arguments[1]) == 0);
+  EXPECT(strcmp(chronormal_last_message(), "") == 0);
+  if (check_curves(CHRONORMAL_FACES, 4) || check_curves(CHRONORMAL_VERTICES, 5) || check_curves(CHRONORMAL_CORNERS, 12)) return 1;
+  return check_blend() || check_motion(arguments[2]) || check_misuse();
+}

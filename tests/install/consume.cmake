@@ -1,0 +1,38 @@
+# cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -P: configures, builds and runs a foreign project
+# (CMakeLists.txt beside this) that uses chronormal in one of these ways. For a package the build is installed first, into
+# a folder of its own.
+set(folder ${BUILD}/consume_${FROM})
+file(REMOVE_RECURSE ${folder})
+function(run)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${folder} RESULT_VARIABLE result OUTPUT_VARIABLE output
+                  ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\n${output}")
+  endif()
+  message(STATUS "${output}")
+endfunction()
+file(MAKE_DIRECTORY ${folder})
+
+set(options -DFROM=${FROM} -DSOURCE=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER})
+set(programs core)
+if(FROM STREQUAL "package")
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
+  # Moved, to see that nothing names the place where it was.
+  file(RENAME ${folder}/prefix ${folder}/moved)
+  list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
+  list(APPEND programs engine core_by_pkg_config engine_by_pkg_config)
+elseif(FROM STREQUAL "folder")
+  foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt TBB)  # as if they were not installed
+    list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+  endforeach()
+else()
+  list(APPEND programs engine)
+endif()
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/install -B ${folder}/build ${options})
+run(${CMAKE_COMMAND} --build ${folder}/build --parallel 2)
+foreach(program ${programs})
+  run(${folder}/build/${program})
+endforeach()
+if(FROM STREQUAL "package")
+  run(${folder}/moved/bin/chronormal --version)
+endif()

@@ -1,0 +1,12 @@
+// A shared object that reads a file by chronormal, as an engine's plugin does. It exports one function of C.
+#include "chronormal/chronormal.h"
+
+extern "C" __attribute__((visibility("default"))) long vertices_of(const char* path) {
+  chronormal::InputOptions options;
+  options.files = {path};
+  options.allow_mesh = true;
+  chronormal::Result<chronormal::Input> input = chronormal::open_input(options);
+  if (!input) return -1;
+  const chronormal::Result<const chronormal::Motion*> motion = input.value().motion();
+  return motion ? static_cast<long>(motion.value()->topology.vertex_count()) : -1;
+}

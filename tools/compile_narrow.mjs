@@ -1,0 +1,29 @@
+// Has the compiler check both libraries for a machine of 32 bits, where std::size_t is narrower than most counts that a
+// file can name. A part of `./test --full embedding`. Nothing is linked or run: Debian's libraries are of 64 bits.
+//
+//   node tools/compile_narrow.mjs BUILD      BUILD has compile_commands.json
+import { execFile } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { availableParallelism, cpus } from 'node:os';
+import { join } from 'node:path';
+import { promisify } from 'node:util';
+
+const run = promisify(execFile);
+const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(
+  ({ file, command }) => /\/src\//.test(file) && !/_sanitized\.dir/.test(command),
+);
+const failed = [];
+
+async function work() {
+  for (let next = commands.pop(); next; next = commands.pop()) {
+    const { directory, command, file } = next;
+    const narrow = command.replace(/ -o \S+ -c /, ' -m32 -msse2 -mfpmath=sse -fsyntax-only ');
+    await run('/bin/sh', ['-c', narrow], { cwd: directory }).catch((error) => failed.push(`${file}\n${error.stderr}`));
+  }
+}
+
+const total = commands.length;
+await Promise.all(Array.from({ length: availableParallelism?.() ?? cpus().length }, work));
+for (const text of failed) console.error(text);
+console.log(`for 32 bits: ${total - failed.length} of ${total} files compile`);
+process.exitCode = failed.length > 0 || total === 0 ? 1 : 0;
