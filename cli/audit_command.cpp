@@ -6,6 +6,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/hosts.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
 #include "cli/format.h"
@@ -23,6 +24,7 @@ struct Options {
   CommonOptions common;
   std::string rule;  // empty: what is usual for the input
   std::string weighting = "area";
+  std::string hosts;
   std::optional<std::size_t> samples;
   std::optional<double> tolerance;
   bool no_weld = false;
@@ -65,6 +67,8 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   if (!opened) return opened.error();
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
+  if (document == nullptr && !how.hosts.empty())
+    return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
@@ -82,6 +86,13 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   const Result<Weighting> weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   how.weighting = weighting.value();
+  if (!options.hosts.empty()) {
+    const Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+    if (!hosts) return misuse("--host", hosts.error().message);
+    how.hosts = hosts.value();
+    if (how.rule && *how.rule != AuditRule::kGltf)
+      return misuse("--host", "hosts go with the rule gltf, which they stand for");
+  }
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (options.input.world)
@@ -92,6 +103,18 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   how.weld = !options.no_weld;
   how.progress = progress.callback("auditing");
   return how;
+}
+
+// Why a host does not pass.
+std::string why_beyond(const Audited& audited, const HostAudit& found) {
+  if (found.beyond > 0)
+    return formatted("{}: a mesh has {} more than it takes: {}", found.host.title,
+                     counted(found.beyond, "target", "targets"), found.host.beyond);
+  if (found.error.unlit > 0)
+    return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
+                     counted(found.error.unlit, "pair", "pairs"));
+  return formatted("{}: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", found.host.title,
+                   found.error.worst, *audited.tolerance, worst_label(audited, found));
 }
 
 std::string why_beyond(const Audited& audited) {
@@ -115,7 +138,10 @@ Result<int> run(const Options& options) {
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
   if (audited.value().passed()) return kExitDone;
-  say("audit", why_beyond(audited.value()));
+  const std::vector<HostAudit>& hosts = audited.value().audit.hosts;
+  if (hosts.empty()) say("audit", why_beyond(audited.value()));
+  for (const HostAudit& found : hosts)
+    if (!audited.value().passed(found)) say("audit", why_beyond(audited.value(), found));
   return kExitBeyond;
 }
 
@@ -132,12 +158,16 @@ Command audit_command() {
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
         {"--weighting NAME", &options->weighting,
          "of the right normals: area (default), angle, uniform, area-angle, max"},
+        {"--host NAME,...", &options->hosts,
+         "judge what these show of a glTF file: three, babylon, playcanvas, godot,\n"
+         "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
         {"--samples N",
          &options->samples,
          "per segment, ends included (default 21; 5 in animations of more than\n"
          "32 key intervals)",
          {.check = check_whole(2, kMostAuditSamples)}},
-        {"--tolerance DEG", &options->tolerance, "exit with 4 if the worst error is beyond this"},
+        {"--tolerance DEG", &options->tolerance,
+         "exit with 4 if the worst error is beyond this; with --host, in any of them"},
         {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
         {"--json", &options->json, "one JSON object"}},
        options->common.table(false)},
@@ -146,6 +176,7 @@ Command audit_command() {
       "\nExamples:\n"
       "  chronormal audit face.glb\n"
       "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
+      "  chronormal audit face.glb --host three,godot,gltfpack\n"
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); }};

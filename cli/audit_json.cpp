@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",  "wrong_between",
                                   "wrong_together", "stale_tangents",  "flat_primitive", "skin",
-                                  "baked",          "baked_keyframes"};
+                                  "baked",          "baked_keyframes", "beyond_host"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -30,6 +30,8 @@ void add_error(const MotionError& error, Json& json) {
   json["worst_degrees"] = error.worst;
   json["mean_degrees"] = error.mean();
   json["rms_degrees"] = error.rms();
+  json["percentile_99_degrees"] = error.percentile(0.99);
+  json["percentile_99_9_degrees"] = error.percentile(0.999);
   json["judged"] = error.judged;
   json["no_normal"] = error.no_normal;
   json["unlit"] = error.unlit;
@@ -82,8 +84,29 @@ Json finding_json(const AuditFinding& finding) {
           {"animation", or_null(finding.animation)},
           {"node", or_null(finding.node)},
           {"count", finding.count},
+          {"host", finding.host ? Json(finding.host->name) : Json()},
           {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
           {"worst_at", finding.worst_at ? place_json(*finding.worst_at, finding.target ? "weight" : "time") : Json()}};
+}
+
+Json host_json(const Audited& input, const HostAudit& found) {
+  constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
+  constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
+                                     "splines_misread"};
+  Json json = {{"name", found.host.name},
+               {"title", found.host.title},
+               {"normals", kNormals[static_cast<std::size_t>(found.host.normals)]},
+               {"tracks", kTracks[static_cast<std::size_t>(found.host.tracks)]},
+               {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
+               {"source", found.host.source},
+               {"passed", input.tolerance ? Json(input.passed(found)) : Json()}};
+  add_error(found.error, json);
+  json["worst_subject"] = or_null(found.worst);
+  json["worst_at"] =
+      found.worst ? place_json(found.error.worst_at, moment_of(input.audit.subjects[*found.worst])) : Json();
+  json["displaced_share"] = found.displaced;
+  json["targets_beyond"] = found.beyond;
+  return json;
 }
 
 }  // namespace
@@ -104,6 +127,8 @@ std::string audit_json(const Audited& input) {
   json["still"] = audit.still;
   json["subjects"] = Json::array();
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
+  json["hosts"] = Json::array();
+  for (const HostAudit& found : audit.hosts) json["hosts"].push_back(host_json(input, found));
   json["authored_offsets"] = Json::array();
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();

@@ -18,7 +18,9 @@ using Align = Table::Align;
 using Kind = AuditFinding::Kind;
 
 constexpr std::size_t kMostRows = 16, kLongestName = 32, kLongestBar = 40;
-constexpr double kSeen = 0.005;  // degrees: what two decimals show
+constexpr double kSeen = 0.005;                     // degrees: what two decimals show
+constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the pairs
+constexpr double kDisplaced = 1e-5;                 // a share of the size that is worth a word
 
 // Two decimals, or the power of ten of what would be none of it.
 std::string degrees(double value) {
@@ -77,13 +79,21 @@ std::string place_words(const Audited& input, const AuditSubject& subject, const
 
 std::string pairs(std::size_t count) { return counted(count, "pair", "pairs"); }
 
+std::string verdict(const Audited& input) {
+  const std::vector<HostAudit>& hosts = input.audit.hosts;
+  if (hosts.empty()) return formatted("{} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  const auto within = std::count_if(hosts.begin(), hosts.end(), [&](const HostAudit& h) { return input.passed(h); });
+  return formatted("within {} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
+}
+
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = printable(input.name()) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += formatted("worst {} degrees, mean {}, rms {}", degrees(audit.error.worst), degrees(audit.error.mean()),
-                    degrees(audit.error.rms()));
-  if (input.tolerance) text += formatted(", {} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", degrees(audit.error.worst),
+                    degrees(audit.error.mean()), degrees(audit.error.percentile(kMost)),
+                    degrees(audit.error.percentile(kNearlyAll)));
+  if (input.tolerance) text += ", " + verdict(input);
   text += '\n';
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
@@ -111,7 +121,8 @@ std::string subject_table(const Audited& input) {
   table.add_column("motion", "", Align::kLeft);
   table.add_column("worst", "degrees", Align::kRight);
   table.add_column("mean", "degrees", Align::kRight);
-  table.add_column("rms", "degrees", Align::kRight);
+  table.add_column("99 %", "degrees", Align::kRight);
+  table.add_column("99.9 %", "degrees", Align::kRight);
   table.add_column("at keys", "degrees", Align::kRight);
   table.add_column("worst at", "vertex", Align::kRight);
   table.add_column("", "", Align::kLeft);
@@ -121,8 +132,8 @@ std::string subject_table(const Audited& input) {
     const AuditSubject& subject = subjects[s];
     const bool some = subject.error.worst > 0;
     table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),
-                   degrees(subject.error.rms()), degrees(subject.at_keys.worst),
-                   some ? formatted("{}", subject.error.worst_at.vertex) : "-",
+                   degrees(subject.error.percentile(kMost)), degrees(subject.error.percentile(kNearlyAll)),
+                   degrees(subject.at_keys.worst), some ? formatted("{}", subject.error.worst_at.vertex) : "-",
                    some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
                    subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
                                         : formatted("{}", subject.samples)});
@@ -131,6 +142,31 @@ std::string subject_table(const Audited& input) {
   if (subjects.size() > kMostRows)
     text += formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostRows));
   return text;
+}
+
+// What each host shows, the specification first, which the tables below are about.
+std::string host_table(const Audited& input) {
+  const Audit& audit = input.audit;
+  if (audit.hosts.empty()) return "";
+  Table table;
+  table.add_column("host", "", Align::kLeft);
+  for (const char* const title : {"mean", "99 %", "99.9 %", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  table.add_column("unlit", "pairs", Align::kRight);
+  table.add_column("displaced", "% of size", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
+                           const std::string& note) {
+    table.add_row({std::string(title), degrees(error.mean()), degrees(error.percentile(kMost)),
+                   degrees(error.percentile(kNearlyAll)), degrees(error.worst), grouped(error.unlit), displaced, note});
+  };
+  add_row("(specification)", audit.error, "-", "");
+  for (const HostAudit& found : audit.hosts) {
+    std::string note = found.beyond > 0 ? "too many targets" : "";
+    if (note.empty() && !input.passed(found)) note = "beyond the tolerance";
+    add_row(found.host.title, found.error,
+            found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
+  }
+  return '\n' + table.text();
 }
 
 std::string bin_words(std::size_t bin) {
@@ -221,6 +257,9 @@ std::string finding_words(const Audited& input, const AuditFinding& found) {
     case Kind::kSequenceTargets:
       return formatted("{}: {} baked keyframes: only animations were judged", who,
                        counted(found.count, "target is one of its", "targets are"));
+    case Kind::kBeyondHost:
+      return formatted("{}: {} more than {} takes: {}", who, counted(found.count, "target", "targets"),
+                       found.host->title, found.host->beyond);
   }
   return "";
 }
@@ -267,6 +306,10 @@ std::string worst_label(const Audited& input) {
   return place_words(input, subject, subject.error.worst_at);
 }
 
+std::string worst_label(const Audited& input, const HostAudit& host) {
+  return host.worst ? place_words(input, input.audit.subjects[*host.worst], host.error.worst_at) : "";
+}
+
 std::string unlit_label(const Audited& input) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =
@@ -276,7 +319,8 @@ std::string unlit_label(const Audited& input) {
 
 std::string audit_text(const Audited& input) {
   std::string text = headline(input);
-  if (!input.audit.subjects.empty()) text += '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
+  if (!input.audit.subjects.empty())
+    text += host_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
   return text + offset_lines(input) + finding_lines(input, true) + finding_lines(input, false) + advice(input);
 }
 

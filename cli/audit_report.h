@@ -2,6 +2,7 @@
 #ifndef CLI_AUDIT_REPORT_H_
 #define CLI_AUDIT_REPORT_H_
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -20,7 +21,12 @@ struct Audited {
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
-  [[nodiscard]] bool passed() const { return !tolerance || audit.error.is_within(*tolerance); }
+  [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
+  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was.
+  [[nodiscard]] bool passed() const {
+    if (audit.hosts.empty()) return !tolerance || audit.error.is_within(*tolerance);
+    return std::all_of(audit.hosts.begin(), audit.hosts.end(), [this](const HostAudit& host) { return passed(host); });
+  }
 };
 
 /// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.
@@ -31,6 +37,9 @@ struct Audited {
 
 /// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
 [[nodiscard]] std::string worst_label(const Audited& input);
+
+/// The same of one host.
+[[nodiscard]] std::string worst_label(const Audited& input, const HostAudit& host);
 
 /// The same for the first pair that cannot be lit.
 [[nodiscard]] std::string unlit_label(const Audited& input);

@@ -38,6 +38,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/hosts.h"
 
 namespace chronormal {
 
@@ -62,6 +63,11 @@ inline constexpr double kAuditFault = 1;  // degrees
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
+/// Bins of MotionError::counts: below 2^-10 degrees, and then 128 to each doubling, so that a percentile is known to 0.001
+/// degrees or to 0.8 %.
+inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
+inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // up to 256 degrees
+
 inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
 
 struct AuditOptions {
@@ -69,6 +75,7 @@ struct AuditOptions {
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals
   std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
   Weighting weighting = Weighting::kArea;  ///< of the right normals: that of the program which the file comes from
+  std::vector<Host> hosts = {};            ///< glTF, by the rule gltf: these are judged too
   bool weld = true;                        ///< sequences: vertices at one point in all keyframes are one
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -88,6 +95,7 @@ struct MotionError {
   double worst = 0;
   AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
+  std::array<std::size_t, kAuditFineBins> counts{};  ///< the same, finely
   std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
   std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
   AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
@@ -96,6 +104,9 @@ struct MotionError {
   [[nodiscard]] double rms() const noexcept {
     return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
   }
+  /// The error, in degrees, that at least this share of the judged pairs does not exceed, as counts know it; 0 where
+  /// nothing is judged. 0 < share <= 1.
+  [[nodiscard]] double percentile(double share) const noexcept;
   /// Whether every pair can be lit and none is off by more than this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
   void add(double degrees, const AuditPlace& place) noexcept;
@@ -141,16 +152,34 @@ struct AuditFinding {
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
     kSkinned,         ///< a note: skins turn the shown and the right normal alike
     kBaked,           ///< a note: a bake was here
-    kSequenceTargets  ///< a note: baked keyframes, which mean nothing one by one
+    kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
+    kBeyondHost        ///< a note: a mesh has more targets than a host takes
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation;
   std::size_t count = 0;               ///< pairs, primitives, targets or nodes, as the kind has it
   double degrees = 0;                  ///< the worst
   std::optional<AuditPlace> worst_at;  ///< where there is one
+  std::optional<Host> host;            ///< that it is about; nothing: all
 
   /// Normals may be missing where the motion does not turn them.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kFlat && degrees > kAuditFault; }
+};
+
+/// What one host shows of a file. What it should show is n(w) at the weights that it plays.
+struct HostAudit {
+  Host host;
+  MotionError error;                 ///< of all subjects
+  std::optional<std::size_t> worst;  ///< the subject with the worst error
+  /// How far a vertex is from where the specification has it, at most: a share of the diagonal of the box around the
+  /// base of its mesh.
+  double displaced = 0;
+  /// Targets of a mesh beyond those that the host takes: it shows nothing then (Host::beyond). The errors above are as if
+  /// it left these out.
+  std::size_t beyond = 0;
+
+  /// Whether the host shows the file, and every pair as MotionError::is_within() has it.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.is_within(degrees); }
 };
 
 struct Audit {
@@ -162,6 +191,7 @@ struct Audit {
   std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
   MotionError error;      ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
+  std::vector<HostAudit> hosts;      ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
 };
@@ -177,13 +207,13 @@ struct Audit {
 /// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, and fewer than 2 samples.
+/// animation that is not there, hosts with another rule than gltf, and fewer than 2 samples.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
 /// then. Without stored
 /// normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
-/// between. Errors: kUsage for the rule gltf, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
+/// between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 

@@ -11,6 +11,22 @@
 namespace chronormal {
 namespace {
 
+// The bin of an angle of [0, 180] degrees among kAuditFineBins.
+std::size_t fine_bin(double degrees) noexcept {
+  if (!(degrees >= std::ldexp(1, kAuditLeastExponent))) return 0;
+  int exponent = 0;
+  const double digits = std::frexp(degrees, &exponent);  // of [1/2, 1)
+  const int of_doubling = static_cast<int>((2 * digits - 1) * kAuditBinsOfDoubling);
+  return static_cast<std::size_t>(1 + (exponent - 1 - kAuditLeastExponent) * kAuditBinsOfDoubling + of_doubling);
+}
+
+// Where such a bin ends, in degrees.
+double end_of_fine_bin(std::size_t bin) noexcept {
+  const int doubling = static_cast<int>(bin) / kAuditBinsOfDoubling,
+            part = static_cast<int>(bin) % kAuditBinsOfDoubling;
+  return std::ldexp(1 + part / static_cast<double>(kAuditBinsOfDoubling), kAuditLeastExponent + doubling);
+}
+
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
 }  // namespace
@@ -43,6 +59,7 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   sum_of_squares += degrees * degrees;
   const auto* const bin = std::upper_bound(kAuditBinEdges.begin(), kAuditBinEdges.end(), degrees);
   ++histogram[static_cast<std::size_t>(bin - kAuditBinEdges.begin())];
+  ++counts[fine_bin(degrees)];
   if (degrees > worst) {
     worst = degrees;
     worst_at = place;
@@ -62,10 +79,21 @@ void MotionError::add(const MotionError& other) noexcept {
   no_normal += other.no_normal;
   unlit += other.unlit;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) histogram[bin] += other.histogram[bin];
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
   if (other.worst > worst) {
     worst = other.worst;
     worst_at = other.worst_at;
   }
+}
+
+double MotionError::percentile(double share) const noexcept {
+  const double wanted = share * static_cast<double>(judged);
+  std::size_t seen = 0;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    seen += counts[bin];
+    if (static_cast<double>(seen) >= wanted) return std::min(end_of_fine_bin(bin), worst);
+  }
+  return worst;
 }
 
 inline namespace internal {

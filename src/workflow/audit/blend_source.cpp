@@ -40,12 +40,16 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   t_ = t;
   if (same) return false;
   now_ = std::move(now);
-  place_base(positions);
-  for (std::size_t k = 0; k < now_.size(); ++k) {
-    if (now_[k] == 0) continue;
-    for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + now_[k] * to_double(delta);
-  }
+  place_at(now_, positions);
   return true;
+}
+
+void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> positions) {
+  place_base(positions);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0) continue;
+    for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + weights[k] * to_double(delta);
+  }
 }
 
 Vec3f BlendSource::shown(const JudgedOutput& output) const {

@@ -37,6 +37,10 @@ class BlendSource {
   BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
+  /// Writes the positions at any weights, and leaves the moment that was placed as it is.
+  void place_at(std::span<const double> weights, std::span<Vec3d> positions);
+  /// The weights of the moment that was placed.
+  [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
   void forget() { known_ = false; }
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;

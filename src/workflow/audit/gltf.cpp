@@ -2,6 +2,7 @@
 // target from weight 0 to 1, and every track of weights.
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -9,7 +10,9 @@
 #include "io/gltf/gltf_weights.h"
 #include "workflow/audit/blend_source.h"
 #include "workflow/audit/gltf_findings.h"
+#include "workflow/audit/host_errors.h"
 #include "workflow/audit/measure.h"
+#include "workflow/hosts/played_track.h"
 #include "workflow/shading/gltf_shading.h"
 
 namespace chronormal {
@@ -58,16 +61,44 @@ JudgedPart part_of(const MeshAudit& mesh, const std::vector<bool>& involved) {
           moving_outputs(mesh.shading, involved, mesh.rule), mesh.rule == AuditRule::kFlat};
 }
 
-// Measures a subject, and returns whether there is anything to judge.
-bool measure_part(const MeshAudit& mesh, const JudgedPart& part, const Weights& weights, const Moment& moment,
-                  AuditSubject& subject) {
+// The weights of a subject: those of the specification, and those that each host plays.
+struct SubjectWeights {
+  Weights specified;
+  std::vector<Weights> played;
+};
+
+// A subject, and what hosts show of it.
+struct Measured {
+  AuditSubject subject;
+  std::vector<HostError> of_hosts;
+};
+
+// Measures a subject; nothing where there is nothing to judge.
+std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const std::vector<bool>& involved,
+                                     const SubjectWeights& weights, const Moment& moment, AuditSubject subject) {
   if (part.outputs().empty()) {
     for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
-    return false;
+    return std::nullopt;
   }
-  BlendSource source(mesh.shading, part, mesh.rule, weights, moment);
-  measure(source, part, mesh.rule, mesh.progress, subject);
-  return true;
+  BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment);
+  HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved);
+  const auto judge_hosts = [&](std::size_t segment, double t, const PlacedPart& placed,
+                               std::span<const double> largest) {
+    hosts.add_sample(source, segment, t, placed, largest);
+  };
+  measure(source, part, mesh.rule, mesh.progress, subject, judge_hosts);
+  return Measured{std::move(subject), hosts.take()};
+}
+
+void add_subject(Measured measured, Audit& result) {
+  for (std::size_t h = 0; h < measured.of_hosts.size(); ++h) {
+    HostAudit& host = result.hosts[h];
+    const HostError& found = measured.of_hosts[h];
+    if (found.error.worst > host.error.worst) host.worst = result.subjects.size();
+    host.error.add(found.error);
+    host.displaced = std::max(host.displaced, found.displaced);
+  }
+  result.subjects.push_back(std::move(measured.subject));
 }
 
 // Audits a target from weight 0 to 1. Extra targets of a bake get the weights that follow.
@@ -89,33 +120,62 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   subject.target = k;
   subject.segments = 1;
   subject.samples = samples_per_segment(mesh.options, 1);
-  const auto weights = [&](std::size_t, double t, std::span<double> of_targets) {
+  SubjectWeights weights;
+  weights.specified = [&](std::size_t, double t, std::span<double> of_targets) {
     std::fill(of_targets.begin(), of_targets.end(), 0.0);
     of_targets[k] = t;
     fill_extra_weights(shading, of_targets);
   };
+  for (const Host& host : mesh.options.hosts) {
+    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
+      weights.specified(segment, t, of_targets);
+      drop_weights(host, of_targets);
+    });
+  }
   const auto moment = [](std::size_t, double t) { return t; };
   const JudgedPart part = part_of(mesh, involved);
-  if (!measure_part(mesh, part, weights, moment, subject)) {
+  std::optional<Measured> measured = measure_part(mesh, part, involved, weights, moment, std::move(subject));
+  if (!measured) {
     ++result.still;
     return;
   }
-  for (const AuditFinding& fault : faults_of_target(mesh.document, shading, mesh.rule, subject, part, weights))
+  for (const AuditFinding& fault :
+       faults_of_target(mesh.document, shading, mesh.rule, measured->subject, part, weights.specified))
     result.findings.push_back(fault);
-  result.subjects.push_back(std::move(subject));
+  add_subject(std::move(*measured), result);
+}
+
+// The first and the last time of all tracks of an animation.
+Result<TimeRange> range_of(const GltfDocument& document, std::size_t animation) {
+  const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
+  TimeRange range{std::numeric_limits<double>::max(), 0};
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (tracks[t].same_keys_as != t) continue;
+    const Result<GltfKeys> keys = document.keys(animation, t);
+    if (!keys) return keys.error();
+    range.first = std::min(range.first, keys.value().times.front());
+    range.last = std::max(range.last, keys.value().times.back());
+  }
+  return range;
 }
 
 // Audits the weights between two keys of a track, and what of the mesh they move. Nothing for a track that moves
 // nothing.
-Result<std::optional<AuditSubject>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index) {
+Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index) {
   const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
   Result<GltfKeys> keys = mesh.document.keys(animation, index);
   if (!keys) return keys.error();
+  Result<TimeRange> range = TimeRange();
+  if (!mesh.options.hosts.empty()) range = range_of(mesh.document, animation);
+  if (!range) return range.error();
   const std::vector<double> times = keys.value().times;
   const std::size_t width = mesh.shading.set.targets.size();
   std::vector<bool> involved(width);
   for (std::size_t i = 0; i < keys.value().values.size(); ++i)
     if (keys.value().values[i] != 0) involved[i % width] = true;
+  std::vector<PlayedTrack> played;
+  for (const Host& host : mesh.options.hosts)
+    played.emplace_back(host, keys.value(), track.interpolation, width, range.value());
   const gltf::WeightCurve curve(std::move(keys).value(), track.interpolation, width);
   AuditSubject subject;
   subject.kind = AuditSubject::Kind::kTrack;
@@ -131,22 +191,27 @@ Result<std::optional<AuditSubject>> audit_track(const MeshAudit& mesh, std::size
     if (!moves || t == 0) return times[segment];
     return t == 1 ? times[segment + 1] : (1 - t) * times[segment] + t * times[segment + 1];
   };
-  const auto weights = [&](std::size_t segment, double t, std::span<double> of_targets) {
+  SubjectWeights weights;
+  weights.specified = [&](std::size_t segment, double t, std::span<double> of_targets) {
     curve.at(moment(segment, t), moves && t == 1, of_targets);
   };
-  if (!measure_part(mesh, part_of(mesh, involved), weights, moment, subject)) return std::optional<AuditSubject>();
-  return std::optional(std::move(subject));
+  for (const PlayedTrack& by_host : played) {
+    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
+      by_host.at(moment(segment, t), moves && t == 1, of_targets);
+    });
+  }
+  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, std::move(subject));
 }
 
 // Audits all tracks of a mesh; those with the same keys are measured once, and are subjects each.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  std::map<std::pair<std::size_t, std::size_t>, std::optional<AuditSubject>> of_curves;  // by animation, same_keys_as
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<Measured>> of_curves;  // by animation, same_keys_as
   for (const auto& [animation, index] : tracks) {
     const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
     const auto [known, is_new] = of_curves.try_emplace({animation, track.same_keys_as});
     if (is_new) {
-      Result<std::optional<AuditSubject>> measured = audit_track(mesh, animation, index);
+      Result<std::optional<Measured>> measured = audit_track(mesh, animation, index);
       if (!measured) return measured.error();
       known->second = std::move(measured).value();
     } else {
@@ -156,14 +221,14 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
       ++result.still;
       continue;
     }
-    AuditSubject subject = *known->second;
-    subject.track = index;
-    subject.node = track.node;
+    Measured measured = *known->second;
+    measured.subject.track = index;
+    measured.subject.node = track.node;
     if (is_new) {
-      if (const auto fault = fault_of_track(subject, are_targets_judged, worst_target))
+      if (const auto fault = fault_of_track(measured.subject, are_targets_judged, worst_target))
         result.findings.push_back(*fault);
     }
-    result.subjects.push_back(std::move(subject));
+    add_subject(std::move(measured), result);
   }
   return Success{};
 }
@@ -197,6 +262,9 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
   Audit result;
   result.weighting = options.weighting;
   result.rule = options.rule.value_or(AuditRule::kGltf);
+  if (!options.hosts.empty() && result.rule != AuditRule::kGltf)
+    return Error{ErrorCode::kUsage, "", "hosts go with the rule gltf, which they stand for"};
+  for (const Host& host : options.hosts) result.hosts.emplace_back().host = host;
   const std::size_t total = count_segments(document, only);
   std::size_t done = 0;
   const auto progress = [&] {
@@ -213,6 +281,11 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
       result.offsets.push_back(*offset);
     if (result.weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
+    for (const AuditFinding& note : limits_of(shading, options.hosts)) result.findings.push_back(note);
+    for (HostAudit& host : result.hosts) {
+      const std::size_t most = host.host.most_targets, targets = shading.set.targets.size();
+      if (most > 0 && targets > most) host.beyond = std::max(host.beyond, targets - most);
+    }
 
     const MeshAudit mesh{document, options, shading, result.rule, progress};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);

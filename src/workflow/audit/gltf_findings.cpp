@@ -80,6 +80,18 @@ std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShadi
   return notes;
 }
 
+std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts) {
+  std::vector<AuditFinding> notes;
+  const std::size_t targets = shading.set.targets.size();
+  for (const Host& host : hosts) {
+    if (host.most_targets == 0 || targets <= host.most_targets) continue;
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kBeyondHost, shading.mesh));
+    note.count = targets - host.most_targets;
+    note.host = host;
+  }
+  return notes;
+}
+
 std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading, AuditRule rule,
                                            const AuditSubject& subject, const JudgedPart& part,
                                            const Weights& weights) {

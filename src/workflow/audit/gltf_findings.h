@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "chronormal/workflow/audit.h"
@@ -14,6 +15,9 @@ namespace chronormal::inline internal {
 
 /// What is no fault, but good to know.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
+
+/// The hosts that take fewer targets than the mesh has.
+[[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts);
 
 /// The faults of a target that was measured, at the weights that measured it.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,

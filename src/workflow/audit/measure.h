@@ -90,21 +90,20 @@ template <class Source>
   return largest;
 }
 
-/// The errors of all outputs as they are placed.
-template <class Source>
-[[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, AuditRule rule,
-                                   std::span<const double> largest, std::size_t segment, double t) {
+/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows.
+template <class Source, class Shown>
+[[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat,
+                                   std::span<const double> largest, std::size_t segment, double t, const Shown& shown) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const auto judge = [&](std::size_t i, MotionError& errors) {
     const JudgedOutput& output = outputs[i];
-    const bool is_flat = rule == AuditRule::kFlat;
-    const Vec3d shown = is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
+    const Vec3d is_shown = shown(i, output);
     const Vec3d& normal = placed.normals.elements[output.element];
     const double least = kVanished * largest[output.element];
     const bool has_normal = length(normal) > least;
     // A face without area is not drawn, whatever its normal.
-    const bool is_drawn = is_flat ? shown != Vec3d{} : placed.normals.sizes[output.element] > least;
-    if (!is_finite(shown) || (is_drawn && shown == Vec3d{})) {
+    const bool is_drawn = is_flat ? is_shown != Vec3d{} : placed.normals.sizes[output.element] > least;
+    if (!is_finite(is_shown) || (is_drawn && is_shown == Vec3d{})) {
       errors.add_unlit(source.at(segment, t, output));
       return;
     }
@@ -112,7 +111,7 @@ template <class Source>
       ++errors.no_normal;
       return;
     }
-    const double angle = angle_between(shown, source.right(output, normal)) * kDegreesPerRadian;
+    const double angle = angle_between(is_shown, source.right(output, normal)) * kDegreesPerRadian;
     errors.add(angle, angle > errors.worst ? source.at(segment, t, output) : AuditPlace());
   };
   return parallel_fold<MotionError>(outputs.size(), kRange, judge,
@@ -120,13 +119,17 @@ template <class Source>
 }
 
 /// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
-/// is called after each segment.
-template <class Source>
+/// is called after each segment, each_sample(segment, t, placed, largest) after each sample.
+template <class Source, class EachSample>
 void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
-             AuditSubject& subject) {
+             AuditSubject& subject, const EachSample& each_sample) {
   PlacedPart placed(part);
   const std::vector<double> largest = largest_control_normals(source, subject.segments, placed);
   source.forget();
+  const bool is_flat = rule == AuditRule::kFlat;
+  const auto shown = [&](std::size_t, const JudgedOutput& output) {
+    return is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
+  };
   MotionError error;  // of the last sample
   for (std::size_t s = 0; s < subject.segments; ++s) {
     if constexpr (Source::kNeedsEnds) {
@@ -138,9 +141,10 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
       const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
-      if (placed.place(source, s, t)) error = error_at(source, placed, rule, largest, s, t);
+      if (placed.place(source, s, t)) error = error_at(source, placed, is_flat, largest, s, t, shown);
       subject.error.add(error);
       if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
+      each_sample(s, t, placed, largest);
     }
     progress();
   }

@@ -200,6 +200,8 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
   result.rule = options.rule.value_or(AuditRule::kNlerp);
   if (result.rule == AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
+  if (!options.hosts.empty())
+    return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   const Result<NormalGroups> groups = groups_of(motion, normals, options.weld);
@@ -238,7 +240,7 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
-    measure(source, part, result.rule, progress, subject);
+    measure(source, part, result.rule, progress, subject, [](auto&&...) {});
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

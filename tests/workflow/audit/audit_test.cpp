@@ -73,6 +73,22 @@ TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
   EXPECT_NEAR(result.findings[0].degrees, 90, 1e-12);
 }
 
+TEST(Audit, percentiles_are_known_to_a_thousandth_of_a_degree_or_a_percent) {
+  MotionError error, first, second;
+  EXPECT_EQ(error.percentile(0.999), 0);
+  for (int i = 1; i <= 1000; ++i) (i % 3 == 0 ? first : second).add(0.18 * i, {});
+  error.add(first);
+  error.add(second);
+  for (const int rank : {1, 10, 500, 990, 999, 1000}) {
+    EXPECT_GE(error.percentile(rank / 1000.0), 0.18 * rank - 1e-9);
+    EXPECT_LE(error.percentile(rank / 1000.0), 0.18 * rank * 1.008 + 0.001);
+  }
+  EXPECT_EQ(error.percentile(1), error.worst);
+  MotionError tiny;
+  for (int i = 0; i < 10; ++i) tiny.add(1e-7 * i, {});
+  EXPECT_LE(tiny.percentile(0.9), 0.001);
+}
+
 TEST(Audit, halfway_is_where_the_drawing_has_it) {
   // At weight 1/2 the folding face has the corner (1, 0, 1): its normal is (-1, 0, 1), as long as the drawing says.
   const Audit result = audit_of(hinge().file(), {.samples = 3});
@@ -160,6 +176,14 @@ void expect_same(const MotionError& error, const std::vector<Real>& expected) {
   EXPECT_NEAR(error.mean(), static_cast<double>(sum / count), kFloat);
   EXPECT_NEAR(error.rms(), static_cast<double>(std::sqrt(squares / count)), kFloat);
   EXPECT_NEAR(error.worst, static_cast<double>(worst), kFloat);
+  std::vector<Real> sorted = expected;
+  std::sort(sorted.begin(), sorted.end());
+  for (const double share : {0.01, 0.5, 0.9, 0.99, 0.999, 1.0}) {
+    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+    const auto exact = static_cast<double>(sorted[std::max<std::size_t>(rank, 1) - 1]);
+    EXPECT_GE(error.percentile(share), exact - kFloat) << share;
+    EXPECT_LE(error.percentile(share), exact * 1.008 + 0.001 + kFloat) << share;
+  }
   const double edges[] = {0, 0.1, 0.5, 1, 2, 5, 10, 25, 45, 90, 181};
   for (std::size_t bin = 0; bin < 10; ++bin) {
     const auto inside = [&](Real e) { return e >= edges[bin] && e < edges[bin + 1]; };

@@ -1,0 +1,130 @@
+#include "workflow/audit/host_errors.h"
+
+#include <algorithm>
+
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+bool keep_alike(const Host& a, const Host& b) noexcept {
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
+}
+
+// The diagonal of the box around the base.
+double size_of(const GltfShading& shading) noexcept {
+  Vec3d low, high;
+  for (std::size_t v = 0; v < shading.set.topology.vertex_count(); ++v) {
+    const Vec3d p = to_double(vector_at(shading.set.base, v));
+    if (v == 0) low = high = p;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return length(high - low);
+}
+
+// The largest distance between two places of one vertex.
+double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
+  return largest;
+}
+
+}  // namespace
+
+HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
+                       std::vector<Weights> weights, const std::vector<bool>& involved)
+    : part_(part),
+      weights_(std::move(weights)),
+      size_(size_of(shading)),
+      elsewhere_(part),
+      now_(hosts.size(), std::vector<double>(involved.size())),
+      last_(hosts.size()),
+      errors_(hosts.size()) {
+  const std::span<const JudgedOutput> outputs = part.outputs();
+  for (const Host& host : hosts) {
+    const auto known =
+        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return keep_alike(*kept.host, host); });
+    kept_by_.push_back(static_cast<std::size_t>(known - kept_.begin()));
+    if (known != kept_.end()) continue;
+    Kept& kept = kept_.emplace_back();
+    kept.host = &host;
+    for (const JudgedOutput& output : outputs)
+      kept.normals.push_back(kept_normal(host, vector_at(shading.normals, output.vertex)));
+    kept.deltas.resize(involved.size());
+    for (std::size_t k = 0; k < involved.size(); ++k) {
+      if (!involved[k] || shading.normal_deltas[k].empty()) continue;
+      for (std::uint32_t i = 0; i < outputs.size(); ++i) {
+        const Vec3f delta = vector_at(shading.normal_deltas[k], outputs[i].vertex);
+        if (delta == Vec3f{}) continue;
+        kept.deltas[k].emplace_back(i, kept_delta(host, vector_at(shading.normals, outputs[i].vertex), delta));
+      }
+    }
+  }
+}
+
+std::vector<Vec3f> HostErrors::shown(const Kept& kept, std::span<const double> weights) const {
+  std::vector<Vec3f> result(kept.normals.size());
+  numbered_blocks(result.size(), kRange, [&](std::size_t, std::size_t first, std::size_t end) {
+    std::vector<HostSum> sums;
+    sums.reserve(end - first);
+    for (std::size_t i = first; i < end; ++i) sums.emplace_back(*kept.host, kept.normals[i]);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] == 0) continue;
+      const auto& deltas = kept.deltas[k];
+      auto delta = std::lower_bound(deltas.begin(), deltas.end(), first,
+                                    [](const auto& entry, std::size_t i) { return entry.first < i; });
+      for (; delta != deltas.end() && delta->first < end; ++delta)
+        sums[delta->first - first].add(weights[k], delta->second);
+    }
+    for (std::size_t i = first; i < end; ++i) result[i] = sums[i - first].normal();
+  });
+  return result;
+}
+
+void HostErrors::add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
+                            std::span<const double> largest) {
+  const bool is_still = known_ && source.now() == specified_;
+  std::vector<bool> is_judged(weights_.size());
+  for (std::size_t h = 0; h < weights_.size(); ++h) {
+    std::vector<double> now(now_[h].size());
+    weights_[h](segment, t, now);
+    is_judged[h] = is_still && now == now_[h];  // as in the sample before
+    now_[h] = std::move(now);
+  }
+  known_ = true;
+  specified_ = source.now();
+  for (std::size_t h = 0; h < weights_.size(); ++h) {
+    if (is_judged[h]) continue;
+    const PlacedPart* where = &placed;
+    double displaced = 0;
+    if (now_[h] != source.now()) {
+      source.place_at(now_[h], elsewhere_.positions);
+      part_.normals(elsewhere_.positions, elsewhere_.normals);
+      where = &elsewhere_;
+      if (size_ > 0) displaced = largest_distance(placed.positions, elsewhere_.positions) / size_;
+    }
+    // All hosts that play these weights, those that keep alike once.
+    std::vector<const MotionError*> of_kept(kept_.size());
+    for (std::size_t other = h; other < weights_.size(); ++other) {
+      if (is_judged[other] || now_[other] != now_[h]) continue;
+      is_judged[other] = true;
+      const MotionError*& known = of_kept[kept_by_[other]];
+      if (known != nullptr) {
+        last_[other] = {*known, displaced};
+        continue;
+      }
+      const std::vector<Vec3f> normals = shown(kept_[kept_by_[other]], now_[other]);
+      const auto shown_at = [&](std::size_t i, const JudgedOutput&) { return to_double(normals[i]); };
+      last_[other] = {error_at(source, *where, false, largest, segment, t, shown_at), displaced};
+      known = &last_[other].error;
+    }
+  }
+  for (std::size_t h = 0; h < weights_.size(); ++h) {
+    errors_[h].error.add(last_[h].error);
+    errors_[h].displaced = std::max(errors_[h].displaced, last_[h].displaced);
+  }
+}
+
+}  // namespace chronormal::inline internal

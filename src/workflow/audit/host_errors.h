@@ -1,0 +1,66 @@
+/// What hosts show beside the specification, judged at the same samples. Private to workflow.
+///
+/// Hosts that play the same weights have the same positions and right normals, which are computed once; those that also
+/// keep normals and deltas alike show the same.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/hosts.h"
+#include "workflow/audit/blend_source.h"
+#include "workflow/audit/measure.h"
+
+namespace chronormal::inline internal {
+
+/// What a host shows of one subject.
+struct HostError {
+  MotionError error;
+  double displaced = 0;  ///< as HostAudit has it
+};
+
+class HostErrors {
+ public:
+  /// weights are those that each host plays. shading and part must outlive this. involved has one entry for each
+  /// target: others have no weight at any time.
+  HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
+             std::vector<Weights> weights, const std::vector<bool>& involved);
+
+  /// Judges every host at a sample that the source has placed; largest as largest_control_normals() has it.
+  void add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
+                  std::span<const double> largest);
+
+  /// One for each host.
+  [[nodiscard]] std::vector<HostError> take() { return std::move(errors_); }
+
+ private:
+  // Normals and deltas as some hosts keep them.
+  struct Kept {
+    const Host* host = nullptr;
+    std::vector<Vec3f> normals;  // of each output
+    // Of each target the outputs that it turns, ascending.
+    std::vector<std::vector<std::pair<std::uint32_t, Vec3f>>> deltas;
+  };
+
+  [[nodiscard]] std::vector<Vec3f> shown(const Kept& kept, std::span<const double> weights) const;
+
+  const JudgedPart& part_;
+  std::vector<Weights> weights_;
+  std::vector<Kept> kept_;
+  std::vector<std::size_t> kept_by_;  // of each host, in kept_
+  double size_ = 0;                   // of the mesh
+  PlacedPart elsewhere_;              // at weights other than those of the specification
+  bool known_ = false;
+  std::vector<double> specified_;         // the weights of the last sample by the specification
+  std::vector<std::vector<double>> now_;  // of each host, the weights of the last sample
+  std::vector<HostError> last_, errors_;  // of each host, those of the last sample and of all
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
