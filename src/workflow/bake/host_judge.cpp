@@ -27,7 +27,8 @@ Host judged_as(Host host) {
 }
 
 bool shows_alike(const Host& a, const Host& b) {
-  return a.normals == b.normals && a.bits == b.bits && a.octahedral_base == b.octahedral_base;
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
 }
 
 bool is_rounding(const Host& host) { return host.normals == NormalRule::kClamped && host.bits < kFineBits; }
