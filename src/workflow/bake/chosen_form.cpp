@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/blocks.h"
-#include "workflow/bake/harmless_form.h"
 #include "workflow/bake/played_poses.h"
 
 namespace chronormal::inline internal {
@@ -22,6 +21,8 @@ constexpr double kPartOfTracks = 0.25;
 constexpr double kSums = 1e9;
 constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
 constexpr std::size_t kFewestSteps = 3, kMostSteps = 16, kFewestMixed = 8, kMostMixed = 96, kPartOfMixed = 4;
+// Of the errors: what twice as many targets must leave at most.
+constexpr double kBetterByFar = 0.6;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
 std::vector<std::size_t> changing_targets(const GltfShading& shading) {
@@ -104,8 +105,11 @@ std::size_t most_extras(std::span<const Host> hosts, std::size_t targets) {
   return most;
 }
 
-bool is_free_of_limits(std::span<const Host> hosts) {
-  return std::all_of(hosts.begin(), hosts.end(), [](const Host& host) { return host.normals == NormalRule::kSum; });
+FormLengths lengths_for(std::span<const Host> hosts) {
+  const auto adds_up = [](const Host& host) { return host.normals == NormalRule::kSum; };
+  const auto keeps_weights = [](const Host& host) { return host.weight_bits == 32; };
+  if (std::all_of(hosts.begin(), hosts.end(), adds_up)) return FormLengths::kFree;
+  return std::all_of(hosts.begin(), hosts.end(), keeps_weights) ? FormLengths::kOpposite : FormLengths::kUnit;
 }
 
 // Whether two hosts play these tracks alike.
@@ -346,13 +350,14 @@ TargetDeltas ChosenForm::extra_deltas(const GltfShading& shading, std::size_t ex
   return {of_parts(shading, all), 0};
 }
 
-ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                             FormLengths lengths) {
   const GltfShading& shading = source.shading;
   const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
   const std::span<const Host> hosts = options.hosts;
   const std::size_t targets = shading.set.targets.size();
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
-  const HarmlessLimits limits{is_free_of_limits(hosts), most_extras(hosts, targets), tolerance};
+  const HarmlessLimits limits{lengths, most_extras(hosts, targets), tolerance};
 
   ChosenForm result;
   const std::vector<VertexVectors> stored = stored_deltas(shading);
@@ -362,7 +367,7 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
                         std::vector<bool>(hosts.size(), true), tolerance);
 
-  HarmlessForm form = end_point_form(shading, source.terms, rights, limits.has_free_lengths);
+  HarmlessForm form = end_point_form(shading, source.terms, rights, limits.lengths);
   std::vector<VertexColumns> forms = {by_vertex(columns_of(stored), vertices),
                                       by_vertex(columns_of(form.own), vertices)};
   if (source.plan.is_driven && source.plan.products_fit) {
@@ -396,6 +401,20 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
   result.extras_ = std::move(form.extras);
   result.own_of_form_.push_back(std::move(form.own));
   return result;
+}
+
+ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+  const FormLengths lengths = lengths_for(options.hosts);
+  if (lengths != FormLengths::kOpposite) return choose_of_lengths(source, weights, options, lengths);
+  ChosenForm unit = choose_of_lengths(source, weights, options, FormLengths::kUnit);
+  if (unit.weights.empty()) return unit;
+  ChosenForm opposite = choose_of_lengths(source, weights, options, FormLengths::kOpposite);
+  const auto error = [](const ChosenForm& form) {
+    double sum = 0;
+    for (const HostChange& host : form.hosts) sum += host.poses[0].after.mean;
+    return sum;
+  };
+  return error(opposite) < kBetterByFar * error(unit) ? opposite : unit;
 }
 
 ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
