@@ -30,8 +30,8 @@ constexpr double kRight = 1e-5;
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 // A pair that is never stronger would need weights beyond 1 elsewhere.
 constexpr double kMostScale = 4, kLeastProduct = 1e-6, kStrongest = 0.95;
-// Pairs that are looked at, and poses at which they are measured.
-constexpr std::size_t kMostPairs = 6000, kMostPoses = 96, kMeasured = 6000000;
+// Targets of which all pairs are looked at, pairs that are kept in mind, and poses at which they are measured.
+constexpr std::size_t kMostActive = 512, kMostPairs = 6000, kMostPoses = 96, kMeasured = 6000000;
 
 // Which vertices show an element.
 class VerticesOfElements {
@@ -288,17 +288,33 @@ struct Pair {
   std::size_t pose = 0;
 };
 
-std::vector<Pair> active_pairs(std::size_t targets, const PoseList& poses) {
+// The targets that some pose has active, those of the largest weights where they are many; ascending.
+std::vector<std::size_t> active_targets(std::size_t targets, const PoseList& poses) {
+  std::vector<double> largest(targets, 0.0);
+  for (const std::vector<double>& pose : poses)
+    for (std::size_t i = 0; i < targets; ++i) largest[i] = std::fmax(largest[i], std::fabs(pose[i]));
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < targets; ++i)
+    if (largest[i] > kLeastProduct) result.push_back(i);
+  std::stable_sort(result.begin(), result.end(), [&](std::size_t a, std::size_t b) { return largest[a] > largest[b]; });
+  if (result.size() > kMostActive) result.resize(kMostActive);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
+  const std::vector<std::size_t> of = active_targets(all_targets, poses);
+  const std::size_t targets = of.size();
   std::vector<Pair> of_all(targets * targets);
   for (std::size_t p = 0; p < poses.size(); ++p) {
     std::vector<std::size_t> active;
-    for (std::size_t i = 0; i < targets; ++i)
-      if (is_active(poses[p], i)) active.push_back(i);
+    for (std::size_t n = 0; n < targets; ++n)
+      if (is_active(poses[p], of[n])) active.push_back(n);
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a + 1; b < active.size(); ++b) {
         Pair& pair = of_all[active[a] * targets + active[b]];
-        const double product = std::fabs(poses[p][active[a]] * poses[p][active[b]]);
-        if (product > pair.product) pair = {active[a], active[b], product, p};
+        const double product = std::fabs(poses[p][of[active[a]]] * poses[p][of[active[b]]]);
+        if (product > pair.product) pair = {of[active[a]], of[active[b]], product, p};
       }
     }
   }
