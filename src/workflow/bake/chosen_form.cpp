@@ -20,6 +20,8 @@ constexpr double kPartOfTracks = 0.25;
 // Poses, as many as these numbers of deltas added up allow.
 constexpr double kSums = 1e9;
 constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
+// Weights of poses that are held: of files with thousands of targets, not all are looked at alone.
+constexpr std::size_t kMostWeights = 8000000;
 constexpr std::size_t kFewestSteps = 3, kMostSteps = 16, kFewestMixed = 8, kMostMixed = 96, kPartOfMixed = 4;
 // Of the errors: what twice as many targets must leave at most.
 constexpr double kBetterByFar = 0.6;
@@ -157,7 +159,10 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   const std::size_t steps = std::clamp(sampling.most / (changing.size() + 1), kFewestSteps, kMostSteps);
   sets.push_back({PoseSet::Kind::kFile, all, {}});
   for (const std::vector<double>& pose : weights.poses) sets.back().poses.push_back(with_extras(pose, extras));
-  for (const std::size_t i : changing) {
+  const std::size_t room = std::max<std::size_t>(1, kMostWeights / (steps * (targets + extras.size() + 1)));
+  const std::size_t count = std::min(changing.size(), room);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = changing[n * changing.size() / count];
     if (!numbers[i].empty())
       sets.push_back(
           {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
@@ -246,7 +251,9 @@ std::size_t enough_poses(const GltfShading& shading, std::span<const VertexColum
   constexpr std::size_t kOfVertex = 10, kOfCorner = 6;
   std::size_t of_pose = 1 + kOfCorner * shading.set.topology.corner_count();
   for (const VertexColumns& form : forms) of_pose += kOfVertex * form.first.size() + form.entries.size();
-  return std::clamp(static_cast<std::size_t>(kSums / static_cast<double>(of_pose)), kLeastPoses, kMostPoses);
+  const std::size_t most = std::min(kMostPoses, kMostWeights / (1 + shading.set.targets.size()));
+  return std::clamp(static_cast<std::size_t>(kSums / static_cast<double>(of_pose)), kLeastPoses,
+                    std::max(kLeastPoses, most));
 }
 
 // The forms with extra targets: those of each target alone, or all.
