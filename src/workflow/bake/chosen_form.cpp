@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/blocks.h"
-#include "workflow/bake/harmless_form.h"
 #include "workflow/bake/played_poses.h"
 
 namespace chronormal::inline internal {
@@ -19,9 +18,13 @@ constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
 // Of the tolerance: what straight pieces may leave of it.
 constexpr double kPartOfTracks = 0.25;
 // Poses, as many as these numbers of deltas added up allow.
-constexpr double kSums = 1.2e9;
-constexpr std::size_t kLeastPoses = 32, kMostPoses = 1500;
+constexpr double kSums = 1e9;
+constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
+// Weights of poses that are held: of files with thousands of targets, not all are looked at alone.
+constexpr std::size_t kMostWeights = 8000000;
 constexpr std::size_t kFewestSteps = 3, kMostSteps = 16, kFewestMixed = 8, kMostMixed = 96, kPartOfMixed = 4;
+// Of the errors: what twice as many targets must leave at most.
+constexpr double kBetterByFar = 0.6;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
 std::vector<std::size_t> changing_targets(const GltfShading& shading) {
@@ -64,6 +67,24 @@ std::vector<std::uint32_t> judged_vertices(const DeltaSource& source, const std:
   return result;
 }
 
+// Which of these each target may turn, as they are numbered there.
+std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
+                                                           const std::vector<VertexVectors>& stored,
+                                                           std::span<const std::uint32_t> vertices) {
+  const GltfShading& shading = source.shading;
+  std::vector<std::vector<std::uint32_t>> result(shading.set.targets.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    std::vector<bool> element_moves(shading.groups.size(), false);
+    if (moves(shading, i))
+      for (const std::uint32_t e : source.terms.elements(i)) element_moves[e] = true;
+    for (std::uint32_t n = 0; n < vertices.size(); ++n) {
+      const bool is_turned = element_moves[shading.element_of_vertex[vertices[n]]];
+      if (is_turned || stored[i].at(vertices[n]) != Vec3f{}) result[i].push_back(n);
+    }
+  }
+  return result;
+}
+
 std::vector<bool> new_bases(const DeltaSource& source) {
   std::vector<bool> result(source.shading.element_of_vertex.size(), false);
   for (std::size_t i = 0; i < source.base_normals.size(); ++i)
@@ -86,8 +107,11 @@ std::size_t most_extras(std::span<const Host> hosts, std::size_t targets) {
   return most;
 }
 
-bool is_free_of_limits(std::span<const Host> hosts) {
-  return std::all_of(hosts.begin(), hosts.end(), [](const Host& host) { return host.normals == NormalRule::kSum; });
+FormLengths lengths_for(std::span<const Host> hosts) {
+  const auto adds_up = [](const Host& host) { return host.normals == NormalRule::kSum; };
+  const auto keeps_weights = [](const Host& host) { return host.weight_bits == 32; };
+  if (std::all_of(hosts.begin(), hosts.end(), adds_up)) return FormLengths::kFree;
+  return std::all_of(hosts.begin(), hosts.end(), keeps_weights) ? FormLengths::kOpposite : FormLengths::kUnit;
 }
 
 // Whether two hosts play these tracks alike.
@@ -110,7 +134,8 @@ struct Sampling {
 
 std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& weights,
                                std::span<const DrivingTrack> tracks, std::span<const ExtraWeight> extras,
-                               std::span<const Host> hosts, const Sampling& sampling) {
+                               std::span<const Host> hosts, std::span<const std::vector<std::uint32_t>> numbers,
+                               const Sampling& sampling) {
   const std::size_t targets = shading.set.targets.size();
   std::vector<std::size_t> all(hosts.size());
   for (std::size_t h = 0; h < all.size(); ++h) all[h] = h;
@@ -132,14 +157,19 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   }
   const std::vector<std::size_t> changing = changing_targets(shading);
   const std::size_t steps = std::clamp(sampling.most / (changing.size() + 1), kFewestSteps, kMostSteps);
-  PoseSet& still = sets.emplace_back();
-  still.hosts = all;
-  for (const std::vector<double>& pose : weights.poses) still.poses.push_back(with_extras(pose, extras));
-  for (std::vector<double>& pose : alone_poses(changing, targets, extras, steps, sampling.phase))
-    still.poses.push_back(std::move(pose));
+  sets.push_back({PoseSet::Kind::kFile, all, {}});
+  for (const std::vector<double>& pose : weights.poses) sets.back().poses.push_back(with_extras(pose, extras));
+  const std::size_t room = std::max<std::size_t>(1, kMostWeights / (steps * (targets + extras.size() + 1)));
+  const std::size_t count = std::min(changing.size(), room);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = changing[n * changing.size() / count];
+    if (!numbers[i].empty())
+      sets.push_back(
+          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
+  }
   const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
-  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras, mixed, sampling.seed)});
-  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed)});
+  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras, mixed, sampling.seed), {}});
+  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
   return sets;
 }
 
@@ -221,7 +251,9 @@ std::size_t enough_poses(const GltfShading& shading, std::span<const VertexColum
   constexpr std::size_t kOfVertex = 10, kOfCorner = 6;
   std::size_t of_pose = 1 + kOfCorner * shading.set.topology.corner_count();
   for (const VertexColumns& form : forms) of_pose += kOfVertex * form.first.size() + form.entries.size();
-  return std::clamp(static_cast<std::size_t>(kSums / static_cast<double>(of_pose)), kLeastPoses, kMostPoses);
+  const std::size_t most = std::min(kMostPoses, kMostWeights / (1 + shading.set.targets.size()));
+  return std::clamp(static_cast<std::size_t>(kSums / static_cast<double>(of_pose)), kLeastPoses,
+                    std::max(kLeastPoses, most));
 }
 
 // The forms with extra targets: those of each target alone, or all.
@@ -325,13 +357,14 @@ TargetDeltas ChosenForm::extra_deltas(const GltfShading& shading, std::size_t ex
   return {of_parts(shading, all), 0};
 }
 
-ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                             FormLengths lengths) {
   const GltfShading& shading = source.shading;
   const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
   const std::span<const Host> hosts = options.hosts;
   const std::size_t targets = shading.set.targets.size();
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
-  const HarmlessLimits limits{is_free_of_limits(hosts), most_extras(hosts, targets), tolerance};
+  const HarmlessLimits limits{lengths, most_extras(hosts, targets), tolerance};
 
   ChosenForm result;
   const std::vector<VertexVectors> stored = stored_deltas(shading);
@@ -341,7 +374,7 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
                         std::vector<bool>(hosts.size(), true), tolerance);
 
-  HarmlessForm form = end_point_form(shading, source.terms, rights, limits.has_free_lengths);
+  HarmlessForm form = end_point_form(shading, source.terms, rights, limits.lengths);
   std::vector<VertexColumns> forms = {by_vertex(columns_of(stored), vertices),
                                       by_vertex(columns_of(form.own), vertices)};
   if (source.plan.is_driven && source.plan.products_fit) {
@@ -361,9 +394,10 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
     result.pieces[weights.names[t]] = pieces_of(rights, weights.tracks[t], form, vertices, forms[2],
                                                 kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
   }
+  const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, written_tracks(weights, form.weights, result.pieces), form.weights, hosts,
-                     sampling);
+                     numbers, sampling);
   };
   const std::size_t most = enough_poses(shading, forms);
   result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), false);
@@ -374,6 +408,20 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
   result.extras_ = std::move(form.extras);
   result.own_of_form_.push_back(std::move(form.own));
   return result;
+}
+
+ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+  const FormLengths lengths = lengths_for(options.hosts);
+  if (lengths != FormLengths::kOpposite) return choose_of_lengths(source, weights, options, lengths);
+  ChosenForm unit = choose_of_lengths(source, weights, options, FormLengths::kUnit);
+  if (unit.weights.empty()) return unit;
+  ChosenForm opposite = choose_of_lengths(source, weights, options, FormLengths::kOpposite);
+  const auto error = [](const ChosenForm& form) {
+    double sum = 0;
+    for (const HostChange& host : form.hosts) sum += host.poses[0].after.mean;
+    return sum;
+  };
+  return error(opposite) < kBetterByFar * error(unit) ? opposite : unit;
 }
 
 ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
@@ -404,8 +452,9 @@ ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights
                         options.tolerance.value_or(kHarmlessTolerance));
   const std::size_t most = enough_poses(shading, forms);
   const std::vector<DrivingTrack> tracks = written_tracks(weights, {}, {});
+  const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
-    return pose_sets(shading, weights, tracks, {}, options.hosts, sampling);
+    return pose_sets(shading, weights, tracks, {}, options.hosts, numbers, sampling);
   };
   result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), true);
   result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed}), result.choice_);

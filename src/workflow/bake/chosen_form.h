@@ -16,6 +16,7 @@
 
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/deltas.h"
+#include "workflow/bake/harmless_form.h"
 #include "workflow/bake/host_judge.h"
 #include "workflow/bake/mesh_weights.h"
 
@@ -42,7 +43,7 @@ class ChosenForm {
   [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, std::size_t extra) const;
 
  private:
-  friend ChosenForm choose_harmless(const DeltaSource&, const MeshWeights&, const BakeOptions&);
+  friend ChosenForm choose_of_lengths(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths);
   friend ChosenForm choose_endpoint(const DeltaSource&, const MeshWeights&, const BakeOptions&);
 
   // The deltas of the mesh's own targets in a form other than the stored one.
@@ -54,8 +55,13 @@ class ChosenForm {
   std::vector<VertexVectors> extras_;                    // of the last form
 };
 
-/// Chooses among the harmless forms. shading must have its deltas, and base_normals of the source be those that will be
+/// Chooses among the harmless forms whose vectors are such. shading must have its deltas, and base_normals of the source be those that will be
 /// stored.
+[[nodiscard]] ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weights,
+                                           const BakeOptions& options, FormLengths lengths);
+
+/// Chooses among the harmless forms of the lengths that the named hosts keep. Opposite weights are taken where they are
+/// better by far: they need twice as many targets for each correction.
 [[nodiscard]] ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights,
                                          const BakeOptions& options);
 

@@ -11,14 +11,13 @@
 #include <utility>
 
 #include "core/blocks.h"
+#include "workflow/bake/opposite_targets.h"
 #include "workflow/bake/unit_targets.h"
 
 namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 64;
-// Stored normals that are shorter point nowhere.
-constexpr double kShortest = 1e-3;
 // Lengths of a sum of unit normals that are tried.
 constexpr double kLongestSum = 2.5, kShortestSum = 0.1, kNextSum = 0.9;
 // Of the tolerance: what one extra target of a pair may leave half-way, and in squares how little worse it may be.
@@ -31,21 +30,8 @@ constexpr double kRight = 1e-5;
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 // A pair that is never stronger would need weights beyond 1 elsewhere.
 constexpr double kMostScale = 4, kLeastProduct = 1e-6, kStrongest = 0.95;
-// Pairs that are looked at, and poses at which they are measured.
-constexpr std::size_t kMostPairs = 6000, kMostPoses = 96, kMeasured = 6000000;
-
-// The stored normal of a vertex.
-struct Base {
-  Vec3d direction;  // (0, 0, 0) where it is too short
-  double length = 1;
-  Vec3d stored;
-
-  explicit Base(const Vec3d& normal) : stored(normal) {
-    if (chronormal::length(normal) < kShortest) return;
-    direction = unit(normal);
-    length = chronormal::length(normal);
-  }
-};
+// Targets of which all pairs are looked at, pairs that are kept in mind, and poses at which they are measured.
+constexpr std::size_t kMostActive = 512, kMostPairs = 6000, kMostPoses = 96, kMeasured = 6000000;
 
 // Which vertices show an element.
 class VerticesOfElements {
@@ -107,12 +93,12 @@ bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fab
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
-            std::vector<bool> needs_element, bool has_free_lengths, HarmlessForm& form)
+            std::vector<bool> needs_element, FormLengths lengths, HarmlessForm& form)
       : terms_(terms),
         rights_(rights),
         shown_(shading),
         needs_element_(std::move(needs_element)),
-        has_free_lengths_(has_free_lengths),
+        lengths_(lengths),
         form_(form),
         of_target_(form.own.size()) {}
 
@@ -135,7 +121,7 @@ class Corrector {
     std::vector<std::array<Vec3d, 2>> vectors(asked.size());
     parallel_each(asked.size(), kBlock, [&](std::size_t n) {
       const Vec3d right = unit(rights_.of_vertex(asked[n].vertex, asked[n].of_element));
-      const Base base(rights_.stored(asked[n].vertex));
+      const BaseNormal base(rights_.stored(asked[n].vertex));
       const Vec3d shown = (1 / base.length) * (base.stored + sum_of(i, asked[n].vertex, pose));
       if (right == Vec3d{} || (max_abs(shown) > 0 && angle_between(shown, right) < kRight)) return;
       if (const auto both = two_units(base.direction, right - shown)) {
@@ -221,7 +207,7 @@ class Corrector {
     const Vec3d right_half = unit(rights_.of_vertex(asked.vertex, half_of_element));
     if (right == Vec3d{}) return result;
     const double t = weight.at(pose[weight.i], pose[weight.j]), t_half = weight.at(half[weight.i], half[weight.j]);
-    const Base base(rights_.stored(asked.vertex));
+    const BaseNormal base(rights_.stored(asked.vertex));
     const auto shown_at = [&](const std::vector<double>& at) {
       const Vec3d sum = base.stored + sum_of(weight.i, asked.vertex, at) + sum_of(weight.j, asked.vertex, at);
       return (1 / base.length) * sum;
@@ -265,11 +251,11 @@ class Corrector {
                                  double t) const {
     const Vec3d right = rights_.of_vertex(asked.vertex, asked.of_element);
     if (right == Vec3d{}) return {};
-    const Base base(rights_.stored(asked.vertex));
+    const BaseNormal base(rights_.stored(asked.vertex));
     Vec3d shown = sum_of(weight.i, asked.vertex, pose) + base.stored;
     if (weight.i != weight.j) shown = shown + sum_of(weight.j, asked.vertex, pose);
     Vec3d vector;
-    if (has_free_lengths_) {
+    if (lengths_ != FormLengths::kUnit) {
       vector = (1 / t) * (base.length * right - shown);
     } else if (max_abs(shown) == 0 || angle_between(shown, right) > kRight) {
       const auto u = turning_unit(base.direction, (1 / base.length) * shown, unit(right), t);
@@ -290,7 +276,7 @@ class Corrector {
   const RightNormals& rights_;
   VerticesOfElements shown_;
   std::vector<bool> needs_element_;
-  bool has_free_lengths_;
+  FormLengths lengths_;
   HarmlessForm& form_;
   std::vector<std::vector<std::size_t>> of_target_;  // the extras of each target alone
 };
@@ -302,17 +288,33 @@ struct Pair {
   std::size_t pose = 0;
 };
 
-std::vector<Pair> active_pairs(std::size_t targets, const PoseList& poses) {
+// The targets that some pose has active, those of the largest weights where they are many; ascending.
+std::vector<std::size_t> active_targets(std::size_t targets, const PoseList& poses) {
+  std::vector<double> largest(targets, 0.0);
+  for (const std::vector<double>& pose : poses)
+    for (std::size_t i = 0; i < targets; ++i) largest[i] = std::fmax(largest[i], std::fabs(pose[i]));
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < targets; ++i)
+    if (largest[i] > kLeastProduct) result.push_back(i);
+  std::stable_sort(result.begin(), result.end(), [&](std::size_t a, std::size_t b) { return largest[a] > largest[b]; });
+  if (result.size() > kMostActive) result.resize(kMostActive);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
+  const std::vector<std::size_t> of = active_targets(all_targets, poses);
+  const std::size_t targets = of.size();
   std::vector<Pair> of_all(targets * targets);
   for (std::size_t p = 0; p < poses.size(); ++p) {
     std::vector<std::size_t> active;
-    for (std::size_t i = 0; i < targets; ++i)
-      if (is_active(poses[p], i)) active.push_back(i);
+    for (std::size_t n = 0; n < targets; ++n)
+      if (is_active(poses[p], of[n])) active.push_back(n);
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a + 1; b < active.size(); ++b) {
         Pair& pair = of_all[active[a] * targets + active[b]];
-        const double product = std::fabs(poses[p][active[a]] * poses[p][active[b]]);
-        if (product > pair.product) pair = {active[a], active[b], product, p};
+        const double product = std::fabs(poses[p][of[active[a]]] * poses[p][of[active[b]]]);
+        if (product > pair.product) pair = {of[active[a]], of[active[b]], product, p};
       }
     }
   }
@@ -413,7 +415,7 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const HarmlessLimits& 
 }  // namespace
 
 HarmlessForm end_point_form(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
-                            bool has_free_lengths) {
+                            FormLengths lengths) {
   const VerticesOfElements shown(shading);
   HarmlessForm form;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i) {
@@ -426,9 +428,10 @@ HarmlessForm end_point_form(const GltfShading& shading, const NormalTerms& terms
     const std::vector<Asked> asked = asked_vertices(shown, rights, pose, terms.elements(i));
     form.own.push_back(gather(asked, [&](const Asked& of) {
       const Vec3d right = rights.of_vertex(of.vertex, of.of_element);
-      const Base base(rights.stored(of.vertex));
+      const BaseNormal base(rights.stored(of.vertex));
       if (right == Vec3d{}) return Vec3d{};
-      if (!has_free_lengths) return base.length * farthest_that_fits(base.direction, unit(right)) - base.stored;
+      if (lengths != FormLengths::kFree)
+        return base.length * farthest_that_fits(base.direction, unit(right)) - base.stored;
       return base.length * std::clamp(length(right), kShortestEnd, kLongestEnd) * unit(right) - base.stored;
     }));
   }
@@ -448,15 +451,17 @@ void add_corrections(const GltfShading& shading, const NormalTerms& terms, const
   if (needy.empty() || limits.most_extras == 0) return;
 
   const std::size_t targets = form.own.size();
-  Corrector corrector(shading, terms, rights, std::move(needs_element), limits.has_free_lengths, form);
+  const bool is_unit = limits.lengths == FormLengths::kUnit;
+  Corrector corrector(shading, terms, rights, std::move(needs_element), limits.lengths, form);
   for (std::size_t i = 0; i < targets; ++i) {
     const bool is_used = std::any_of(poses.begin(), poses.end(), [&](const auto& pose) { return is_active(pose, i); });
     if (!is_used || form.own[i].vertices.empty()) continue;
     std::vector<double> pose(targets, 0.0);
     pose[i] = 1;
-    if (!limits.has_free_lengths) corrector.add_turn(i, pose);
+    if (is_unit) corrector.add_turn(i, pose);
+    if (limits.lengths == FormLengths::kOpposite) corrector.add({i, i, 1, 0}, pose);
     pose[i] = 0.5;
-    const double scale = limits.has_free_lengths ? 1 : 4;
+    const double scale = is_unit ? 4 : 1;
     corrector.add({i, i, scale, -scale}, pose);
   }
   for (const Pair& pair : active_pairs(targets, poses)) {
@@ -464,13 +469,16 @@ void add_corrections(const GltfShading& shading, const NormalTerms& terms, const
     std::vector<double> pose(targets, 0.0);
     pose[pair.i] = poses[pair.pose][pair.i];
     pose[pair.j] = poses[pair.pose][pair.j];
-    const double scale = limits.has_free_lengths ? 1 : std::clamp(kStrongest / pair.product, 1.0, kMostScale);
-    if (limits.has_free_lengths)
+    const double scale = is_unit ? std::clamp(kStrongest / pair.product, 1.0, kMostScale) : 1;
+    if (!is_unit)
       corrector.add({pair.i, pair.j, 0, scale}, pose);
     else
       corrector.add_pair({pair.i, pair.j, 0, scale}, pose, limits.tolerance / kDegreesPerRadian);
   }
-  keep_the_worthiest(worths(rights, form, needy, poses), limits, form);
+  HarmlessLimits of_pairs = limits;
+  if (limits.lengths == FormLengths::kOpposite) of_pairs.most_extras /= 2;
+  keep_the_worthiest(worths(rights, form, needy, poses), of_pairs, form);
+  if (limits.lengths == FormLengths::kOpposite) split_into_opposites(rights, form.weights, form.extras);
 }
 
 }  // namespace chronormal::inline internal

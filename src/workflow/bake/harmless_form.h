@@ -9,8 +9,8 @@
 ///     pair      s w_i w_j      right where both are strongest in the file; one or two
 ///
 /// Every one of them is a unit normal beside N, with a weight from 0 to 1 where those of the file are: what a host leaves
-/// of it, be it the direction or 8 bits, is the same. Where all hosts add up what is stored, lengths are those of n(w)
-/// instead, and the sum is n(w) itself.
+/// of it, be it the direction or 8 bits, is the same. Where all hosts keep weights below 0, corrections have the lengths of
+/// n(w), each as two unit normals with opposite weights; where all hosts add up what is stored, everything has.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_HARMLESS_FORM_H_
 #define CHRONORMAL_WORKFLOW_BAKE_HARMLESS_FORM_H_
 
@@ -34,15 +34,23 @@ struct HarmlessForm {
   std::size_t left_out = 0;           ///< extra targets beyond the limit, which would have gained least
 };
 
+/// What the vectors of a form may be.
+enum class FormLengths {
+  kUnit,      ///< unit normals beside N, with weights from 0 to 1: in any host
+  kOpposite,  ///< corrections as two unit normals with opposite weights, which have the length of n(w) between them: where
+              ///< weights below 0 are kept
+  kFree       ///< of any length: where all hosts add up what is stored
+};
+
 struct HarmlessLimits {
-  bool has_free_lengths = false;  ///< all hosts add up what is stored, whatever its length
+  FormLengths lengths = FormLengths::kUnit;
   std::size_t most_extras = 0;
   double tolerance = 0;  ///< degrees: vertices that are within it need no extra targets
 };
 
 /// Computes the deltas of the mesh's own targets, for all vertices of elements that these move.
 [[nodiscard]] HarmlessForm end_point_form(const GltfShading& shading, const NormalTerms& terms,
-                                          const RightNormals& rights, bool has_free_lengths);
+                                          const RightNormals& rights, FormLengths lengths);
 
 /// Adds extra targets for the poses of a file, to vertices that have need of them (`worst` is what the form is off by at
 /// each of `vertices`, degrees).

@@ -27,7 +27,8 @@ Host judged_as(Host host) {
 }
 
 bool shows_alike(const Host& a, const Host& b) {
-  return a.normals == b.normals && a.bits == b.bits && a.octahedral_base == b.octahedral_base;
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
 }
 
 bool is_rounding(const Host& host) { return host.normals == NormalRule::kClamped && host.bits < kFineBits; }
@@ -243,9 +244,13 @@ template <class Visit>
 void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set, std::span<const Kind> kinds,
                         const Visit& visit) const {
   const std::vector<float> weights = side_by_side(set.poses);
-  rights_.for_each(vertices_, set.poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
+  std::vector<std::uint32_t> some;
+  for (const std::uint32_t n : set.numbers) some.push_back(vertices_[n]);
+  const std::span<const std::uint32_t> vertices = some.empty() ? vertices_ : some;
+  rights_.for_each(vertices, set.poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
     thread_local std::vector<float> errors;
+    const std::size_t n = some.empty() ? at : set.numbers[at];
     const Vec3f normal = to_float(rights_.stored(vertices_[n]));
     errors.resize(forms.size() * right.size());
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
@@ -369,7 +374,7 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
     std::vector<Kind> kinds;
     for (const std::size_t h : set.hosts)
       if (is_rounding(hosts_[h])) kinds.push_back({hosts_[h], false});
-    PoseSet some{set.kind, set.hosts, {}};
+    PoseSet some{set.kind, set.hosts, {}, set.numbers};
     const std::size_t count = std::min(kMostRounded, set.poses.size());
     for (std::size_t n = 0; n < count; ++n) some.poses.push_back(set.poses[n * set.poses.size() / count]);
     std::deque<Gathered> before, after;

@@ -65,6 +65,7 @@ struct PoseSet {
   Kind kind = Kind::kFile;
   std::vector<std::size_t> hosts;
   PoseList poses;
+  std::vector<std::uint32_t> numbers = {};  ///< of the vertices that these poses move, ascending; none: all of them
 };
 
 class HostJudge {

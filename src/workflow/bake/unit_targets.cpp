@@ -54,6 +54,31 @@ std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const V
   return reachable;
 }
 
+std::optional<std::array<Vec3d, 2>> opposite_units(const Vec3d& base, const Vec3d& vector) noexcept {
+  const double room = 1 - dot(vector, vector) / 4;
+  if (!(room >= 0) || max_abs(vector) == 0) return std::nullopt;
+  // Their middle is anywhere across the vector; the best is the one with the smallest components.
+  const Vec3d x = any_perpendicular(unit(vector)), y = cross(unit(vector), x);
+  std::optional<std::array<Vec3d, 2>> best;
+  double least = kMost;
+  const auto look = [&](const Vec3d& across) {
+    const Vec3d middle = std::sqrt(room) * across;
+    const std::array<Vec3d, 2> both = {middle + 0.5 * vector, middle - 0.5 * vector};
+    const double largest = std::fmax(max_abs(both[0] - base), max_abs(both[1] - base));
+    if (largest > least) return;
+    least = largest;
+    best = both;
+  };
+  // Nearest to the base first, and all others where that is none.
+  const Vec3d nearest = dot(base, x) * x + dot(base, y) * y;
+  if (max_abs(nearest) > 1e-6) look(unit(nearest));
+  for (int n = 0; n < 2 * kDirections && !best; ++n) {
+    const double angle = std::numbers::pi * n / kDirections;
+    look(std::cos(angle) * x + std::sin(angle) * y);
+  }
+  return best;
+}
+
 std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& vector) noexcept {
   const Vec3d middle = base + 0.5 * vector;
   const double room = 1 - dot(middle, middle);

@@ -16,6 +16,21 @@
 
 namespace chronormal::inline internal {
 
+/// The stored normal of a vertex.
+struct BaseNormal {
+  static constexpr double kShortest = 1e-3;  ///< shorter ones point nowhere
+
+  Vec3d direction;    ///< (0, 0, 0) where it is too short
+  double length = 1;  ///< 1 where it is too short
+  Vec3d stored;
+
+  explicit BaseNormal(const Vec3d& normal) noexcept : stored(normal) {
+    if (chronormal::length(normal) < kShortest) return;
+    direction = unit(normal);
+    length = chronormal::length(normal);
+  }
+};
+
 /// Whether no component of u - base is beyond 1.
 [[nodiscard]] bool fits(const Vec3d& base, const Vec3d& u) noexcept;
 
@@ -28,6 +43,9 @@ namespace chronormal::inline internal {
 /// weight must not be 0
 [[nodiscard]] std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right,
                                                 double weight) noexcept;
+
+/// Two unit vectors that fit and of which the difference u - v is this vector (eq. 48). Nothing where there are none.
+[[nodiscard]] std::optional<std::array<Vec3d, 2>> opposite_units(const Vec3d& base, const Vec3d& vector) noexcept;
 
 /// Two unit vectors that fit and for which u + v - 2 base is this vector (eq. 47). Nothing where there are none: they
 /// cannot make a normal longer.

