@@ -113,6 +113,9 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
 
 // Why a host does not pass.
 std::string why_beyond(const Audited& audited, const HostAudit& found) {
+  if (found.beyond > 0)
+    return formatted("{}: a mesh has {} more than it takes: {}", found.host.title,
+                     counted(found.beyond, "target", "targets"), found.host.beyond);
   if (found.error.unlit > 0)
     return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
                      counted(found.error.unlit, "pair", "pairs"));

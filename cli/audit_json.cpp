@@ -95,7 +95,8 @@ Json finding_json(const AuditFinding& finding) {
 
 Json host_json(const Audited& input, const HostAudit& found) {
   constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
-  constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration"};
+  constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
+                                     "splines_misread"};
   Json json = {{"name", found.host.name},
                {"title", found.host.title},
                {"normals", kNormals[static_cast<std::size_t>(found.host.normals)]},
@@ -108,6 +109,7 @@ Json host_json(const Audited& input, const HostAudit& found) {
   json["worst_at"] =
       found.worst ? place_json(found.error.worst_at, moment_of(input.audit.subjects[*found.worst])) : Json();
   json["displaced_share"] = found.displaced;
+  json["targets_beyond"] = found.beyond;
   return json;
 }
 

@@ -118,10 +118,8 @@ std::string host_table(const Audited& input) {
   };
   add_row("(specification)", audit.error, "-", "");
   for (const HostAudit& found : audit.hosts) {
-    const auto has_limit = [&](const AuditFinding& f) { return f.host && *f.host == found.host; };
-    std::string note = input.passed(found) ? "" : "beyond the tolerance";
-    if (std::any_of(audit.findings.begin(), audit.findings.end(), has_limit))
-      note += std::string(note.empty() ? "" : ", ") + "too many targets";
+    std::string note = found.beyond > 0 ? "too many targets" : "";
+    if (note.empty() && !input.passed(found)) note = "beyond the tolerance";
     add_row(found.host.title, found.error,
             found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
   }

@@ -21,7 +21,7 @@ struct Audited {
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
-  [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.error.is_within(*tolerance); }
+  [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
   /// Whether the tolerance is kept: in every host that was named, or by the rule where none was.
   [[nodiscard]] bool passed() const {
     if (audit.hosts.empty()) return !tolerance || audit.error.is_within(*tolerance);

@@ -67,6 +67,29 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({x, y, z});
 }
 
+/// Filament: of a normal without texture coordinates a frame by Frisvad's rule, of its matrix (t, n x t, n) a quaternion by
+/// the four cases of Shepperd's method, of that four integers of 16 bits, and of these the third axis.
+[[nodiscard]] inline Triple through_filament(const Triple& n) {
+  if (n == Triple{}) return {};
+  const double a = 1 / (1 + n[1]);
+  Triple t = {-n[2] * n[0] * a, -n[2], 1 - n[2] * n[2] * a};
+  if (n[1] < -0.9999999) t = {-1, 0, 0};
+  const Triple b = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
+  double w = 0, x = 0, y = 0, z = 0;  // four times each times the largest of them
+  if (t[0] + b[1] + n[2] > 0) {
+    w = 1 + t[0] + b[1] + n[2], x = b[2] - n[1], y = n[0] - t[2], z = t[1] - b[0];
+  } else if (t[0] >= b[1] && t[0] >= n[2]) {
+    w = b[2] - n[1], x = 1 + t[0] - b[1] - n[2], y = t[1] + b[0], z = n[0] + t[2];
+  } else if (b[1] >= n[2]) {
+    w = n[0] - t[2], x = t[1] + b[0], y = 1 + b[1] - n[2] - t[0], z = n[1] + b[2];
+  } else {
+    w = t[1] - b[0], x = n[0] + t[2], y = n[1] + b[2], z = 1 + n[2] - t[0] - b[1];
+  }
+  const double size = std::sqrt(w * w + x * x + y * y + z * z);
+  for (double* part : {&w, &x, &y, &z}) *part = std::round(*part / size * 32767) / 32767;
+  return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
+}
+
 /// The integer nearest to |value| times `most`, found by trying all of them, with the sign of the value.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
@@ -136,10 +159,10 @@ using Triple = std::array<double, 3>;
     }
     sum = plus(targets, 1 - total, through_godot(normal));
   } else if (host == "filament") {
-    const Triple base = scaled_to_one(normal);
+    const Triple base = through_filament(normal);
     sum = base;
     for (std::size_t k = 0; k < deltas.size(); ++k) {
-      const Triple target = scaled_to_one(plus(normal, 1, deltas[k]));
+      const Triple target = through_filament(plus(normal, 1, deltas[k]));
       sum = plus(sum, weights[k], plus(target, -1, base));
     }
   } else if (host == "gltfpack") {
@@ -179,8 +202,33 @@ using Triple = std::array<double, 3>;
         return static_cast<double>(values[(3 * key + which) * targets + i]);
       };
       weights.push_back((2 * t * t * t - 3 * t * t + 1) * of_key(next - 1, 1) +
-                        (t * t * t - 2 * t * t + t) * of_key(next - 1, 2) +
-                        (3 * t * t - 2 * t * t * t) * of_key(next, 1) + (t * t * t - t * t) * of_key(next, 0));
+                        (t * t * t - 2 * t * t + t) * of_key(next - 1, 2) * t +
+                        (3 * t * t - 2 * t * t * t) * of_key(next, 1) + (t * t * t - t * t) * of_key(next, 0) * t);
+    }
+    return weights;
+  }
+  if (host == "playcanvas" && is_spline) {
+    // The tracks that its parser makes: as many as there are numbers for each key, one number each.
+    const std::size_t tracks = values.size() / times.size(), keys = times.size();
+    std::vector<double> weights;
+    for (std::size_t j = 0; j < targets; ++j) {
+      std::vector<double> data;
+      for (std::size_t k = 0; k < keys; ++k) data.push_back(static_cast<double>(values[k * tracks + j]));
+      const auto number = [&](std::size_t i) { return i < data.size() ? data[i] : std::nan(""); };
+      std::size_t left = 0, right = 0;
+      double length = 0, t = 0;
+      if (time >= static_cast<double>(times.back())) {
+        left = right = keys - 1;
+      } else if (time >= static_cast<double>(times.front())) {
+        while (time >= static_cast<double>(times[left + 1])) ++left;
+        right = left + 1;
+        length = static_cast<double>(times[right]) - static_cast<double>(times[left]);
+        t = (time - static_cast<double>(times[left])) / length;
+      }
+      const double weight = (1 + 2 * t) * (1 - t) * (1 - t) * number(left * 3 + 1) +
+                            t * (1 - t) * (1 - t) * number(left * 3 + 2) * length +
+                            t * t * (3 - 2 * t) * number(right * 3 + 1) + t * t * (t - 1) * number(right * 3) * length;
+      weights.push_back(std::fabs(weight) > 1e-5 ? weight : 0);
     }
     return weights;
   }

@@ -181,6 +181,12 @@ struct HostAudit {
   /// How far a vertex is from where the specification has it, at most: a share of the diagonal of the box around the
   /// base of its mesh.
   double displaced = 0;
+  /// Targets of a mesh beyond those that the host takes: it shows nothing then (Host::beyond). The errors above are as if
+  /// it left these out.
+  std::size_t beyond = 0;
+
+  /// Whether the host shows the file, and every pair as MotionError::is_within() has it.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.is_within(degrees); }
 };
 
 struct Audit {

@@ -4,7 +4,8 @@
 /// normalize(N' + sum_k w'_k D'_k) instead, of what it keeps of N, of D_k and of the weights:
 ///
 ///     sum       N' = N, D' = D                             as 32-bit floats, or deltas as 16-bit ones
-///     unit      N' = unit(N), D' = unit(N + D) - unit(N)   a unit normal for each target: only the direction of N + D
+///     unit      N' = u(N), D' = u(N + D) - u(N)            a unit normal u for each target: the direction of N + D, or by
+///                                                          way of a frame what is no direction where |N + D| is not 1
 ///     clamped   N' and D' are rounded to signed integers of a few bits that stand for [-1, 1]: larger components of D
 ///               are cut
 ///
@@ -13,9 +14,8 @@
 ///
 /// With |N + D| = 1 and no component of D beyond 1, hosts of all three rules show the same but for rounding.
 ///
-/// Not modelled: what compressors do to positions; keys that Godot's importer removes; that Filament makes its unit
-/// normals by way of a frame that it takes to be orthonormal, so that where |N + D| is not 1 it is off by more than this
-/// says.
+/// Not modelled: what compressors do to positions; keys that Godot's importer removes; that Filament's frame is made of
+/// texture coordinates or tangents where there are any, and not of the normal alone.
 ///
 /// Threads    everything here is pure
 #ifndef CHRONORMAL_WORKFLOW_HOSTS_H_
@@ -41,7 +41,8 @@ enum class TrackRule {
   kSpecified,               ///< as appendix C of the glTF specification has it
   kSplinesResampled,        ///< CUBICSPLINE from time 0 on, with its last key; others as specified
   kAllResampled,            ///< every track, from the first key of the animation on
-  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents that are not multiplied by the time between keys
+  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents times the part of the time between keys that has gone by
+  kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and weights of zero beyond these
 };
 
 inline constexpr double kHostSampleRate = 30;  ///< samples a second of tracks that are resampled
@@ -51,8 +52,12 @@ struct Host {
   std::string_view title;  ///< for people: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
   /// sum: of the float that keeps a component of a delta; unit: of each of the two octahedral numbers that keep a
-  /// direction, or 32 for floats; clamped: of the integer that keeps a component, its sign included.
+  /// direction, or of the four numbers of a quaternion; clamped: of the integer that keeps a component, its sign included.
   int bits = 32;
+  /// unit: u is the third axis of the rotation that a quaternion has, which is taken from the frame that Frisvad's rule
+  /// makes of the vector, as if that were of length 1. (Building an Orthonormal Basis from a 3D Unit Vector Without
+  /// Normalization, 2012.)
+  bool by_frame = false;
   bool octahedral_base = false;  ///< clamped: N goes through octahedral numbers of as many bits before
   TrackRule tracks = TrackRule::kSpecified;
   int weight_bits = 32;  ///< of a weight in a track
@@ -76,8 +81,10 @@ inline constexpr std::array<Host, 9> kHosts = {{
     {.name = "playcanvas",
      .title = "PlayCanvas",
      .bits = 16,
+     .tracks = TrackRule::kSplinesMisread,
      .least_weight = 1e-5,
-     .source = "PlayCanvas 2.23, src/scene/morph.js, src/scene/morph-instance.js and "
+     .source = "PlayCanvas 2.23, src/scene/morph.js, src/scene/morph-instance.js, "
+               "src/framework/parsers/glb-parser.js (createMorphTargetCurves) and "
                "src/framework/anim/evaluator/anim-cache.js"},
     {.name = "godot",
      .title = "Godot 4",
@@ -90,11 +97,14 @@ inline constexpr std::array<Host, 9> kHosts = {{
     {.name = "filament",
      .title = "Filament",
      .normals = NormalRule::kUnit,
+     .bits = 16,
+     .by_frame = true,
      .tracks = TrackRule::kSplinesWithoutDuration,
      .most_targets = 256,
-     .beyond = "further targets are ignored",
+     .beyond = "the program ends",
      .source = "Filament 1.53, shaders/src/surface_getters.vs (morphNormal), libs/gltfio/src/TangentsJob.cpp, "
-               "libs/gltfio/src/Animator.cpp and CONFIG_MAX_MORPH_TARGET_COUNT of EngineEnums.h"},
+               "libs/geometry/src/SurfaceOrientation.cpp, libs/math/include/math/mat3.h (packTangentFrame), "
+               "libs/gltfio/include/gltfio/math.h (cubicSpline) and CONFIG_MAX_MORPH_TARGET_COUNT of EngineEnums.h"},
     {.name = "bevy",
      .title = "Bevy",
      .most_targets = 256,

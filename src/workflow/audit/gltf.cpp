@@ -269,7 +269,7 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
   result.rule = options.rule.value_or(AuditRule::kGltf);
   if (!options.hosts.empty() && result.rule != AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "hosts go with the rule gltf, which they stand for"};
-  for (const Host& host : options.hosts) result.hosts.push_back({host, {}, {}, 0});
+  for (const Host& host : options.hosts) result.hosts.emplace_back().host = host;
   const std::size_t total = count_segments(document, only);
   std::size_t done = 0;
   const auto progress = [&] {
@@ -286,6 +286,10 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
     if (weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
     for (const AuditFinding& note : limits_of(shading, options.hosts)) result.findings.push_back(note);
+    for (HostAudit& host : result.hosts) {
+      const std::size_t most = host.host.most_targets, targets = shading.set.targets.size();
+      if (most > 0 && targets > most) host.beyond = std::max(host.beyond, targets - most);
+    }
 
     const MeshAudit mesh{document, options, shading, weighting, result.rule, progress};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);

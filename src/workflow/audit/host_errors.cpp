@@ -8,7 +8,8 @@ namespace chronormal::inline internal {
 namespace {
 
 bool keep_alike(const Host& a, const Host& b) noexcept {
-  return a.normals == b.normals && a.bits == b.bits && a.octahedral_base == b.octahedral_base;
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
 }
 
 // The diagonal of the box around the base.

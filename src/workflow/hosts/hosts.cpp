@@ -2,7 +2,9 @@
 #include "chronormal/workflow/hosts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 namespace chronormal {
@@ -70,10 +72,47 @@ Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
 }
 
-// The direction of a vector of any length as a host of unit normals keeps it.
+// The first axis of the frame that Frisvad's rule makes of a unit vector, here with y up, taken as the rule is of any
+// vector.
+Vec3d first_axis(const Vec3d& n) noexcept {
+  constexpr double kDown = -1 + 1.0 / (1 << 23);
+  if (n.y < kDown) return {-1, 0, 0};
+  const double a = 1 / (1 + n.y);
+  return {-n.z * n.x * a, -n.z, 1 - n.z * n.z * a};
+}
+
+// The third axis of the rotation that is read from the frame of a vector by the rule for orthonormal frames, once it
+// was kept as a quaternion of signed integers.
+Vec3d through_frame(const Vec3d& v, int bits) noexcept {
+  if (v == Vec3d{} || !is_finite(v)) return v;
+  const Vec3d x = first_axis(v), y = cross(v, x);
+  const double m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {v.x, v.y, v.z}};
+  std::array<double, 4> q{};  // x, y, z, w
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (trace > 0) {
+    const double root = std::sqrt(trace + 1), s = 0.5 / root;
+    q = {(m[1][2] - m[2][1]) * s, (m[2][0] - m[0][2]) * s, (m[0][1] - m[1][0]) * s, root / 2};
+  } else {
+    const std::size_t larger = m[1][1] > m[0][0] ? 1 : 0;
+    const std::size_t i = m[2][2] > m[larger][larger] ? 2 : larger, j = (i + 1) % 3, k = (j + 1) % 3;
+    const double root = std::sqrt(m[i][i] - m[j][j] - m[k][k] + 1), s = 0.5 / root;  // root is 1 or more
+    q[i] = root / 2;
+    q[j] = (m[i][j] + m[j][i]) * s;
+    q[k] = (m[i][k] + m[k][i]) * s;
+    q[3] = (m[j][k] - m[k][j]) * s;
+  }
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const double most = std::ldexp(1, bits - 1) - 1;
+  for (double& part : q) part = std::round(part / length * most) / most;
+  return unit(
+      Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
+}
+
+// The unit normal that a host keeps of a vector of any length.
 Vec3f kept_direction(const Host& host, const Vec3f& v) noexcept {
-  const Vec3d direction = unit(to_double(v));
-  return to_float(host.bits == 32 ? direction : through_unsigned_octahedral(direction, host.bits));
+  const Vec3d vector = to_double(v);
+  return to_float(host.by_frame ? through_frame(vector, host.bits)
+                                : through_unsigned_octahedral(unit(vector), host.bits));
 }
 
 // How many letters have to be put in, left out or replaced to make one word of the other.

@@ -1,6 +1,7 @@
 #include "workflow/hosts/played_track.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -13,21 +14,15 @@ bool is_resampled(TrackRule rule, GltfInterpolation interpolation) noexcept {
   return rule == TrackRule::kSplinesResampled && interpolation == GltfInterpolation::kCubicSpline;
 }
 
-bool lacks_duration(TrackRule rule, GltfInterpolation interpolation) noexcept {
-  return rule == TrackRule::kSplinesWithoutDuration && interpolation == GltfInterpolation::kCubicSpline;
+bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
+  return interpolation == GltfInterpolation::kCubicSpline &&
+         (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Keys of a cubic spline that, played as specified, are what a host plays that does not multiply tangents by the time
-// between keys.
-GltfKeys without_duration(GltfKeys keys, std::size_t targets) {
-  for (std::size_t key = 0; key + 1 < keys.times.size(); ++key) {
-    const double duration = keys.times[key + 1] - keys.times[key];
-    for (std::size_t i = 0; i < targets; ++i) {
-      keys.values[(3 * key + 2) * targets + i] /= duration;
-      keys.values[3 * (key + 1) * targets + i] /= duration;
-    }
-  }
-  return keys;
+// Hermite's weights of the value before, its tangent, the value after and its tangent.
+std::array<double, 4> hermite(double t) noexcept {
+  const double s = 1 - t;
+  return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
 }
 
 // gltfpack rounds the number of samples, with a bias towards one more.
@@ -41,17 +36,15 @@ double index_of_last_sample(const TimeRange& animation) noexcept {
 PlayedTrack::PlayedTrack(const Host& host, GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count,
                          const TimeRange& animation)
     : host_(host),
-      as_specified_(keys.times.size() < 2 ||
-                    (!is_resampled(host.tracks, interpolation) && !lacks_duration(host.tracks, interpolation))),
+      as_specified_(!is_resampled(host.tracks, interpolation) && !has_own_splines(host.tracks, interpolation)),
       resampled_(is_resampled(host.tracks, interpolation)),
       steps_(interpolation == GltfInterpolation::kStep),
       first_(host.tracks == TrackRule::kAllResampled ? animation.first : 0),
       last_(keys.times.back()),
       last_index_(host.tracks == TrackRule::kAllResampled ? index_of_last_sample(animation)
                                                           : std::ceil(keys.times.back() * kHostSampleRate)),
-      curve_(lacks_duration(host.tracks, interpolation) ? without_duration(std::move(keys), target_count)
-                                                        : std::move(keys),
-             interpolation, target_count) {}
+      keys_(has_own_splines(host.tracks, interpolation) ? keys : GltfKeys()),
+      curve_(std::move(keys), interpolation, target_count) {}
 
 void PlayedTrack::sample(double index, std::span<double> weights) const {
   double time = first_ + index / kHostSampleRate;
@@ -63,9 +56,40 @@ void PlayedTrack::sample(double index, std::span<double> weights) const {
   for (double& weight : weights) weight = std::floor(std::clamp(weight, 0.0, 1.0) * most + 0.5) / most;
 }
 
+void PlayedTrack::play_spline(double time, bool just_before, std::span<double> weights) const {
+  const std::vector<double>& times = keys_.times;
+  const std::size_t keys = times.size(), targets = weights.size();
+  const auto after = just_before ? std::lower_bound(times.begin(), times.end(), time)
+                                 : std::upper_bound(times.begin(), times.end(), time);
+  const auto next = static_cast<std::size_t>(after - times.begin());
+  const bool outside = next == 0 || next == keys;
+  const std::size_t from = next == 0 ? 0 : next - 1, to = outside ? from : next;
+  const double duration = outside ? 0 : times[to] - times[from], t = outside ? 0 : (time - times[from]) / duration;
+  const std::array<double, 4> h = hermite(t);
+  for (std::size_t i = 0; i < targets; ++i) {
+    if (host_.tracks == TrackRule::kSplinesWithoutDuration) {
+      const auto number = [&](std::size_t key, std::size_t which) {
+        return keys_.values[(3 * key + which) * targets + i];
+      };
+      weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
+      continue;
+    }
+    // The numbers of a target are taken for those of three targets, one number a key, and the first of these, which are
+    // the in-tangents, for a spline with three numbers a key. Where they end, there is no number, and no weight.
+    const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
+    weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
+                     ? 0
+                     : h[0] * number(3 * from + 1) + h[2] * number(3 * to + 1) +
+                           duration * (h[1] * number(3 * from + 2) + h[3] * number(3 * to));
+  }
+}
+
 void PlayedTrack::at(double time, bool just_before, std::span<double> weights) const {
   if (!resampled_) {
-    curve_.at(time, just_before, weights);
+    if (as_specified_)
+      curve_.at(time, just_before, weights);
+    else
+      play_spline(time, just_before, weights);
     drop_weights(host_, weights);
     return;
   }

@@ -33,13 +33,16 @@ class PlayedTrack {
  private:
   // A sample of a resampled track.
   void sample(double index, std::span<double> weights) const;
+  // The weights of a cubic spline that is played by a rule of its own.
+  void play_spline(double time, bool just_before, std::span<double> weights) const;
 
   Host host_;
   bool as_specified_;
-  bool resampled_;  // and otherwise the curve is what is played
+  bool resampled_;
   bool steps_;
   double first_, last_;  // of the samples
   double last_index_;    // that of the last sample
+  GltfKeys keys_;        // of a spline that is played by a rule of its own; else none
   gltf::WeightCurve curve_;
 };
 

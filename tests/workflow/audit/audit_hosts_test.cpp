@@ -173,9 +173,12 @@ TEST(AuditHosts, targets_beyond_the_limit_are_ignored_and_noted) {
   builder.add_track(builder.add_animation("moves"), 0, std::vector<float>{0, 1}, values);
   const Audit result = audit_of(builder, {.hosts = find_hosts("three,filament").value()});
   EXPECT_GT(result.hosts[0].error.worst, 1);
-  EXPECT_LT(result.hosts[1].error.worst, 1e-3);  // nothing moves
+  EXPECT_LT(result.hosts[1].error.worst, 0.01);  // nothing moves
   EXPECT_GT(result.hosts[1].displaced, 0.05);
   EXPECT_EQ(result.hosts[0].displaced, 0);
+  EXPECT_TRUE(result.hosts[0].is_within(180));
+  EXPECT_EQ(result.hosts[1].beyond, 2U);
+  EXPECT_FALSE(result.hosts[1].is_within(180));  // it shows nothing
   const auto note = std::find_if(result.findings.begin(), result.findings.end(),
                                  [](const AuditFinding& f) { return f.kind == AuditFinding::Kind::kBeyondHost; });
   ASSERT_NE(note, result.findings.end());

@@ -28,7 +28,7 @@ Host host_named(std::string_view name) { return find_hosts(name).value().at(0); 
 Track random_track(GltfInterpolation interpolation, std::mt19937& random) {
   std::uniform_real_distribution<float> gap(0.02F, 0.4F), value(-0.4F, 1.4F);
   Track track{interpolation, {random() % 2 == 0 ? 0.0F : gap(random)}, {}};
-  for (std::size_t key = random() % 6; key > 0; --key) track.times.push_back(track.times.back() + gap(random));
+  for (std::size_t key = random() % 9; key > 0; --key) track.times.push_back(track.times.back() + gap(random));
   const std::size_t numbers = interpolation == GltfInterpolation::kCubicSpline ? 3 : 1;
   for (std::size_t i = 0; i < track.times.size() * numbers * kTargets; ++i) track.values.push_back(value(random));
   return track;
@@ -76,14 +76,23 @@ TEST(PlayedTrack, says_whether_it_is_as_specified) {
   EXPECT_FALSE(as_specified("filament", spline));
   EXPECT_TRUE(as_specified("godot", linear));
   EXPECT_FALSE(as_specified("godot", spline));
+  EXPECT_FALSE(as_specified("playcanvas", spline));
+  EXPECT_TRUE(as_specified("playcanvas", linear));
   EXPECT_FALSE(as_specified("gltfpack", linear));
 }
 
-TEST(PlayedTrack, filament_stretches_tangents_of_keys_that_are_close) {
-  // From 0 to 0 in a tenth of a second, leaving at 3 a second: at the middle 1/8 of the tangent instead of 1/80.
+TEST(PlayedTrack, filament_multiplies_tangents_by_the_part_that_has_gone_by) {
+  // From 0 to 0 in an eighth of a second, leaving at 3 a second: at the middle an eighth of the tangent, times the time
+  // between the keys, and times a half in Filament.
   const Track track{GltfInterpolation::kCubicSpline, {0, 0.125F}, {0, 0, 0, 0, 3, 3, 0, 0, 0, 0, 0, 0}};
   EXPECT_NEAR(played(host_named("three"), track, {0, 0.125}, 0.0625)[0], 3 * 0.125 / 8, 1e-12);
-  EXPECT_NEAR(played(host_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8, 1e-12);
+  EXPECT_NEAR(played(host_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8 / 2, 1e-12);
+}
+
+TEST(PlayedTrack, playcanvas_has_no_weights_where_a_spline_has_two_keys) {
+  const Track track{GltfInterpolation::kCubicSpline, {0, 1}, {0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0}};
+  EXPECT_EQ(played(host_named("three"), track, {0, 1}, 0.5), (std::vector<double>{1, 1}));
+  EXPECT_EQ(played(host_named("playcanvas"), track, {0, 1}, 0.5), (std::vector<double>{0, 0}));
 }
 
 TEST(PlayedTrack, gltfpack_has_no_weights_below_zero_or_above_one) {

@@ -1,0 +1,134 @@
+// chronormal_hosts [--partial] FOLDER: writes FOLDER/hosts.md (tools/make_hosts). With --partial it leaves out the files
+// where CHRONORMAL_DATA does not say where they are.
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/chronormal.h"
+#include "support/page.h"
+
+namespace chronormal::hosts_page {
+namespace {
+
+namespace fs = std::filesystem;
+using pages::Cells;
+using pages::Page;
+
+// The files of the folder, but those without a target that turns stored normals.
+constexpr const char* kFiles[] = {
+    "gltf/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
+    "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
+    "gltf/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf",
+    "gltf/MorphStressTest/glTF/MorphStressTest.gltf",
+    "gltf/RobotExpressive/RobotExpressive.glb",
+    "gltf/blenderio_01_cs_morph/01_cs_morph.gltf",
+    "gltf/blenderio_01_morphed_cube/01_morphed_cube.gltf",
+    "rigs/blender_suzanne_two_keys.glb",
+};
+constexpr std::size_t kSamples = 5;  // of each segment
+
+template <class T>
+T value_of(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().text());
+  return std::move(result).value();
+}
+
+// 0 for what is only rounding, and two decimals.
+std::string degrees(double value) { return value < 0.005 ? "0" : fmt::format("{:.2f}", value); }
+
+// One file in one state: a row of each table.
+struct Row {
+  std::string file, state;
+  std::vector<HostAudit> hosts;
+};
+
+Row judged(std::string file, std::string state, const GltfDocument& document) {
+  AuditOptions options;
+  options.samples = kSamples;
+  options.hosts = {kHosts.begin(), kHosts.end()};
+  return {std::move(file), std::move(state), value_of(audit(document, options)).hosts};
+}
+
+// As exported, and by each encoding.
+void add_rows(const std::string& path, std::vector<Row>& rows) {
+  const std::string name = fmt::format("`{}`", fs::path(path).filename().string());
+  const GltfDocument document = value_of(GltfDocument::open(path));
+  rows.push_back(judged(name, "as it is", document));
+  for (const BakeEncodingName& encoding : kBakeEncodings) {
+    GltfEdit edit(document);
+    BakeOptions options;
+    options.encoding = encoding.encoding;
+    value_of(bake(document, options, edit));
+    const std::string bytes = value_of(edit.bytes("baked.glb"));
+    const GltfDocument baked = value_of(GltfDocument::read(std::string_view(bytes), path));
+    rows.push_back(judged(name, fmt::format("`{}`", encoding.name), baked));
+  }
+}
+
+void set_tables(Page& page, const std::vector<Row>& rows) {
+  struct Figure {
+    const char* name;
+    double (*of)(const HostAudit& host);
+  };
+  constexpr Figure kFigures[] = {
+      {"means", [](const HostAudit& host) { return host.error.mean(); }},
+      {"nearly_all", [](const HostAudit& host) { return host.error.percentile(0.999); }},
+      {"displaced", [](const HostAudit& host) { return 100 * host.displaced; }},
+  };
+  Cells header = {"file", ""};
+  for (const Host& host : kHosts) header.emplace_back(host.title);
+  for (const Figure& figure : kFigures) {
+    std::vector<Cells> cells;
+    for (const Row& row : rows) {
+      Cells& line = cells.emplace_back(Cells{row.file, row.state});
+      for (const HostAudit& host : row.hosts) line.push_back(degrees(figure.of(host)));
+    }
+    page.table(figure.name, header, cells);
+  }
+}
+
+// The table of kHosts.
+void set_hosts(Page& page) {
+  std::vector<Cells> rows;
+  for (const Host& host : kHosts)
+    rows.push_back({fmt::format("`{}`", host.name), std::string(host.title), std::string(host.source)});
+  page.table("sources", {"name", "host", "source"}, rows, 0);
+}
+
+void write_page(const std::string& folder, bool partial) {
+  const char* const data = std::getenv("CHRONORMAL_DATA");
+  if (!partial && data == nullptr) throw std::runtime_error("set CHRONORMAL_DATA to the folder of the real data");
+  Page page("hosts/hosts.md.in", folder);
+  set_hosts(page);
+  std::string part;
+  if (data != nullptr) {
+    std::vector<Row> rows;
+    for (const char* const file : kFiles) add_rows((fs::path(data) / file).string(), rows);
+    Page files("hosts/files.md.in", folder);
+    files.set("samples", std::to_string(kSamples));
+    set_tables(files, rows);
+    part = files.markdown();
+  }
+  page.set("files", part);
+  page.write("hosts.md");
+}
+
+}  // namespace
+}  // namespace chronormal::hosts_page
+
+int main(int argc, char** argv) {
+  const bool partial = argc == 3 && std::string_view(argv[1]) == "--partial";
+  if (argc != (partial ? 3 : 2)) {
+    std::fprintf(stderr, "usage: chronormal_hosts [--partial] FOLDER\n");
+    return 2;
+  }
+  return chronormal::pages::run("chronormal_hosts",
+                                [&] { chronormal::hosts_page::write_page(argv[argc - 1], partial); });
+}
