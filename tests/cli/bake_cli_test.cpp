@@ -144,7 +144,7 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
     return run_shell(std::string(kProgram) + " audit " + name, folder_.path()).out;
   };
   expect_words(audit("moving.glb"), {"chronormal bake moving.glb"});
-  expect_words(audit("out.glb"), {"the file was baked before, with one delta per target", "--encode exact"});
+  expect_words(audit("out.glb"), {"what is off was baked before", "one delta for each target", "--encode exact"});
   ASSERT_EQ(run("moving.glb -o exact.glb --encode exact").exit_code, 0);
   expect_words(audit("exact.glb"), {"nothing to do"});
 }

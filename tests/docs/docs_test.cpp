@@ -188,7 +188,7 @@ void write_files_of_readme(const test::TemporaryFolder& folder) {
   const std::string faces = "f 1 2 3\nf 1 3 4\n";
   const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
   const std::string moved = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0.5\n" + faces;
-  for (const char* const name : {"frames", "walk", "run", "targets"}) fs::create_directory(folder / name);
+  for (const char* const name : {"frames", "walk", "run", "targets", "models"}) fs::create_directory(folder / name);
   for (const char* const name : {"frames/1.obj", "frames/3.obj", "walk/1.obj", "run/1.obj", "start.obj", "face.obj"})
     folder.write(name, still);
   for (const char* const name : {"frames/2.obj", "walk/2.obj", "run/2.obj", "end.obj", "targets/smile.obj"})
@@ -197,7 +197,7 @@ void write_files_of_readme(const test::TemporaryFolder& folder) {
   folder.write("walk.pc2", test::small_pc2(0, 1));
   test::GltfBuilder face = test::random_sheet(1, 5, 2, 0.2).file();
   face.add_track<float>(face.add_animation("smile"), 0, {0, 1}, {1, 0, 0, 1});
-  folder.write("face.glb", face.glb());
+  for (const char* const name : {"face.glb", "intro.glb", "models/head.glb"}) folder.write(name, face.glb());
 }
 
 // Those that stand alone, indented; what they print depends on whose files they are given.

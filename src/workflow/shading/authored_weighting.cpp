@@ -11,7 +11,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
-constexpr double kTells = 0.1;  // degrees
+constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians, and small enough to be its own sine
 constexpr double kClear = 2.0 / 3;
 constexpr double kNone = -1;  // in place of an angle
 
@@ -39,11 +39,17 @@ WeightingDistance distance_of(std::span<const StoredNormal> stored, const std::v
   return result;
 }
 
-double median_of_telling(std::span<const StoredNormal> stored, const std::vector<bool>& element_tells,
+bool differ(const Vec3d& a, const Vec3d& b) {
+  const Vec3d across = cross(a, b);
+  const double along = dot(a, b);
+  return dot(across, across) > kTells * kTells * dot(a, a) * dot(b, b) || along < 0;
+}
+
+double median_of_telling(std::span<const StoredNormal> stored, const std::vector<char>& tells,
                          const std::vector<float>& angles) {
   std::vector<float> told;
   for (std::size_t i = 0; i < angles.size(); ++i)
-    if (element_tells[stored[i].element] && angles[i] >= 0) told.push_back(angles[i]);
+    if (tells[stored[i].element] != 0 && angles[i] >= 0) told.push_back(angles[i]);
   if (told.empty()) return 0;
   const auto middle = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 2);
   std::nth_element(told.begin(), middle, told.end());
@@ -58,7 +64,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   if (stored.empty()) return result;
   const Segment still{&topology, positions, positions, 0, 1, 0};
   std::vector<Vec3d> by_area;
-  std::vector<float> spread(groups.size());  // the largest angle to the normal by area, in degrees
+  std::vector<char> tells(groups.size());  // of each element
   std::array<std::vector<float>, kWeightings.size()> angles;
   for (std::size_t w = 0; w < kWeightings.size(); ++w) {
     std::vector<Vec3d> normals = all_weighted_normals_at(still, groups, kWeightings[w].weighting, 0);
@@ -70,13 +76,10 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
       continue;
     }
     parallel_each(normals.size(), kBlock, [&](std::size_t e) {
-      if (normals[e] == Vec3d{} || by_area[e] == Vec3d{}) return;
-      spread[e] = std::max(spread[e], static_cast<float>(angle_between(normals[e], by_area[e]) * kDegreesPerRadian));
+      if (differ(normals[e], by_area[e])) tells[e] = 1;
     });
   }
-  std::vector<bool> tells(groups.size());
-  for (std::size_t e = 0; e < tells.size(); ++e) tells[e] = spread[e] > kTells;
-  for (const StoredNormal& normal : stored) result.telling += tells[normal.element] ? 1U : 0U;
+  for (const StoredNormal& normal : stored) result.telling += tells[normal.element] != 0 ? 1U : 0U;
   std::size_t closest = 0;
   for (std::size_t w = 0; w < kWeightings.size(); ++w) {
     result.distances[w].of_telling = median_of_telling(stored, tells, angles[w]);
