@@ -29,23 +29,33 @@ struct Options {
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
-  double tolerance = BakeOptions{}.tolerance;
+  std::string hosts = "all";
+  std::optional<double> tolerance;
   std::optional<std::string> drivers;  // where to write them beside the result
   bool json = false, no_audit = false;
 };
+
+std::string host_names() {
+  std::string names;
+  for (const Host& host : kHosts) names.append(names.empty() ? "" : ", ").append(host.name);
+  return names;
+}
 
 Result<BakeOptions> understand(const Options& options) {
   BakeOptions how;
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
-    if (!how.encoding) return misuse("--encode", "it must be exact or endpoint");
+    if (!how.encoding) return misuse("--encode", "it must be harmless, exact or endpoint");
   }
+  Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+  if (!hosts) return misuse("--for", hosts.error().message);
+  how.hosts = std::move(hosts).value();
   const Result<Weighting> weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   how.weighting = weighting.value();
   if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
-  if (!(options.tolerance >= 0 && options.tolerance <= 90))
+  if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
     return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
   how.crease_angle = options.crease_angle;
   how.recompute_base = options.recompute_base;
@@ -141,6 +151,8 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
+  if (how.encoding == BakeEncoding::kHarmless) return misuse("--encode", "a sequence is written exact or endpoint");
+  if (options.hosts != "all") return misuse("--for", "a sequence is written for hosts that add up deltas");
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
@@ -208,10 +220,14 @@ Command bake_command() {
   return {"bake",
           "Write right normals into a glTF file, or make one of a sequence",
           {input_table(options->input),
-           {{"--encode HOW", &options->encode,
-             "exact: extra targets for the quadratic terms, driven by the animations;\n"
-             "endpoint: the best single delta per target, by least squares where several are\n"
-             "active at once. Default: exact where an animation drives the weights"},
+           {{"--for HOST,...", &options->hosts,
+             "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
+                 ", or all (default)"},
+            {"--encode HOW", &options->encode,
+             "harmless (default): what all of these show alike, with extra targets where\n"
+             "they are worth it; exact: extra targets for all quadratic terms, right\n"
+             "where a host adds up targets as stored; endpoint: the best single delta per target,\n"
+             "by least squares where several are active at once"},
             {"--weighting NAME", &options->weighting,
              "how faces count: area (default, exact), angle, uniform, area-angle, max"},
             {"--crease DEG", &options->crease_angle,
@@ -225,8 +241,8 @@ Command bake_command() {
              {.check = check_whole(0)}},
             {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
             {"--tolerance DEG", &options->tolerance,
-             "leave out targets that turn no normal by more than this, and cut cubic\n"
-             "splines so finely (default 0.001)"},
+             "leave out extra targets that turn no normal by more than this, and cut tracks so\n"
+             "finely (default 0.5; with --encode exact 0.001)"},
             {"--drivers FILE", &options->drivers,
              "write what drives extra targets, which stands in the result, to a JSON file too"},
             {"--no-audit", &options->no_audit, "do not compare the errors before and after"},

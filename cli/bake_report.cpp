@@ -1,5 +1,8 @@
 #include "cli/bake_report.h"
 
+#include <algorithm>
+#include <array>
+
 #include "cli/format.h"
 #include "cli/json.h"
 #include "cli/table.h"
@@ -52,6 +55,61 @@ std::string change_words(const BeforeAndAfter& audit) {
   return text;
 }
 
+void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
+  const double sum = all.mean * static_cast<double>(all.judged) + of_mesh.mean * static_cast<double>(of_mesh.judged);
+  all.judged += of_mesh.judged;
+  all.mean = all.judged > 0 ? sum / static_cast<double>(all.judged) : 0;
+  all.most = std::max(all.most, of_mesh.most);
+  all.worst = std::max(all.worst, of_mesh.worst);
+}
+
+// What each named host shows of the animations and targets of the file, all meshes together.
+std::string hosts_text(const GltfBake& bake) {
+  Table table;
+  table.add_column("host", "", Table::Align::kLeft);
+  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  table.add_column("worst", "", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  bool any = false;
+  for (const Host& host : kHosts) {
+    HostChange::Errors all;
+    for (const BakedMesh& mesh : bake.meshes) {
+      for (const HostChange& change : mesh.hosts) {
+        if (change.host != host.name) continue;
+        add_errors(change.poses[0].before, all.before);
+        add_errors(change.poses[0].after, all.after);
+      }
+    }
+    if (all.before.judged == 0) continue;
+    any = true;
+    table.add_row({std::string(host.title), four_decimals(all.before.mean), four_decimals(all.after.mean),
+                   four_decimals(all.before.most), four_decimals(all.after.most), four_decimals(all.before.worst),
+                   four_decimals(all.after.worst)});
+  }
+  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() + "\n" : "";
+}
+
+// What was left as it was.
+std::string left_text(const GltfBake& bake) {
+  std::size_t kept = 0, left_out = 0;
+  for (const BakedMesh& mesh : bake.meshes) {
+    kept += mesh.kept;
+    left_out += mesh.left_out;
+  }
+  std::string text;
+  if (kept > 0)
+    text += counted(
+        kept, "normal keeps the deltas that it had: no others are as near, and nowhere worse, in all of these hosts\n",
+        "normals keep the deltas that they had: no others are as near, and nowhere worse, in all of these hosts\n");
+  if (left_out > 0)
+    text += counted(left_out, "correction that would gain least is left out: one of these hosts has no room for more\n",
+                    "corrections that would gain least are left out: one of these hosts has no room for more\n");
+  return text;
+}
+
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
@@ -72,6 +130,27 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"mean_degrees_before", before.mean()}, {"mean_degrees_after", after.mean()},
           {"unlit_before", before.unlit},         {"unlit_after", after.unlit},
           {"worse", is_worse(after, before)}};
+}
+
+// Of animations and targets alone, of random poses, and of cross-fades.
+constexpr std::array<const char*, 3> kPoses = {"file", "random", "cross_fades"};
+
+Json shown_json(const ShownErrors& errors) {
+  return {{"mean_degrees", errors.mean}, {"most_degrees", errors.most}, {"worst_degrees", errors.worst}};
+}
+
+Json hosts_json(const BakedMesh& mesh) {
+  Json hosts = Json::array();
+  for (const HostChange& change : mesh.hosts) {
+    Json host = {{"host", change.host}};
+    for (std::size_t k = 0; k < kPoses.size(); ++k) {
+      const auto& [before, after] = change.poses[k];
+      if (before.judged == 0) continue;
+      host[kPoses[k]] = {{"judged", before.judged}, {"before", shown_json(before)}, {"after", shown_json(after)}};
+    }
+    hosts.push_back(std::move(host));
+  }
+  return hosts;
 }
 
 Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
@@ -96,6 +175,9 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
           {"rescaled_normals", mesh.rescaled},
           {"stilled_targets", mesh.stilled},
           {"fitted_normals", mesh.fitted_elements},
+          {"kept_normals", mesh.kept},
+          {"left_out_targets", mesh.left_out},
+          {"hosts", hosts_json(mesh)},
           {"target_fit_degrees", mesh.largest_error},
           {"track_fit_degrees", mesh.resampling_error},
           {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
@@ -126,7 +208,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     }
     return text + (bake.meshes.empty()
                        ? "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n"
-                       : "nothing to bake: the output is as the input\n");
+                       : "nothing to bake: no other normals would be nearer; the output is as the input\n");
   }
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
@@ -154,7 +236,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     text += counted(fitted, "normal that several targets move at once has deltas",
                     "normals that several targets move at once have deltas") +
             " fitted to the weights of the file\n";
-  return text + lines_after(report);
+  return text + left_text(bake) + hosts_text(bake) + lines_after(report);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

@@ -53,9 +53,14 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
 TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   const ProcessResult result = run("moving.glb -o out.glb");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  expect_words(result.out, {"moving.glb -> out.glb\n", "hills  exact", "3 targets and ", "bytes of arrays were added",
-                            "1 weight track is a cubic spline now", "by audit: worst "});
-  expect_words(result.err, {"chronormal bake: hills: 5 targets of positions and normals are 10 morphed attributes; "});
+  expect_words(result.out, {"moving.glb -> out.glb\n", "hills  harmless", " targets and ", "bytes of arrays were added",
+                            "in the animations of the file, and for each target alone", "three.js", "after gltfpack",
+                            "by audit: worst "});
+  EXPECT_EQ(result.out.find("cubic spline"), std::string::npos);
+  const ProcessResult exact = run("moving.glb -o exact.glb --encode exact");
+  expect_words(exact.out, {"hills  exact", "3 targets and ", "1 weight track is a cubic spline now"});
+  expect_words(exact.err, {"chronormal bake: hills: 5 targets of positions and normals are 10 morphed attributes; ",
+                           "they can be far off in Godot 4, Filament, after gltfpack"});
   EXPECT_TRUE(bytes_of("out.glb").starts_with("glTF"));
 }
 
@@ -88,7 +93,7 @@ TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
 }
 
 TEST_F(BakeCli, json_is_one_object_with_schema_1) {
-  const ProcessResult result = run("moving.glb -o out.glb --json");
+  const ProcessResult result = run("moving.glb -o out.glb --json --encode exact");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json json = Json::parse(result.out);
   EXPECT_EQ(json["schema"], 1);
@@ -140,7 +145,7 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   };
   expect_words(audit("moving.glb"), {"chronormal bake moving.glb"});
   expect_words(audit("out.glb"), {"the file was baked before, with one delta per target", "--encode exact"});
-  ASSERT_EQ(run("moving.glb -o exact.glb").exit_code, 0);
+  ASSERT_EQ(run("moving.glb -o exact.glb --encode exact").exit_code, 0);
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
@@ -168,32 +173,39 @@ TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
 
 TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
   // Deltas times the squares of weights are beyond float32. Where nobody asks for them they are not written.
-  test::GltfBuilder builder = test::hills_document(1);
-  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{3e38F, 3e38F});
-  folder_.write("huge.glb", builder.glb());
-  const ProcessResult result = run("huge.glb -o out.glb --json --encode exact");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json audit = Json::parse(result.out)["audit"];
-  EXPECT_GT(audit["worst_degrees_after"], audit["worst_degrees_before"]);
-  EXPECT_EQ(audit["worse"], true);
-  expect_words(result.err, {"the result is worse than the input: by audit worst "});
+  std::size_t worse = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    test::GltfBuilder builder = test::hills_document(1, seed);
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{3e38F, 3e38F});
+    folder_.write("huge.glb", builder.glb());
+    const ProcessResult result = run("huge.glb -o out.glb --force --json --encode exact");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json audit = Json::parse(result.out)["audit"];
+    const bool says_so = result.err.find("the result is worse than the input: by audit worst ") != std::string::npos;
+    EXPECT_EQ(audit["worse"], says_so);
+    if (audit["worst_degrees_after"] > audit["worst_degrees_before"]) {
+      EXPECT_TRUE(says_so);
+      ++worse;
+    }
+  }
+  EXPECT_GT(worse, 0U);
   const ProcessResult usual = run("huge.glb -o other.glb");
-  expect_words(usual.out, {"hills  endpoint"});
+  expect_words(usual.out, {"hills  harmless"});
   expect_words(usual.err, {"float32 cannot hold their products"});
   EXPECT_EQ(run("moving.glb -o fine.glb").err.find("worse"), std::string::npos);
 }
 
 TEST_F(BakeCli, what_drives_extra_targets_is_in_the_file_and_beside_it_where_that_is_asked_for) {
-  const ProcessResult endpoint = run("still.glb -o out.glb");
-  EXPECT_EQ(endpoint.exit_code, 0);
-  expect_words(endpoint.out, {"hills  endpoint"});
-  expect_words(endpoint.err, {"no animation drives"});
+  const ProcessResult usual = run("still.glb -o out.glb");
+  EXPECT_EQ(usual.exit_code, 0);
+  expect_words(usual.out, {"hills  harmless"});
+  expect_words(usual.err, {"no animation drives"});
   const std::size_t entries = folder_.entry_count();
   const ProcessResult exact = run("still.glb -o face.glb --encode exact");
   EXPECT_EQ(exact.exit_code, 0) << exact.err;
   EXPECT_EQ(folder_.entry_count(), entries + 1) << "nothing but the file";
   const Json mark = test::GltfPlayer(bytes_of("face.glb")).json["meshes"][0]["extras"]["chronormal"];
-  EXPECT_EQ(mark["extras"][0], R"({"target": 1, "linear": [], "quadratic": [[0, 0, 1.0]]})"_json);
+  EXPECT_EQ(mark["extras"][0], R"({"target": 1, "linear": [[0, 1.0]], "quadratic": [[0, 0, -1.0]]})"_json);
 
   const ProcessResult both = run("still.glb -o other.glb --encode exact --drivers drivers.json");
   EXPECT_EQ(both.exit_code, 0) << both.err;
@@ -219,7 +231,7 @@ TEST_F(BakeCli, standard_streams_work) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   ASSERT_EQ(run("moving.glb -o out.glb").exit_code, 0);
   EXPECT_EQ(bytes_of("piped.glb"), bytes_of("out.glb"));
-  expect_words(result.err, {"hills  exact"});
+  expect_words(result.err, {"hills  harmless"});
 }
 
 TEST_F(BakeCli, sequences_become_an_animated_glb) {
@@ -234,7 +246,8 @@ TEST_F(BakeCli, sequences_become_an_animated_glb) {
 TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb -o out.glb --encode best", 2, "--encode");
   expect_error("moving.glb -o out.glb --weighting heavy", 2, "--weighting");
-  expect_error("moving.glb -o out.glb --weighting angle", 2, "--encode endpoint");
+  expect_error("moving.glb -o out.glb --weighting angle --encode exact", 2, "--encode endpoint");
+  expect_error("moving.glb -o out.glb --for godott", 2, "did you mean godot?");
   expect_error("moving.glb -o out.glb --tolerance -1", 2, "--tolerance");
   expect_error("moving.glb -o out.glb --crease 200", 2, "--crease");
   expect_error("moving.glb -o out.glb --crease 30", 2, "--smooth");

@@ -1,9 +1,11 @@
 // The formula in a page of JavaScript, as an oracle for what the program bakes: one target whose weight is w. With
-// n(w) = c0 + w c1 + w^2 c2, a host that shows N + w D + w^2 E gets the direction of n(w) from N = c0 / |c0|,
-// D = c1 / |c0| and E = c2 / |c0| on an extra target that moves nothing.
+// n(w) = c0 + w c1 + w^2 c2, a host that shows N + w D + w (1 - w) E gets the direction of n(w) from
+// N = c0 / |c0|, D = (c1 + c2) / |c0| and E = -c2 / |c0| on an extra target that moves nothing.
 import { Accessor } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { describe, newIO } from './reader.mjs';
+
+const withExtra = (w) => [w, w * (1 - w)];
 
 // Bakes a file whose animations are LINEAR and drive the only target of each mesh.
 export async function bakeByFormula(inputPath, outputPath) {
@@ -25,17 +27,17 @@ export async function bakeByFormula(inputPath, outputPath) {
       if (base[p]) {
         const { directions, lengths } = base[p];
         const over = (f) => directions.map((_, i) => f(i) / (lengths[Math.floor(i / 3)] || 1));
-        const linear = over((i) => (up[p].directions[i] - down[p].directions[i]) / 2);
-        const square = over((i) => (up[p].directions[i] + down[p].directions[i]) / 2 - directions[i]);
-        target.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, linear));
-        extra.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, square));
+        const end = over((i) => up[p].directions[i] - directions[i]);
+        const less = over((i) => directions[i] - (up[p].directions[i] + down[p].directions[i]) / 2);
+        target.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, end));
+        extra.setAttribute('NORMAL', accessor(Accessor.Type.VEC3, less));
       }
       primitive.addTarget(extra);
     });
-    mesh.setWeights([mesh.getWeights()[0] ?? 0, (mesh.getWeights()[0] ?? 0) ** 2]);
+    mesh.setWeights(withExtra(mesh.getWeights()[0] ?? 0));
   });
   for (const node of document.getRoot().listNodes())
-    if (node.getWeights().length === 1) node.setWeights([node.getWeights()[0], node.getWeights()[0] ** 2]);
+    if (node.getWeights().length === 1) node.setWeights(withExtra(node.getWeights()[0]));
 
   for (const animation of document.getRoot().listAnimations()) {
     for (const sampler of animation.listSamplers()) {
@@ -45,7 +47,8 @@ export async function bakeByFormula(inputPath, outputPath) {
       w.forEach((weight, k) => {
         const before = k > 0 ? (weight - w[k - 1]) / (times[k] - times[k - 1]) : 0;
         const after = k + 1 < w.length ? (w[k + 1] - weight) / (times[k + 1] - times[k]) : 0;
-        values.push(before, 2 * weight * before, weight, weight * weight, after, 2 * weight * after);
+        const slope = 1 - 2 * weight;  // of w (1 - w)
+        values.push(before, slope * before, ...withExtra(weight), after, slope * after);
       });
       sampler.setInterpolation('CUBICSPLINE').setOutput(accessor(Accessor.Type.SCALAR, values));
     }

@@ -86,16 +86,16 @@ struct GltfExtraTarget {
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
-/// How a bake encodes the normals of targets (workflow/bake.h): with extra targets, or one delta for each.
-enum class BakeEncoding { kExact, kEndpoint };
+/// How a bake encodes the normals of targets (workflow/bake.h).
+enum class BakeEncoding { kHarmless, kExact, kEndpoint };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
 struct BakeEncodingName {
   BakeEncoding encoding;
   std::string_view name;
 };
-inline constexpr std::array<BakeEncodingName, 2> kBakeEncodings = {
-    {{BakeEncoding::kExact, "exact"}, {BakeEncoding::kEndpoint, "endpoint"}}};
+inline constexpr std::array<BakeEncodingName, 3> kBakeEncodings = {
+    {{BakeEncoding::kHarmless, "harmless"}, {BakeEncoding::kExact, "exact"}, {BakeEncoding::kEndpoint, "endpoint"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;

@@ -1,15 +1,19 @@
 /// Writes right normals into ordinary glTF files.
 ///
-///     exact      extra morph targets that carry the quadratic terms of eq. 30, driven by products of weights: exact at
-///                every instant in every host that adds up targets
+///     harmless   unit normals at weight 1 for each target, and extra morph targets of unit normals for what that leaves
+///                wrong on the way and where targets meet, as far as it is beyond a tolerance: nearly right in every host
+///                that is named, and in none of them worse than before (docs/theory.md, section 16)
+///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
+///                at every instant in every host that adds up targets
 ///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
-///                squares (docs/theory.md, eq. 44)
+///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
 ///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_H_
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -22,13 +26,16 @@
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/hosts.h"
 
 namespace chronormal {
 
+inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
+
 struct BakeOptions {
-  /// Nothing: exact where animations drive the weights, and these are not so large that float32 cannot hold their
-  /// products; else endpoint.
-  std::optional<BakeEncoding> encoding = {};
+  std::optional<BakeEncoding> encoding = {};  ///< nothing: harmless; of sequences exact
+  /// Those in which harmless deltas must be right, and for which the report says what they show.
+  std::vector<Host> hosts = {kHosts.begin(), kHosts.end()};
   Weighting weighting = Weighting::kArea;  ///< others than area are fitted, with a stated error
   bool smooth = false;                     ///< primitives without NORMAL get normals, instead of staying flat
   double crease_angle = 180;               ///< degrees: hard edges of those, and of sequences
@@ -39,9 +46,29 @@ struct BakeOptions {
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
   std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
   Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
-  /// Degrees: pairs whose lack, all together, turns no normal by more are left out; cubic splines are cut to this.
-  double tolerance = 0.001;
+  /// Degrees: extra targets whose lack, all together, turns no normal by more are left out, and tracks are cut to this.
+  /// Nothing: kHarmlessTolerance, and kExactBakeTolerance of exact.
+  std::optional<double> tolerance = {};
   std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+
+/// Errors of what is shown, degrees.
+struct ShownErrors {
+  std::size_t judged = 0;  ///< pairs of a vertex and a pose
+  double mean = 0;
+  double most = 0;  ///< that of 99.9 % of them is smaller, to a tenth
+  double worst = 0;
+};
+
+/// What a host shows of a mesh before and after a bake.
+struct HostChange {
+  struct Errors {
+    ShownErrors before, after;
+  };
+  std::string host;
+  /// In the animations of the file as the host plays them, its standing weights, and each target alone from 0 to 1; in
+  /// random poses of 2 to 16 targets; and on the way from one animation to another.
+  std::array<Errors, 3> poses;
 };
 
 /// What was done to one mesh.
@@ -64,6 +91,9 @@ struct BakedMesh {
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
   bool already_baked = false;       ///< nothing was changed
+  std::vector<HostChange> hosts;    ///< of harmless and endpoint: what each named host shows
+  std::size_t kept = 0;             ///< different normals that targets move and that keep the deltas of the file
+  std::size_t left_out = 0;         ///< extra targets that the hosts have no room for
   /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.
   std::vector<std::size_t> unmarked_nodes;
 };

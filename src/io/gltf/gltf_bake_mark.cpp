@@ -109,7 +109,7 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   if (version != kVersion && version != kVersionOfFactors)
     view.complain("version", "it was written by another version of chronormal");
   const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
-  if (!encoding) view.complain("encode", "it is neither exact nor endpoint");
+  if (!encoding) view.complain("encode", "it is none of harmless, exact and endpoint");
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = view.flag("sequence");
   const std::vector<JsonView> extras = items_of(view, value, "extras");

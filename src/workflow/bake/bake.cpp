@@ -1,8 +1,9 @@
-// Bakes a glTF file. A mesh goes through four steps, each a function of the values of those before it:
+// Bakes a glTF file. A mesh goes through these steps, each a function of the values of those before it:
 //
 //     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
-//     plan_mesh             which products of weights the animations need                            plan
+//     plan_mesh             how it is encoded, and for exact which pairs the animations need         plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
+//     choose_*              of other encodings: for each vertex what does no harm in any host        chosen_form
 //     MeshWriter            the arrays and all that counts targets, as edits of the file             write_mesh
 //
 // The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
@@ -10,18 +11,20 @@
 
 #include <algorithm>
 #include <cassert>
-#include <set>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
+#include "workflow/bake/chosen_form.h"
 #include "workflow/bake/deltas.h"
+#include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/messages.h"
 #include "workflow/bake/plan.h"
 #include "workflow/bake/terms.h"
 #include "workflow/bake/write_mesh.h"
 #include "workflow/bake/write_tracks.h"
 #include "workflow/shading/gltf_shading.h"
-#include "workflow/shading/target_weights.h"
 
 namespace chronormal {
 namespace {
@@ -30,14 +33,7 @@ namespace {
 struct MeshBake {
   BakedMesh report;
   std::vector<MeshWarning> warnings;
-  std::vector<WeightProduct> extras;
-};
-
-// The weights that a file gives to a mesh.
-struct MeshWeights {
-  std::vector<WeightTrack> tracks;  // of the animations; `use` refers to them
-  WeightUse use;
-  bool is_driven = false;  // an animation gives some moving target a weight
+  GrownMesh grown;  // where it has extra targets
 };
 
 // The meshes that might move: only their arrays tell whether they do.
@@ -77,29 +73,6 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
                        "it is no object, so that there is no place to say what was baked");
 }
 
-// Tracks with the same keys, which drive the mesh through several nodes, count once.
-Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
-  const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
-  MeshWeights weights{{}, WeightUse(targets), false};
-  for (std::size_t a = 0; a < document.animations().size(); ++a) {
-    std::set<std::size_t> seen;
-    const std::vector<GltfTrack>& tracks = document.animations()[a].tracks;
-    for (std::size_t t = 0; t < tracks.size(); ++t) {
-      if (document.nodes()[tracks[t].node].mesh != mesh || !seen.insert(tracks[t].same_keys_as).second) continue;
-      Result<GltfKeys> keys = document.keys(a, t);
-      if (!keys) return keys.error();
-      weights.tracks.push_back({tracks[t].interpolation, std::move(keys).value(), targets});
-    }
-  }
-  for (const WeightTrack& track : weights.tracks) weights.use.add_track(track);
-  for (std::size_t i = 0; i < targets; ++i) weights.is_driven |= moves(shading, i) && weights.use.together(i, i);
-  weights.use.add_pose(document.meshes()[mesh].weights);
-  for (const GltfNode& node : document.nodes()) {
-    if (node.mesh == mesh && !node.weights.empty()) weights.use.add_pose(node.weights);
-  }
-  return weights;
-}
-
 // The parts whose base normals are made anew.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
@@ -109,16 +82,45 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
 }
 
 // The report as far as it follows from the plan.
-void report_plan(const MeshPlan& plan, std::size_t target_count, BakedMesh& report) {
+void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.encoding = plan.encoding;
-  for (const WeightProduct& extra : plan.extras)
-    report.extras.push_back({target_count + report.extras.size(), {}, {{extra.i, extra.j, 1}}});
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
   if (plan.encoding == BakeEncoding::kExact)
     report.undriven = static_cast<std::size_t>(std::count(plan.is_line.begin(), plan.is_line.end(), true));
-  report.largest_error = plan.lines.largest_error() * kDegreesPerRadian;
   report.fitted_elements = plan.lines.elements();
   report.resampling_error = plan.left_out;
+}
+
+// The arrays of a mesh, one target at a time.
+struct MeshDeltas {
+  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing where it stays as it is
+  std::function<TargetDeltas(std::size_t extra)> extra;
+  GrownMesh grown;
+  bool is_new = true;  // something becomes other than it is
+};
+
+MeshDeltas exact_deltas(const DeltaSource& source) {
+  return {[&source](std::size_t i) { return own_target_deltas(source, i); },
+          [&source](std::size_t k) { return extra_target_deltas(source, source.plan.extras[k]); },
+          {source.shading.mesh, source.plan.extras, {}, false},
+          true};
+}
+
+// Those of the other encodings, with what there is to say of them.
+MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                         BakedMesh& report) {
+  const bool is_harmless = source.plan.encoding == BakeEncoding::kHarmless;
+  auto chosen = std::make_shared<ChosenForm>(is_harmless ? choose_harmless(source, weights, options)
+                                                         : choose_endpoint(source, weights, options));
+  report.hosts = chosen->hosts;
+  report.kept = chosen->kept;
+  report.left_out = chosen->left_out;
+  report.resampling_error = chosen->track_error * kDegreesPerRadian;
+  report.largest_error = chosen->fit_error * kDegreesPerRadian;
+  return {[&source, chosen](std::size_t i) { return chosen->own_deltas(source.shading, i); },
+          [&source, chosen](std::size_t k) { return chosen->extra_deltas(source.shading, k); },
+          {source.shading.mesh, chosen->weights, chosen->pieces, is_harmless},
+          chosen->changes(source.shading)};
 }
 
 // Bakes what was read of one mesh, which moves and has normals. step() is called for each target that is done.
@@ -133,7 +135,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
       plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
   if (!planned) return planned.error();
   const MeshPlan& plan = planned.value();
-  report_plan(plan, mesh.target_count, baked.report);
+  report_plan(plan, baked.report);
 
   const std::size_t bytes_before = edit.added_bytes();
   MeshWriter writer(document, shading, options.smooth, zeros, edit);
@@ -145,28 +147,38 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
+  MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
+                          ? exact_deltas(source)
+                          : chosen_deltas(source, weights.value(), options, baked.report);
+  for (std::size_t k = 0; k < deltas.grown.extras.size(); ++k)
+    baked.report.extras.push_back(deltas.grown.extras[k].as_target(mesh.target_count + k));
+
+  const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
+  if (!deltas.is_new && !any_base) return Success{};
+
   const auto check_size = [&] { return document.expansion().check(edit.added_bytes(), document.name()); };
   for (std::size_t i = 0; i < mesh.target_count; ++i) {
-    std::optional<TargetDeltas> deltas;
+    std::optional<TargetDeltas> of_target;
     if (changes(shading, i)) {
-      deltas = own_target_deltas(source, i);
-      if (!moves(shading, i)) ++baked.report.stilled;
-      baked.report.largest_error = std::fmax(baked.report.largest_error, deltas->error * kDegreesPerRadian);
+      of_target = deltas.own(i);
+      if (!moves(shading, i) && of_target) ++baked.report.stilled;
+      if (of_target)
+        baked.report.largest_error = std::fmax(baked.report.largest_error, of_target->error * kDegreesPerRadian);
     }
-    writer.write_target(i, deltas);
+    writer.write_target(i, of_target);
     step();
     if (Status status = check_size(); !status) return status;
   }
-  for (const WeightProduct& extra : plan.extras) {
-    writer.append_target(extra_target_deltas(source, extra));
-    step();
+  for (std::size_t k = 0; k < deltas.grown.extras.size(); ++k) {
+    writer.append_target(deltas.extra(k));
     if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras);
   baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
-  baked.extras = plan.extras;
+  baked.grown = std::move(deltas.grown);
+  baked.grown.mesh = shading.mesh;
   warn_of_baked(mesh, shading, plan, options, baked.report, baked.warnings);
   return Success{};
 }
@@ -185,7 +197,8 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
     baked.report.extras = mesh.mark->extras;
     return std::optional(std::move(baked));
   }
-  Result<GltfShading> shading = read_gltf_shading(document, index, {options.smooth, options.crease_angle, false});
+  Result<GltfShading> shading = read_gltf_shading(
+      document, index, {options.smooth, options.crease_angle, options.encoding != BakeEncoding::kExact});
   if (!shading) return shading.error();
   if (options.weighting == Weighting::kArea) shading.value().groups.forget_corners();
   if (!any_changes(shading.value())) return std::optional<MeshBake>();
@@ -203,7 +216,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
 }  // namespace
 
 Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit) {
-  assert(options.tolerance >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
+  assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
   const std::vector<std::size_t> candidates = candidate_meshes(document);
   std::size_t done = 0, total = 0;
   for (const std::size_t mesh : candidates) total += document.meshes()[mesh].target_count;
@@ -221,15 +234,16 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
     if (!baked) return baked.error();
     if (!baked.value()) continue;
     MeshBake& of_mesh = *baked.value();
-    if (!of_mesh.extras.empty()) {
-      grown.push_back({mesh, std::move(of_mesh.extras)});
+    if (!of_mesh.grown.extras.empty()) {
+      grown.push_back(std::move(of_mesh.grown));
       report_of_grown.push_back(result.meshes.size());
     }
     if (!of_mesh.report.already_baked) result.added_targets += of_mesh.report.extras.size();
     result.meshes.push_back(std::move(of_mesh.report));
     std::move(of_mesh.warnings.begin(), of_mesh.warnings.end(), std::back_inserter(warnings));
   }
-  const Result<WrittenTracks> tracks = write_tracks(document, grown, options.tolerance / kDegreesPerRadian, edit);
+  const Result<WrittenTracks> tracks =
+      write_tracks(document, grown, options.tolerance.value_or(kExactBakeTolerance) / kDegreesPerRadian, edit);
   if (!tracks) return tracks.error();
   for (std::size_t n = 0; n < grown.size(); ++n) {
     BakedMesh& report = result.meshes[report_of_grown[n]];

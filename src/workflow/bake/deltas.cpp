@@ -66,11 +66,14 @@ TargetDeltas gather(const GltfShading& shading, const FindDelta& find_delta) {
   return result;
 }
 
-TargetDeltas deltas_of_term(const DeltaSource& source, const NormalTerms::Term& term) {
+TargetDeltas end_deltas(const DeltaSource& source, std::size_t target) {
+  const NormalTerms::Term linear = source.terms.linear_by_element(target);
+  const NormalTerms::Term square = source.terms.pair_by_element(target, target);
   return gather(source.shading, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
-    Vec3d value;
-    if (!term.find(element, value)) return false;
-    delta = terms_of_vertex(source, element, vertex)(value);
+    Vec3d a, c;
+    const bool has_linear = linear.find(element, a), has_square = square.find(element, c);
+    if (!has_linear && !has_square) return false;
+    delta = terms_of_vertex(source, element, vertex)(a + c);
     return true;
   });
 }
@@ -143,14 +146,20 @@ BaseFaults find_base_faults(const DeltaSource& source) {
 
 TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target) {
   if (!moves(source.shading, target)) return {std::vector<std::vector<float>>(source.shading.parts.size()), 0};
-  TargetDeltas deltas = source.plan.is_line[target] ? single_deltas(source, target)
-                                                    : deltas_of_term(source, source.terms.linear_by_element(target));
+  TargetDeltas deltas = source.plan.is_line[target] ? single_deltas(source, target) : end_deltas(source, target);
   deltas.error += source.terms.bound(target);
   return deltas;
 }
 
-TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct& product) {
-  return deltas_of_term(source, source.terms.pair_by_element(product.i, product.j));
+TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra) {
+  const NormalTerms::Term term = source.terms.pair_by_element(extra.i, extra.j);
+  const double sign = extra.i == extra.j ? -1 : 1;
+  return gather(source.shading, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
+    Vec3d value;
+    if (!term.find(element, value)) return false;
+    delta = sign * terms_of_vertex(source, element, vertex)(value);
+    return true;
+  });
 }
 
 }  // namespace chronormal::inline internal

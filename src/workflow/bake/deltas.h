@@ -53,12 +53,13 @@ struct TargetDeltas {
   double error = 0;  ///< a bound of the angle that is left, over the weights of the file, in radians
 };
 
-/// The deltas of one of the mesh's own targets: the linear term, or the best single delta where the plan says so; none
-/// where it moves no vertex. The error does not cover fitted lines, which state their own.
+/// The deltas of one of the mesh's own targets: what its own terms come to at weight 1, or the best single delta where
+/// the plan says so; none where it moves no vertex. The error does not cover fitted lines, which state their own.
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
-/// The deltas of the extra target whose weight is a product of two others.
-[[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const WeightProduct& product);
+/// The deltas of the extra target of two others; of one target with itself, what goes out again between weight 0 and 1
+/// (docs/theory.md, eq. 45).
+[[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
 
 }  // namespace chronormal::inline internal
 

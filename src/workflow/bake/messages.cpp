@@ -25,8 +25,11 @@ std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
 }  // namespace
 
 std::string name_of_extra(const GltfExtraTarget& extra) {
+  if (extra.quadratic.empty()) return "chronormal w" + std::to_string(extra.linear.front().i);
   const auto& [i, j, q] = extra.quadratic.front();
-  return std::string("chronormal w").append(std::to_string(i)).append("*w").append(std::to_string(j));
+  std::string name("chronormal w");
+  name.append(std::to_string(i)).append(i == j ? "*(1-w" : "*w").append(std::to_string(j));
+  return name.append(i == j ? ")" : "");
 }
 
 std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes) {
@@ -84,16 +87,24 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
                    const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
   const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
-  if (!plan.is_driven && !options.encoding) {
+  const bool is_harmless = plan.encoding == BakeEncoding::kHarmless;
+  if (!plan.is_driven && is_harmless) {
     warn(
-        "no animation drives its targets, so that nothing could drive extra ones: each got the best single delta "
-        "(--encode exact writes them all the same)");
+        "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
+        "(--encode exact writes extra targets all the same)");
   }
-  if (plan.is_driven && !plan.products_fit && !options.encoding) {
-    warn(
-        "weights of its animations are so large that float32 cannot hold their products: each target got the best "
-        "single "
-        "delta");
+  if (plan.is_driven && !plan.products_fit && is_harmless) {
+    warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
+  }
+  if (!is_harmless) {
+    std::string names;
+    for (const Host& host : options.hosts)
+      if (host.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(host.title);
+    if (!names.empty()) {
+      warn("by --encode " + std::string(name_of(plan.encoding)) +
+           " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + names +
+           ": leave --encode out for these");
+    }
   }
   if (baked.undriven > 0) {
     warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
@@ -121,7 +132,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.extras.size() > kManyExtras) {
     warn(std::to_string(baked.extras.size()) +
-         " extra targets, for so many are active at once: --encode endpoint needs none");
+         " extra targets, for so many are active at once: a larger --tolerance needs fewer");
   }
   if (baked.without_base > 0) {
     warn(std::to_string(baked.without_base) +

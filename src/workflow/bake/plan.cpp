@@ -29,13 +29,23 @@ std::string place_of(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
+// The extra target of a pair. That of a target with itself only takes away what its end point has too much on the way,
+// so that weight 1 is right without it.
+ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
+
 // One pair while it is weighed.
 struct Candidate {
-  WeightProduct product;
+  ExtraWeight extra;
   BlendTerm term;    // only where it is shown; given back when it was measured
   double aside = 0;  // the largest part of it across a normal, in lengths of that normal
   double size = 0;   // the largest of all of it
   double turn = 0;   // radians: how far leaving it out turns a normal
+
+  // What multiplies the term in a pose.
+  [[nodiscard]] double weight(const std::vector<double>& pose) const {
+    const double of_extra = extra.at(pose[extra.i], pose[extra.j]);
+    return extra.i == extra.j ? -of_extra : of_extra;
+  }
 };
 
 // What the file says about a mesh.
@@ -47,8 +57,11 @@ struct MeshUse {
 
   // Without animations a host may do what it likes.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
-  [[nodiscard]] double largest_weight(std::size_t i) const {
-    return is_driven ? use.largest(i) : std::fmax(1, use.largest(i));
+  [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
+    const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };
+    if (extra.i != extra.j) return largest(extra.i) * largest(extra.j);
+    const auto hump = [](double w) { return std::fabs(w * (1 - w)); };
+    return std::fmax(0.25, std::fmax(hump(use.lowest(extra.i)), hump(use.highest(extra.i))));
   }
 };
 
@@ -98,7 +111,7 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)
-    result[i] = moves(mesh.shading, i) && (encoding == BakeEncoding::kEndpoint || !mesh.together(i, i));
+    result[i] = moves(mesh.shading, i) && (encoding != BakeEncoding::kExact || !mesh.together(i, i));
   return result;
 }
 
@@ -238,7 +251,7 @@ void measure(const MeshUse& mesh, const Poses& poses, const Yardstick& yardstick
     };
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       Candidate& candidate = candidates[c];
-      const double weight = pose[candidate.product.i] * pose[candidate.product.j];
+      const double weight = candidate.weight(pose);
       const auto look = [&](std::size_t n, const Vec3d& unit, double size, Worst& worst) {
         const Vec3d part = (1 / size) * candidate.term.values[n];
         worst.size = std::fmax(worst.size, length(part));
@@ -254,12 +267,10 @@ void measure(const MeshUse& mesh, const Poses& poses, const Yardstick& yardstick
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     Candidate& candidate = candidates[c];
     // Along the normal a small error turns nothing, but only as long as it is small.
-    candidate.product.gain = 1.02 * candidate.aside + 1e-3 * candidate.size;
+    candidate.extra.gain = 1.02 * candidate.aside + 1e-3 * candidate.size;
     candidate.turn = angle_of_tangent(tangents[c]);
     // Weights that no pose shows, such as one wink in a long animation, are bounded instead.
-    if (!poses.are_all)
-      candidate.turn =
-          candidate.size * mesh.largest_weight(candidate.product.i) * mesh.largest_weight(candidate.product.j);
+    if (!poses.are_all) candidate.turn = candidate.size * mesh.largest_weight(candidate.extra);
     candidate.term = {};
   }
 }
@@ -281,8 +292,7 @@ std::vector<Candidate> measured_candidates(const MeshUse& mesh, const Pairs& pai
     for (std::size_t n = 0; n < term.elements.size(); ++n) note_length(term.values[n], largest[term.elements[n]]);
     held += term.elements.size();
     Candidate& candidate = candidates.emplace_back();
-    candidate.product.i = i;
-    candidate.product.j = j;
+    candidate.extra = extra_weight(i, j);
     candidate.term = std::move(term);
     if (held >= kHeldEntries) measure_held();
   }
@@ -297,13 +307,12 @@ double turn_without(const MeshUse& mesh, const std::vector<Candidate>& candidate
   double tangent = 0;
   std::vector<BlendTerm> terms;
   terms.reserve(pairs.size());
-  for (const std::size_t n : pairs) terms.push_back(mesh.terms.pair(candidates[n].product.i, candidates[n].product.j));
+  for (const std::size_t n : pairs) terms.push_back(mesh.terms.pair(candidates[n].extra.i, candidates[n].extra.j));
   for (const std::vector<double>& pose : poses.weights) {
     const std::vector<Vec3d> normals = mesh.terms.at(pose);
     std::vector<Vec3d> without = normals;
     for (std::size_t t = 0; t < terms.size(); ++t) {
-      const WeightProduct& product = candidates[pairs[t]].product;
-      const double weight = pose[product.i] * pose[product.j];
+      const double weight = candidates[pairs[t]].weight(pose);
       for (std::size_t n = 0; weight != 0 && n < terms[t].elements.size(); ++n) {
         Vec3d& normal = without[terms[t].elements[n]];
         normal = normal - weight * terms[t].values[n];
@@ -344,7 +353,7 @@ void choose_extras(const MeshUse& mesh, const std::vector<Candidate>& candidates
   std::vector<bool> leave_out(candidates.size(), false);
   for (const std::size_t n : order) leave_out[n] = true;
   for (std::size_t n = 0; n < candidates.size(); ++n) {
-    if (!leave_out[n]) plan.extras.push_back(candidates[n].product);
+    if (!leave_out[n]) plan.extras.push_back(candidates[n].extra);
   }
 }
 
@@ -356,14 +365,14 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
   MeshPlan plan;
   plan.is_driven = is_driven;
   plan.products_fit = products_fit(mesh);
-  plan.encoding =
-      options.encoding.value_or(is_driven && plan.products_fit ? BakeEncoding::kExact : BakeEncoding::kEndpoint);
+  plan.encoding = options.encoding.value_or(BakeEncoding::kHarmless);
   plan.ranges = weight_ranges(use);
   plan.is_shown = shown_elements(shading);
   plan.is_line = single_delta_targets(mesh, plan.encoding);
   plan.largest = largest_own_terms(mesh, plan.is_line);
-  if (plan.encoding == BakeEncoding::kEndpoint) {
-    if (is_driven) plan.lines = FittedLines(shading, terms, use, plan.is_shown, plan.largest);
+  if (plan.encoding != BakeEncoding::kExact) {
+    if (is_driven && plan.encoding == BakeEncoding::kEndpoint)
+      plan.lines = FittedLines(shading, terms, use, plan.is_shown, plan.largest);
     return plan;
   }
   const Result<Pairs> pairs = find_pairs(document, mesh);
@@ -373,7 +382,7 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
   const Yardstick yardstick(mesh, plan.largest);
   const std::vector<Candidate> candidates =
       measured_candidates(mesh, pairs.value(), poses, yardstick, plan.is_shown, plan.largest);
-  choose_extras(mesh, candidates, poses, yardstick, options.tolerance, plan);
+  choose_extras(mesh, candidates, poses, yardstick, options.tolerance.value_or(kExactBakeTolerance), plan);
   return plan;
 }
 

@@ -20,15 +20,15 @@ struct WeightRange {
 
 struct MeshPlan {
   BakeEncoding encoding = BakeEncoding::kExact;
-  bool is_driven = false;             ///< an animation gives some moving target a weight
-  bool products_fit = true;           ///< of weights, into float32: or nothing can be exact
-  std::vector<bool> is_line;          ///< of each target: it gets the best single delta
-  std::vector<WeightRange> ranges;    ///< of each target: what its error is stated for
-  FittedLines lines;                  ///< those of targets that are active together, of endpoint
-  std::vector<WeightProduct> extras;  ///< ascending (i, j)
-  std::vector<bool> is_shown;         ///< of each element: some vertex shows it
-  std::vector<double> largest;        ///< of each element: the length of its largest term
-  double left_out = 0;                ///< degrees: how far the pairs that were left out turn a normal
+  bool is_driven = false;           ///< an animation gives some moving target a weight
+  bool products_fit = true;         ///< of weights, into float32: or nothing can be exact
+  std::vector<bool> is_line;        ///< of each target: it gets the best single delta
+  std::vector<WeightRange> ranges;  ///< of each target: what its error is stated for
+  FittedLines lines;                ///< those of targets that are active together, of endpoint
+  std::vector<ExtraWeight> extras;  ///< ascending (i, j)
+  std::vector<bool> is_shown;       ///< of each element: some vertex shows it
+  std::vector<double> largest;      ///< of each element: the length of its largest term
+  double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
 };
 
 /// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.

@@ -130,7 +130,7 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
 }  // namespace
 
 Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
-  const bool exact = options.encoding.value_or(BakeEncoding::kExact) == BakeEncoding::kExact;
+  const bool exact = options.encoding.value_or(BakeEncoding::kExact) != BakeEncoding::kEndpoint;
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
   const Result<NormalGroups> groups = groups_of(motion, options);
   if (!groups) return groups.error();

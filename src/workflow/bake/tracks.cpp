@@ -37,6 +37,20 @@ double error_of_clamping(const std::vector<float>& values) {
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
+// An extra weight on a piece.
+Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights) {
+  const Sextic product = multiply(weights[extra.i], weights[extra.j]);
+  const Sextic raised = multiply(weights[extra.i], Cubic{1, 1, 1, 1});
+  Sextic result{};
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = extra.linear * raised[k] + extra.quadratic * product[k];
+  return result;
+}
+
+// Its slope where its factors have these values and slopes.
+double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, double slope_b) {
+  return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
+}
+
 // How far the cubic through the ends of p, value and slope, is from p: a bound.
 double cubic_error(const Sextic& p) {
   const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
@@ -46,23 +60,23 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Whether every product is linear in time between all keys: where one factor holds still.
-bool products_are_linear(const WeightTrack& track, std::span<const WeightProduct> products) {
+// Whether every extra weight is linear in time between all keys: where one factor holds still, or it has none.
+bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
-    for (const WeightProduct& product : products) {
-      if (moves(product.i) && moves(product.j)) return false;
+    for (const ExtraWeight& extra : extras) {
+      if (extra.quadratic != 0 && moves(extra.i) && moves(extra.j)) return false;
     }
   }
   return true;
 }
 
 // Writes values only: for LINEAR, STEP, and single keys.
-void append_values(const WeightTrack& track, std::span<const WeightProduct> products, std::vector<float>& values) {
+void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras, std::vector<float>& values) {
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
-    for (const WeightProduct& product : products)
-      values.push_back(to_file(track.value(key, product.i) * track.value(key, product.j)));
+    for (const ExtraWeight& extra : extras)
+      values.push_back(to_file(extra.at(track.value(key, extra.i), track.value(key, extra.j))));
   }
 }
 
@@ -99,13 +113,12 @@ class Spline {
 
 class TrackExtender {
  public:
-  TrackExtender(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
-                std::size_t most_keys)
+  TrackExtender(const WeightTrack& track, std::span<const ExtraWeight> extras, double tolerance, std::size_t most_keys)
       : track_(track),
-        products_(products),
+        extras_(extras),
         tolerance_(tolerance),
         most_keys_(most_keys),
-        spline_(track.targets + products.size()) {}
+        spline_(track.targets + extras.size()) {}
 
   // The track as a cubic spline.
   ExtendedTrack spline() {
@@ -136,17 +149,18 @@ class TrackExtender {
       spline_.last(i).value = track_.value(0, i);
       if (track_.interpolation == GltfInterpolation::kCubicSpline) spline_.last(i).in = track_.tangent(0, false, i);
     }
-    for (std::size_t p = 0; p < products_.size(); ++p)
-      spline_.last(track_.targets + p).value = track_.value(0, products_[p].i) * track_.value(0, products_[p].j);
+    for (std::size_t p = 0; p < extras_.size(); ++p)
+      spline_.last(track_.targets + p).value =
+          extras_[p].at(track_.value(0, extras_[p].i), track_.value(0, extras_[p].j));
   }
 
   // Adds the key at `to`, and those that are needed before it.
   void add_pieces(double from, double to, const std::vector<Cubic>& weights, int halvings) {
     double error = 0, rounding = 0;
-    for (const WeightProduct& product : products_) {
-      const Sextic exact = multiply(weights[product.i], weights[product.j]);
-      error += product.gain * cubic_error(exact);
-      for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * product.gain * std::fabs(b));
+    for (const ExtraWeight& extra : extras_) {
+      const Sextic exact = extra_weight(extra, weights);
+      error += extra.gain * cubic_error(exact);
+      for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * extra.gain * std::fabs(b));
     }
     // Times are float32: the new key is where the file can say it is.
     const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
@@ -176,17 +190,19 @@ class TrackExtender {
       spline_.last(i).in = slope_at_end(weights[i], duration);
       spline_.last(i).value = weights[i][3];
     }
-    for (std::size_t p = 0; p < products_.size(); ++p) {
+    for (std::size_t p = 0; p < extras_.size(); ++p) {
       const std::size_t column = weights.size() + p;
-      const Cubic &a = weights[products_[p].i], &b = weights[products_[p].j];
-      spline_.before(column).out = slope_at_start(a, duration) * b[0] + a[0] * slope_at_start(b, duration);
-      spline_.last(column).in = slope_at_end(a, duration) * b[3] + a[3] * slope_at_end(b, duration);
-      spline_.last(column).value = a[3] * b[3];
+      const ExtraWeight& extra = extras_[p];
+      const Cubic &a = weights[extra.i], &b = weights[extra.j];
+      spline_.before(column).out =
+          slope_of(extra, a[0], b[0], slope_at_start(a, duration), slope_at_start(b, duration));
+      spline_.last(column).in = slope_of(extra, a[3], b[3], slope_at_end(a, duration), slope_at_end(b, duration));
+      spline_.last(column).value = extra.at(a[3], b[3]);
     }
   }
 
   const WeightTrack& track_;
-  std::span<const WeightProduct> products_;
+  std::span<const ExtraWeight> extras_;
   double tolerance_;
   std::size_t most_keys_, keys_ = 1;  // with the first
   Spline spline_;
@@ -196,30 +212,85 @@ class TrackExtender {
 
 }  // namespace
 
-ExtendedTrack extended_track(const WeightTrack& track, std::span<const WeightProduct> products, double tolerance,
+GltfExtraTarget ExtraWeight::as_target(std::size_t target) const {
+  GltfExtraTarget result{target, {}, {}};
+  if (linear != 0) result.linear.push_back({i, linear});
+  if (quadratic != 0) result.quadratic.push_back({i, j, quadratic});
+  return result;
+}
+
+ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeight> extras, double tolerance,
                              std::size_t most_keys) {
   const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1;
-  const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !products_are_linear(track, products);
-  if (is_spline || becomes_one) return TrackExtender(track, products, tolerance, most_keys).spline();
+  const bool becomes_one = track.interpolation == GltfInterpolation::kLinear && !extras_are_linear(track, extras);
+  if (is_spline || becomes_one) return TrackExtender(track, extras, tolerance, most_keys).spline();
   ExtendedTrack result;
   result.keys = track.size();
   if (result.keys > most_keys) return result;
   result.interpolation = track.interpolation;
   if (track.interpolation != GltfInterpolation::kCubicSpline) {
-    append_values(track, products, result.values);
+    append_values(track, extras, result.values);
     result.error = error_of_clamping(result.values);
     return result;
   }
   // A spline of one key: only its value counts.
-  const std::size_t columns = track.targets + products.size();
+  const std::size_t columns = track.targets + extras.size();
   result.values.assign(3 * columns, 0.0F);
   for (std::size_t i = 0; i < track.targets; ++i) {
     result.values[i] = static_cast<float>(track.tangent(0, false, i));
     result.values[columns + i] = static_cast<float>(track.value(0, i));
     result.values[2 * columns + i] = static_cast<float>(track.tangent(0, true, i));
   }
-  for (std::size_t p = 0; p < products.size(); ++p)
-    result.values[columns + track.targets + p] = to_file(track.value(0, products[p].i) * track.value(0, products[p].j));
+  for (std::size_t p = 0; p < extras.size(); ++p)
+    result.values[columns + track.targets + p] =
+        to_file(extras[p].at(track.value(0, extras[p].i), track.value(0, extras[p].j)));
+  return result;
+}
+
+ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
+                             std::span<const std::uint32_t> pieces, std::size_t most_keys) {
+  ExtendedTrack result;
+  result.interpolation = GltfInterpolation::kLinear;
+  result.keys = track.size();
+  for (const std::uint32_t count : pieces) result.keys += count - 1;
+  if (result.keys > most_keys) return result;
+  std::vector<float> times;
+  const auto add_key = [&](float time, const std::vector<double>& weights) {
+    times.push_back(time);
+    for (const double weight : weights) result.values.push_back(to_file(weight));
+    for (const ExtraWeight& extra : extras)
+      result.values.push_back(to_file(extra.at(weights[extra.i], weights[extra.j])));
+  };
+  std::vector<double> weights(track.targets);
+  for (std::size_t key = 0; key < track.size(); ++key) {
+    const double from = track.keys.times[key];
+    for (std::size_t i = 0; i < track.targets; ++i) weights[i] = track.value(key, i);
+    add_key(static_cast<float>(from), weights);
+    if (key + 1 == track.size()) break;
+    const double to = track.keys.times[key + 1];
+    for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
+      // Times are float32: the new key is where the file can say it is.
+      const auto time = static_cast<float>(from + (to - from) * piece / pieces[key]);
+      if (!(times.back() < time && static_cast<double>(time) < to)) continue;
+      const double t = (static_cast<double>(time) - from) / (to - from);
+      for (std::size_t i = 0; i < track.targets; ++i)
+        weights[i] = (1 - t) * track.value(key, i) + t * track.value(key + 1, i);
+      add_key(time, weights);
+    }
+  }
+  result.keys = times.size();
+  if (times.size() > track.size()) result.times = std::move(times);
+  result.error = error_of_clamping(result.values);
+  return result;
+}
+
+WeightTrack as_track(const WeightTrack& before, const ExtendedTrack& extended, std::size_t extra_count) {
+  WeightTrack result{extended.interpolation, {}, before.targets + extra_count};
+  if (extended.times.empty())
+    result.keys.times = before.keys.times;
+  else
+    result.keys.times.assign(extended.times.begin(), extended.times.end());
+  result.keys.values.assign(extended.values.begin(), extended.values.end());
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_edit.h"
+#include "workflow/bake/chosen_form.h"
 #include "workflow/bake/tracks.h"
 
 namespace chronormal::inline internal {
@@ -16,7 +17,9 @@ namespace chronormal::inline internal {
 /// A mesh that got extra targets, one at least.
 struct GrownMesh {
   std::size_t mesh = 0;
-  std::vector<WeightProduct> extras;  ///< ascending (i, j)
+  std::vector<ExtraWeight> extras;
+  TrackPieces pieces;       ///< of its LINEAR tracks, where these stay LINEAR
+  bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
 };
 
 struct WrittenTracks {

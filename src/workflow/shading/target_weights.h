@@ -13,6 +13,9 @@
 
 namespace chronormal::inline internal {
 
+/// Weights of all targets, pose by pose.
+using PoseList = std::vector<std::vector<double>>;
+
 /// The keys of a track and what is between them. A cubic spline with one key is none: it holds still.
 struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;

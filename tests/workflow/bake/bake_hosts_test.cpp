@@ -77,7 +77,7 @@ class BakedQuad : public ::testing::Test {
     path_ = folder_ / "baked.glb";
   }
 
-  // Whether base + w deltas[0] + w^2 deltas[1] has the direction of the normals at w.
+  // Whether base + w deltas[0] + w (1 - w) deltas[1] has the direction of the normals at w.
   static void expect_exact(const Numbers& base, const std::vector<Numbers>& deltas) {
     ASSERT_EQ(deltas.size(), 2U);
     for (const double w : {0.0, 0.25, 0.5, 1.0}) {
@@ -88,7 +88,7 @@ class BakedQuad : public ::testing::Test {
       for (std::size_t v = 0; v < 4; ++v) {
         Vector shown = vector_at(base, v);
         for (std::size_t k = 0; k < 3; ++k)
-          shown[k] += w * vector_at(deltas[0], v)[k] + w * w * vector_at(deltas[1], v)[k];
+          shown[k] += w * vector_at(deltas[0], v)[k] + w * (1 - w) * vector_at(deltas[1], v)[k];
         EXPECT_LT(degrees_between(shown, vector_at(exact, v)), 0.01) << "w = " << w << ", vertex " << v;
       }
     }

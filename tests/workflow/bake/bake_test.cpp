@@ -103,7 +103,8 @@ TEST(Bake, what_is_not_baked_is_wrong) {
 
 TEST(Bake, endpoint_is_right_at_both_ends_and_states_its_error) {
   for (unsigned seed = 1; seed < 8; ++seed) {
-    const Baked baked = test::bake_document(test::still_hills_document(2, seed), with(BakeEncoding::kEndpoint));
+    const Baked baked = test::bake_document(test::with_misleading_normals(test::still_hills_document(2, seed)),
+                                            with(BakeEncoding::kEndpoint));
     ASSERT_EQ(baked.error, "");
     EXPECT_EQ(baked.report.added_targets, 0U);
     double worst = 0;
@@ -119,30 +120,33 @@ TEST(Bake, endpoint_is_right_at_both_ends_and_states_its_error) {
   }
 }
 
-TEST(Bake, encoding_is_exact_where_animations_drive_weights_and_else_endpoint) {
+TEST(Bake, encoding_is_harmless_where_none_is_asked_for) {
   GltfBuilder builder = test::still_hills_document(1);
   const Baked still = test::bake_document(builder);
-  EXPECT_EQ(still.report.meshes[0].encoding, BakeEncoding::kEndpoint);
+  EXPECT_EQ(still.report.meshes[0].encoding, BakeEncoding::kHarmless);
+  EXPECT_EQ(still.report.added_targets, 0U);
   ASSERT_FALSE(still.report.warnings.empty());
   EXPECT_NE(still.report.warnings[0].find("no animation drives"), std::string::npos);
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
-  EXPECT_EQ(test::bake_document(builder).report.meshes[0].encoding, BakeEncoding::kExact);
+  const Baked driven = test::bake_document(builder);
+  EXPECT_EQ(driven.report.meshes[0].encoding, BakeEncoding::kHarmless);
+  EXPECT_GT(driven.report.added_targets, 0U);
 }
 
 TEST(Bake, exact_without_animations_says_in_the_mesh_and_its_nodes_what_drives_extra_targets) {
   const Baked baked = test::bake_document(test::still_hills_document(2), with(BakeEncoding::kExact));
   ASSERT_EQ(baked.report.meshes[0].extras.size(), 3U);
   const Json expected = R"({"version": 2, "encode": "exact", "sequence": false, "extras": [
-    {"target": 2, "linear": [], "quadratic": [[0, 0, 1.0]]}, {"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]},
-    {"target": 4, "linear": [], "quadratic": [[1, 1, 1.0]]}]})"_json;
+    {"target": 2, "linear": [[0, 1.0]], "quadratic": [[0, 0, -1.0]]}, {"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]},
+    {"target": 4, "linear": [[1, 1.0]], "quadratic": [[1, 1, -1.0]]}]})"_json;
   EXPECT_EQ(baked.mesh()["extras"]["chronormal"], expected);
   EXPECT_EQ(baked.json()["nodes"][0]["extras"]["chronormal"], expected);
   EXPECT_EQ(Json::parse(baked.report.drivers),
             Json({{"meshes", {{{"mesh", 0}, {"name", "hills"}, {"chronormal", expected}}}}}));
   std::vector<Pose> poses;
   for (const auto& [a, b] : {std::pair{0.5F, 0.5F}, {1.0F, 0.25F}, {-0.5F, 1.5F}})
-    poses.push_back({{static_cast<double>(a), static_cast<double>(b)}, {a, b, a * a, a * b, b * b}});
+    poses.push_back({{static_cast<double>(a), static_cast<double>(b)}, {a, b, a * (1 - a), a * b, b * (1 - b)}});
   test::expect_exact(test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses));
 }
 
@@ -214,7 +218,7 @@ TEST(Bake, a_target_that_moves_normals_alone_moves_none_when_it_was_baked) {
 TEST(Bake, keys_that_are_too_near_for_the_slopes_of_products_are_told_of) {
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, std::vector<float>{0, 1e-45F, 1}, std::vector<float>{0, 1, 0});
-  const Baked baked = test::bake_document(builder);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_NEAR(baked.report.meshes[0].resampling_error, 180, 1e-9);
   const auto tells = [](const std::string& warning) { return warning.find("near to each other") != std::string::npos; };
@@ -224,7 +228,7 @@ TEST(Bake, keys_that_are_too_near_for_the_slopes_of_products_are_told_of) {
 TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
   GltfBuilder builder = test::hills_document(2);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 0});
-  const Baked baked = test::bake_document(builder);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   const BakedMesh& mesh = baked.report.meshes[0];
   EXPECT_EQ(mesh.encoding, BakeEncoding::kExact);
   EXPECT_EQ(mesh.undriven, 1U);
@@ -236,7 +240,8 @@ TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
 }
 
 TEST(Bake, a_baked_file_is_left_as_it_is) {
-  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
+  for (const auto& [encoding, name] : kBakeEncodings) {
+    SCOPED_TRACE(name);
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
     const Baked first = test::bake_document(builder, with(encoding));
@@ -257,7 +262,7 @@ TEST(Bake, stored_normals_of_any_length_keep_their_length_and_offset) {
   builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas()})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
-  test::expect_exact(test::track_error(test::bake_document(builder)));
+  test::expect_exact(test::track_error(test::bake_document(builder, with(BakeEncoding::kExact))));
 }
 
 TEST(Bake, base_without_area_is_right_but_near_weight_0) {
@@ -269,7 +274,7 @@ TEST(Bake, base_without_area_is_right_but_near_weight_0) {
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
   // Split normals: each vertex is an element, the base of which has no area.
-  const Baked baked = test::bake_document(builder);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
   const ShownError error = test::track_error(baked);
@@ -287,7 +292,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
   EXPECT_FALSE(flat.report.changed);
   EXPECT_EQ(flat.report.meshes[0].left_flat, 1U);
   EXPECT_EQ(flat.bytes, builder.glb());
-  Baked smooth = test::bake_document(builder, {.smooth = true});
+  Baked smooth = test::bake_document(builder, {.encoding = BakeEncoding::kExact, .smooth = true});
   ASSERT_EQ(smooth.error, "");
   // The truth reads base normals from the file: those that are there now.
   smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
@@ -324,13 +329,13 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   const auto added = [&builder](double tolerance) {
-    BakeOptions options;
+    BakeOptions options = with(BakeEncoding::kExact);
     options.tolerance = tolerance;
     const Baked baked = test::bake_document(builder, options);
     EXPECT_EQ(baked.error, "");
     const double stated = baked.report.meshes[0].resampling_error;
     EXPECT_LE(stated, tolerance);
-    EXPECT_LE(test::track_error(baked).worst, stated + 1e-3);
+    EXPECT_LE(test::track_error(baked).worst, stated + 1e-2) << "it is measured at some instants";
     return baked.report.added_targets;
   };
   EXPECT_EQ(added(0), 3U);
@@ -344,7 +349,7 @@ TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
   builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // twice as large
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
-  const Baked baked = test::bake_document(builder);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   EXPECT_EQ(baked.report.added_targets, 0U);
   test::expect_exact(test::track_error(baked));
 }
@@ -357,7 +362,7 @@ TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_o
   builder.add_node(builder.add_mesh(hills.primitive(builder, {grow, grow, grow})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, -0.2F, -0.2F, -0.2F});
-  test::expect_exact(test::track_error(test::bake_document(builder)));
+  test::expect_exact(test::track_error(test::bake_document(builder, with(BakeEncoding::kExact))));
 }
 
 TEST(Bake, a_wink_in_a_long_animation_is_not_overlooked) {
@@ -366,7 +371,7 @@ TEST(Bake, a_wink_in_a_long_animation_is_not_overlooked) {
   for (std::size_t key = 0; key < times.size(); ++key) times[key] = static_cast<float>(key);
   values[7777] = 1;
   builder.add_track(0, 0, times, values);
-  const Baked baked = test::bake_document(builder);
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.report.added_targets, 1U);
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<float> half = baked.after->weights_at(0, 0, 7776.5);
@@ -379,7 +384,7 @@ TEST(Bake, fitted_weightings_are_within_their_bound_of_the_weighted_normals) {
   builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.deltas(1, 0.1)})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
-  BakeOptions options;
+  BakeOptions options = with(BakeEncoding::kExact);
   options.weighting = Weighting::kUniform;
   const Baked baked = test::bake_document(builder, options);
   ASSERT_EQ(baked.error, "");
@@ -395,7 +400,7 @@ TEST(Bake, fitted_weightings_are_within_their_bound_of_the_weighted_normals) {
 TEST(Bake, fitted_weightings_of_targets_that_are_active_together_are_refused) {
   GltfBuilder builder = test::hills_document(2);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
-  BakeOptions options;
+  BakeOptions options = with(BakeEncoding::kExact);
   options.weighting = Weighting::kAngle;
   EXPECT_NE(test::bake_document(builder, options).error.find("--encode endpoint"), std::string::npos);
   options.encoding = BakeEncoding::kEndpoint;
@@ -437,7 +442,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
     builder.add_node(builder.add_mesh(hills.primitive(builder, {deltas})));
     builder.add_animation("");
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
-    test::expect_exact(test::track_error(test::bake_document(builder)));
+    test::expect_exact(test::track_error(test::bake_document(builder, with(BakeEncoding::kExact))));
   }
 }
 

@@ -29,7 +29,9 @@ GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   return builder;
 }
 
-Baked baked(const GltfBuilder& builder, const BakeOptions& options = {}) {
+// Exact, where nothing else is asked for.
+Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
+  if (!options.encoding) options.encoding = BakeEncoding::kExact;
   Baked result = test::bake_document(builder, options);
   EXPECT_EQ(result.error, "");
   return result;
@@ -121,8 +123,8 @@ TEST(BakeTraps, default_weights_grow_by_their_products) {
   builder.json["nodes"][0]["weights"] = {0.25, 2};
   builder.add_node(0);
   const Baked result = baked(builder);
-  EXPECT_EQ(result.mesh()["weights"], Json({0.5, 3, 0.25, 1.5, 9}));
-  EXPECT_EQ(result.json()["nodes"][0]["weights"], Json({0.25, 2, 0.0625, 0.5, 4}));
+  EXPECT_EQ(result.mesh()["weights"], Json({0.5, 3, 0.25, 1.5, -6}));
+  EXPECT_EQ(result.json()["nodes"][0]["weights"], Json({0.25, 2, 0.1875, 0.5, -2}));
   EXPECT_FALSE(result.json()["nodes"][1].contains("weights"));
   EXPECT_FALSE(baked(moving_hills()).mesh().contains("weights"));
 }
@@ -133,7 +135,7 @@ TEST(BakeTraps, target_names_grow_where_there_are_some) {
   builder.json["meshes"][0]["extras"] = {{"targetNames", {"smile", "blink"}}, {"mine", nullptr}};
   const Baked result = baked(builder);
   EXPECT_EQ(result.mesh()["extras"]["targetNames"],
-            Json({"smile", "blink", "chronormal w0*w0", "chronormal w0*w1", "chronormal w1*w1"}));
+            Json({"smile", "blink", "chronormal w0*(1-w0)", "chronormal w0*w1", "chronormal w1*(1-w1)"}));
   EXPECT_TRUE(result.mesh()["extras"]["mine"].is_null());
   EXPECT_EQ(result.mesh()["extras"]["chronormal"]["extras"][1],
             R"({"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]})"_json);
@@ -147,23 +149,23 @@ TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
   EXPECT_EQ(result.report.converted_tracks, 1U);
   // Keys 0, 0.1F, 1: weights (0, 0), (1, 0.25), (0, 1); slopes per second from the float32 times.
   const double first = 0.1F, second = 1 - first, a = 1 / first, b = 0.25 / first, c = -1 / second, d = 0.75 / second;
-  const std::vector<double> expected = {0,       0,    0,     0,
+  const std::vector<double> expected = {0,       0,    0,  0,
                                         0,  //
-                                        0,       0,    0,     0,
+                                        0,       0,    0,  0,
                                         0,  //
-                                        a,       b,    0,     0,
-                                        0,  //
-                                        a,       b,    2 * a, b + 0.25 * a,
+                                        a,       b,    a,  0,
+                                        b,  //
+                                        a,       b,    -a, b + 0.25 * a,
                                         0.5 * b,  //
-                                        1,       0.25, 1,     0.25,
-                                        0.0625,  //
-                                        c,       d,    2 * c, d + 0.25 * c,
+                                        1,       0.25, 0,  0.25,
+                                        0.1875,  //
+                                        c,       d,    -c, d + 0.25 * c,
                                         0.5 * d,  //
-                                        c,       d,    0,     c,
-                                        2 * d,  //
-                                        0,       1,    0,     0,
-                                        1,  //
-                                        0,       0,    0,     0,
+                                        c,       d,    c,  c,
+                                        -d,  //
+                                        0,       1,    0,  0,
+                                        0,  //
+                                        0,       0,    0,  0,
                                         0};
   const std::vector<float> values = result.numbers(sampler["output"]);
   ASSERT_EQ(values.size(), expected.size());
@@ -188,8 +190,8 @@ TEST(BakeTraps, steps_stay_steps_with_the_products_of_keys) {
   const Baked result = baked(moving_hills("STEP"));
   EXPECT_EQ(sampler_of(result)["interpolation"], "STEP");
   EXPECT_EQ(result.numbers(sampler_of(result)["output"]),
-            (std::vector<float>{0, 0, 0, 0, 0, 1, 0.25F, 1, 0.25F, 0.0625F, 0, 1, 0, 0, 1}));
-  test::expect_exact(test::track_error(result));
+            (std::vector<float>{0, 0, 0, 0, 1, 0.25F, 0.25F, 0.1875F, 0, 1, 0, 0}));
+  test::expect_exact(test::track_error(result));  // weights 0 and 1 need no extra target of one alone
 }
 
 TEST(BakeTraps, single_keys_stay) {
@@ -369,10 +371,10 @@ TEST(BakeTraps, a_sampler_that_also_drives_something_else_stays_as_it_is) {
   test::expect_exact(test::track_error(result));
 }
 
-TEST(BakeTraps, weights_whose_products_no_float_can_hold_are_no_exact_bake) {
+TEST(BakeTraps, weights_whose_products_no_float_can_hold_get_no_extra_targets) {
   GltfBuilder builder = test::hills_document(2);
   builder.json["meshes"][0]["weights"] = {1e30, 1e30};
-  const Baked poses = test::bake_document(builder);
+  const Baked poses = test::bake_document(builder, {.encoding = BakeEncoding::kExact});
   if (poses.ok()) {
     EXPECT_TRUE(poses.report.changed);
     for (const Json& weight : poses.mesh()["weights"]) EXPECT_TRUE(weight.is_number());
@@ -380,7 +382,9 @@ TEST(BakeTraps, weights_whose_products_no_float_can_hold_are_no_exact_bake) {
   GltfBuilder animated = test::hills_document(1);
   animated.add_track(0, 0, kTimes, std::vector<float>{0, 3e38F, 0});
   EXPECT_GE(test::bake_document(animated, {.encoding = BakeEncoding::kExact}).report.meshes[0].resampling_error, 180);
-  EXPECT_EQ(test::bake_document(animated).report.meshes[0].encoding, BakeEncoding::kEndpoint);
+  const Baked harmless = test::bake_document(animated);
+  ASSERT_EQ(harmless.error, "");
+  EXPECT_EQ(harmless.report.added_targets, 0U);
 }
 
 TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {

@@ -1,0 +1,158 @@
+/// Programs that show a glTF file, and compressors that rewrite it on the way: what they make of stored normals.
+///
+/// The specification wants normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every host here shows
+/// normalize(N' + sum_k w'_k D'_k) instead, of what it keeps of N, of D_k and of the weights:
+///
+///     sum       N' = N, D' = D                             as 32-bit floats, or deltas as 16-bit ones
+///     unit      N' = unit(N), D' = unit(N + D) - unit(N)   a unit normal for each target: only the direction of N + D
+///     clamped   N' and D' are rounded to signed integers of a few bits that stand for [-1, 1]: larger components of D
+///               are cut
+///
+///     w'        zero where |w| is not above least_weight, and for targets beyond the first most_targets; with
+///               weight_bits below 32, weights of tracks are rounded to unsigned integers that stand for [0, 1]
+///
+/// With |N + D| = 1 and no component of D beyond 1, hosts of all three rules show the same but for rounding.
+///
+/// Not modelled: what compressors do to positions; keys that Godot's importer removes; that Filament makes its unit
+/// normals by way of a frame that it takes to be orthonormal, so that where |N + D| is not 1 it is off by more than this
+/// says.
+///
+/// Threads    everything here is pure
+#ifndef CHRONORMAL_WORKFLOW_HOSTS_H_
+#define CHRONORMAL_WORKFLOW_HOSTS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/vec3.h"
+
+namespace chronormal {
+
+/// How a host makes the normal that it shows.
+enum class NormalRule { kSum, kUnit, kClamped };
+
+/// How a host plays a track of weights. Resampled tracks have 30 samples a second and are linear between them (steps
+/// stay steps).
+enum class TrackRule {
+  kSpecified,               ///< as appendix C of the glTF specification has it
+  kSplinesResampled,        ///< CUBICSPLINE from time 0 on, with its last key; others as specified
+  kAllResampled,            ///< every track, from the first key of the animation on
+  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents that are not multiplied by the time between keys
+};
+
+inline constexpr double kHostSampleRate = 30;  ///< samples a second of tracks that are resampled
+
+struct Host {
+  std::string_view name;   ///< on the command line
+  std::string_view title;  ///< for people: "three.js", "after gltfpack"
+  NormalRule normals = NormalRule::kSum;
+  /// sum: of the float that keeps a component of a delta; unit: of each of the two octahedral numbers that keep a
+  /// direction, or 32 for floats; clamped: of the integer that keeps a component, its sign included.
+  int bits = 32;
+  bool octahedral_base = false;  ///< clamped: N goes through octahedral numbers of as many bits before
+  TrackRule tracks = TrackRule::kSpecified;
+  int weight_bits = 32;  ///< of a weight in a track
+  double least_weight = 0;
+  std::size_t most_targets = 0;  ///< of a primitive; 0: no limit is known
+  std::string_view beyond = "";  ///< what becomes of a file with more targets, where there is a limit
+  std::string_view source = "";  ///< where this can be read
+
+  [[nodiscard]] constexpr bool keeps_halves() const noexcept { return normals == NormalRule::kSum && bits == 16; }
+  friend bool operator==(const Host& a, const Host& b) noexcept { return a.name == b.name; }
+};
+
+inline constexpr std::array<Host, 9> kHosts = {{
+    {.name = "three",
+     .title = "three.js",
+     .source = "three.js r187, src/renderers/shaders/ShaderChunk/morphnormal_vertex.glsl.js and "
+               "examples/jsm/loaders/GLTFLoader.js"},
+    {.name = "babylon",
+     .title = "Babylon.js",
+     .source = "Babylon.js 9.28, packages/dev/core/src/Shaders/ShadersInclude/morphTargetsVertex.fx"},
+    {.name = "playcanvas",
+     .title = "PlayCanvas",
+     .bits = 16,
+     .least_weight = 1e-5,
+     .source = "PlayCanvas 2.23, src/scene/morph.js, src/scene/morph-instance.js and "
+               "src/framework/anim/evaluator/anim-cache.js"},
+    {.name = "godot",
+     .title = "Godot 4",
+     .normals = NormalRule::kUnit,
+     .bits = 16,
+     .tracks = TrackRule::kSplinesResampled,
+     .least_weight = 1e-4,
+     .source = "Godot 4, modules/gltf/gltf_document.cpp (_parse_meshes, _import_animation) and "
+               "servers/rendering/renderer_rd/shaders/skeleton.glsl"},
+    {.name = "filament",
+     .title = "Filament",
+     .normals = NormalRule::kUnit,
+     .tracks = TrackRule::kSplinesWithoutDuration,
+     .most_targets = 256,
+     .beyond = "further targets are ignored",
+     .source = "Filament 1.53, shaders/src/surface_getters.vs (morphNormal), libs/gltfio/src/TangentsJob.cpp, "
+               "libs/gltfio/src/Animator.cpp and CONFIG_MAX_MORPH_TARGET_COUNT of EngineEnums.h"},
+    {.name = "bevy",
+     .title = "Bevy",
+     .most_targets = 256,
+     .beyond = "the file is refused",
+     .source = "Bevy, crates/bevy_pbr/src/render/mesh.wgsl, crates/bevy_animation/src/gltf_curves.rs and "
+               "MAX_MORPH_WEIGHTS of crates/bevy_mesh/src/morph.rs"},
+    {.name = "gltfpack",
+     .title = "after gltfpack",
+     .normals = NormalRule::kClamped,
+     .bits = 8,
+     .tracks = TrackRule::kAllResampled,
+     .weight_bits = 8,
+     .source = "gltfpack 1.3 without options, gltf/stream.cpp (writeVertexStream, writeKeyframeStream) and "
+               "gltf/animation.cpp"},
+    {.name = "quantize",
+     .title = "after quantize",
+     .normals = NormalRule::kClamped,
+     .bits = 10,
+     .source = "glTF Transform 4.5 quantize without options, packages/functions/src/quantize.ts"},
+    {.name = "meshopt",
+     .title = "after meshopt",
+     .normals = NormalRule::kClamped,
+     .bits = 8,
+     .octahedral_base = true,
+     .source = "glTF Transform 4.5 meshopt without options, packages/functions/src/meshopt.ts and "
+               "packages/extensions/src/ext-meshopt-compression/encoder.ts"},
+}};
+
+/// The hosts of a list of names with commas between them, in the order of the list and each once; "all" names every
+/// one.
+/// Errors: kUsage for a name that there is none of, with all names, and the nearest one where it is near.
+[[nodiscard]] Result<std::vector<Host>> find_hosts(std::string_view names);
+
+/// What a host keeps of the base normal N; (0, 0, 0) for zero.
+[[nodiscard]] Vec3f kept_normal(const Host& host, const Vec3f& normal) noexcept;
+
+/// What a host keeps of the delta D of a target: what it adds to kept_normal() for each unit of weight.
+[[nodiscard]] Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& delta) noexcept;
+
+/// Replaces weights that a host leaves out by zero. There is one for each target.
+void drop_weights(const Host& host, std::span<double> weights) noexcept;
+
+/// The sum that a host shows of one vertex: N' and then each target in their order, in float32.
+class HostSum {
+ public:
+  HostSum(const Host& host, const Vec3f& kept_normal) noexcept
+      : normal_(kept_normal), sum_(host.keeps_halves() ? Vec3f{} : kept_normal), halves_(host.keeps_halves()) {}
+
+  void add(double weight, const Vec3f& kept_delta) noexcept { sum_ = sum_ + static_cast<float>(weight) * kept_delta; }
+
+  /// The unit normal that is shown; zero, or not finite, where the sum is.
+  [[nodiscard]] Vec3f normal() const noexcept;
+
+ private:
+  Vec3f normal_, sum_;  // of 16-bit floats the sum of deltas alone, which is kept as such too
+  bool halves_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_HOSTS_H_

@@ -1,0 +1,36 @@
+/// The weights that a file gives to one mesh. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "workflow/hosts/played_track.h"
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal::inline internal {
+
+/// Names a track of a file: the animation, and the first of its tracks with the same keys.
+struct TrackName {
+  std::size_t animation = 0, keys = 0;
+  friend auto operator<=>(const TrackName&, const TrackName&) = default;
+};
+
+struct MeshWeights {
+  std::vector<WeightTrack> tracks;  ///< of the animations; `use` refers to them
+  std::vector<TrackName> names;     ///< of each track
+  std::vector<TimeRange> ranges;    ///< of the animation of each track
+  PoseList poses;                   ///< that stand still: of the mesh and its nodes
+  WeightUse use;
+  bool is_driven = false;  ///< an animation gives some moving target a weight
+};
+
+/// Reads them. Tracks with the same keys, which drive the mesh through several nodes, count once. Errors: of
+/// GltfDocument
+[[nodiscard]] Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_

@@ -1,0 +1,74 @@
+/// The normals that vertices should show in any pose. Private to workflow.
+///
+/// Units      a right normal has the direction that is asked for and the length |n(w)| / |n(0)|, by area (1 where n(0) is
+///            zero); it is (0, 0, 0) where n(w) is so short beside its terms that its direction means nothing.
+/// Poses       weights of the mesh's own targets, one for each; more weights may follow, which are not looked at.
+/// Threads    const functions may run at once; they run on all cores.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_RIGHT_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_RIGHT_NORMALS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/blocks.h"
+#include "workflow/bake/terms.h"
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal::inline internal {
+
+class RightNormals {
+ public:
+  /// base_normals (V, 3) are those that the file will store; largest has the length of the largest term of each
+  /// element. All of them must outlive this.
+  RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
+               const std::vector<double>& largest)
+      : shading_(shading), terms_(terms), base_normals_(base_normals), largest_(largest) {}
+
+  [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
+  /// The stored normal of a vertex.
+  [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
+  /// Of all elements, before an author's own turn of the base.
+  [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
+  /// Of some elements. O(vertices + elements)
+  [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
+                                               std::span<const std::uint32_t> elements) const;
+  /// What a vertex should show where that of its element is given.
+  [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
+
+  /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: right are the unit normals of the
+  /// vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
+  template <class Visit>
+  void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
+    constexpr std::size_t kBytes = std::size_t{16} << 20, kFewest = 4, kVertices = 64;
+    const std::size_t batch = std::max(kFewest, kBytes / (sizeof(Vec3f) * (vertices.size() + 1)));
+    std::vector<Vec3f> right(vertices.size() * std::min(batch, poses.size()));
+    for (std::size_t first = 0; first < poses.size(); first += batch) {
+      const std::size_t count = std::min(batch, poses.size() - first);
+      for (std::size_t p = 0; p < count; ++p) {
+        const std::vector<Vec3d> of_pose = of_elements(std::span(poses[first + p]).first(targets()));
+        parallel_each(vertices.size(), kVertices, [&](std::size_t n) {
+          right[n * count + p] =
+              to_float(unit(of_vertex(vertices[n], of_pose[shading_.element_of_vertex[vertices[n]]])));
+        });
+      }
+      parallel_each(vertices.size(), kVertices,
+                    [&](std::size_t n) { visit(n, first, std::span<const Vec3f>(right).subspan(n * count, count)); });
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept;
+
+  const GltfShading& shading_;
+  const NormalTerms& terms_;
+  std::span<const float> base_normals_;
+  const std::vector<double>& largest_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_RIGHT_NORMALS_H_

@@ -1,0 +1,347 @@
+// The default form of a bake: right in hosts that add up deltas and in those that keep unit normals, and nowhere worse
+// than before.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+
+namespace chronormal::bake_harmless_test {
+namespace {
+
+using Json = nlohmann::json;
+using test::Baked;
+using test::GltfBuilder;
+using test::Real;
+using test::Vector;
+
+enum class Rule { kSum, kUnit };
+
+Vector unit_of(const Vector& v) {
+  const Real size = test::length_of(v);
+  return size == 0 ? v : Vector{v[0] / size, v[1] / size, v[2] / size};
+}
+
+// What a host shows of a vertex: the sum of what it keeps of the base normal and of each delta.
+Vector shown(const test::GltfPlayer& player, const Json& primitive, std::size_t v, const std::vector<double>& weights,
+             Rule rule) {
+  const auto vector_of = [&](const Json& accessor) {
+    const std::vector<float>& all = player.cached(accessor.get<std::size_t>());
+    return Vector{static_cast<Real>(all[3 * v]), static_cast<Real>(all[3 * v + 1]), static_cast<Real>(all[3 * v + 2])};
+  };
+  const Vector normal = vector_of(primitive["attributes"]["NORMAL"]);
+  const Vector base = rule == Rule::kSum ? normal : unit_of(normal);
+  Vector sum = base;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const Json& target = primitive["targets"][k];
+    if (!target.contains("NORMAL")) continue;
+    Vector delta = vector_of(target["NORMAL"]);
+    if (rule == Rule::kUnit) {
+      const Vector end = unit_of({normal[0] + delta[0], normal[1] + delta[1], normal[2] + delta[2]});
+      for (std::size_t c = 0; c < 3; ++c) delta[c] = end[c] - base[c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<Real>(weights[k]) * delta[c];
+  }
+  return sum;
+}
+
+struct Weights {
+  std::vector<double> before, after;
+};
+
+std::vector<double> doubles(const std::vector<float>& values) { return {values.begin(), values.end()}; }
+
+// The track of a file at instants that no key or fraction of a gap meets.
+std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
+  const Json& sampler = baked.before->json["animations"][0]["samplers"][0];
+  const std::vector<float> times = baked.before->accessor(sampler["input"].get<std::size_t>());
+  std::vector<Weights> result;
+  for (std::size_t n = 0; n <= instants; ++n) {
+    const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
+    const double time = from + (to - from) * static_cast<double>(n) / static_cast<double>(instants);
+    result.push_back({doubles(baked.before->weights_at(0, 0, time)), doubles(baked.after->weights_at(0, 0, time))});
+  }
+  return result;
+}
+
+// Each target alone, with what docs/extras.md says of the others.
+std::vector<Weights> alone(const Baked& baked) {
+  std::vector<Weights> result;
+  const Json& mesh = baked.mesh();
+  const std::size_t targets = baked.before->json["meshes"][0]["primitives"][0]["targets"].size();
+  for (std::size_t k = 0; k < targets; ++k) {
+    for (int step = 1; step <= 23; ++step) {
+      Weights pose{std::vector<double>(targets, 0.0),
+                   std::vector<double>(mesh["primitives"][0]["targets"].size(), 0.0)};
+      pose.before[k] = pose.after[k] = step / 23.0;
+      if (mesh.contains("extras") && mesh["extras"].contains("chronormal")) {
+        for (const Json& extra : mesh["extras"]["chronormal"]["extras"]) {
+          double weight = 0;
+          const auto of = [&](const Json& index) { return pose.before[index.get<std::size_t>()]; };
+          for (const Json& term : extra["linear"]) weight += term[1].get<double>() * of(term[0]);
+          for (const Json& term : extra["quadratic"]) weight += term[2].get<double>() * of(term[0]) * of(term[1]);
+          pose.after[extra["target"].get<std::size_t>()] = weight;
+        }
+      }
+      result.push_back(std::move(pose));
+    }
+  }
+  return result;
+}
+
+struct Change {
+  double before = 0, after = 0;  // sums of errors, degrees
+  double worst = 0;              // after
+  double harm = 0;               // by how much an error is above what it may be, at most
+  std::size_t judged = 0;
+
+  [[nodiscard]] double mean_before() const { return before / static_cast<double>(judged); }
+  [[nodiscard]] double mean_after() const { return after / static_cast<double>(judged); }
+};
+
+Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule, double tolerance = 0.5) {
+  const test::GltfTruth truth(*baked.before, 0);
+  const std::vector<Vector> base = truth.normals_at(std::vector<double>(poses[0].before.size(), 0.0));
+  const Json &was = baked.before->json["meshes"][0]["primitives"][0], &is = baked.mesh()["primitives"][0];
+  Change result;
+  for (const Weights& pose : poses) {
+    const std::vector<Vector> exact = truth.normals_at(pose.before);
+    for (std::size_t v = 0; v < exact.size(); ++v) {
+      if (test::length_of(exact[v]) < 1e-3L * test::length_of(base[v])) continue;
+      const Vector right = test::GltfTruth::turn(base[v], truth.vertices[v].stored, exact[v]);
+      const double before = test::degrees_between(shown(*baked.before, was, v, pose.before, rule), right);
+      const double after = test::degrees_between(shown(*baked.after, is, v, pose.after, rule), right);
+      result.before += before;
+      result.after += after;
+      result.worst = std::max(result.worst, after);
+      result.harm = std::max(result.harm, after - std::max(before + 0.02, tolerance));
+      ++result.judged;
+    }
+  }
+  return result;
+}
+
+// Hills with two or three targets that go up one after the other and meet.
+GltfBuilder moving(std::size_t targets, unsigned seed, double size = 0.4, const char* interpolation = "LINEAR") {
+  GltfBuilder builder;
+  test::Hills hills(seed);
+  std::vector<std::vector<float>> deltas;
+  for (std::size_t k = 0; k < targets; ++k) deltas.push_back(hills.deltas(1, size));
+  builder.add_node(builder.add_mesh(hills.primitive(builder, deltas), {{"name", "hills"}}));
+  builder.add_animation("move");
+  std::vector<float> times, values;
+  for (std::size_t key = 0; key <= targets + 1; ++key) {
+    times.push_back(0.3F * static_cast<float>(key));
+    for (std::size_t k = 0; k < targets; ++k)
+      values.push_back(key == 0 || key == k + 2 ? 0.0F : key > k ? 1.0F : 0.25F);
+  }
+  builder.add_track(0, 0, times, values, interpolation);
+  return builder;
+}
+
+Baked baked(const GltfBuilder& builder, const BakeOptions& options = {}) {
+  Baked result = test::bake_document(builder, options);
+  EXPECT_EQ(result.error, "");
+  return result;
+}
+
+BakeOptions for_hosts(const char* names) {
+  BakeOptions options;
+  options.hosts = find_hosts(names).value();
+  return options;
+}
+
+const Json& sampler_of(const Baked& of) {
+  const Json& a = of.json()["animations"][0];
+  return a["samplers"][a["channels"][0]["sampler"].get<std::size_t>()];
+}
+
+TEST(BakeHarmless, is_as_near_in_hosts_of_unit_normals_as_in_those_that_add_up) {
+  double before = 0, sum = 0, unit = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Baked result = baked(moving(2, seed));
+    const std::vector<Weights> poses = on_track(result);
+    const Change of_sum = change(result, poses, Rule::kSum), of_unit = change(result, poses, Rule::kUnit);
+    EXPECT_NEAR(of_sum.mean_after(), of_unit.mean_after(), 1e-3);
+    before += of_sum.mean_before() / 12;
+    sum += of_sum.mean_after() / 12;
+    unit += of_unit.mean_after() / 12;
+  }
+  RecordProperty("before", std::to_string(before));
+  RecordProperty("after", std::to_string(sum));
+  EXPECT_LT(sum, 0.1 * before);
+  EXPECT_LT(unit, 0.1 * before);
+}
+
+TEST(BakeHarmless, every_target_has_unit_normals_and_no_component_beyond_1) {
+  GltfBuilder turning;  // a sheet that is turned by 100 degrees
+  test::Hills hills(3);
+  std::vector<float> over = hills.positions;
+  for (std::size_t i = 0; i < over.size(); i += 3) {
+    const float x = over[i], z = over[i + 2], c = -0.1736F, s = 0.9848F;
+    over[i] = c * x + s * z - x;
+    over[i + 1] = 0;
+    over[i + 2] = c * z - s * x - z;
+  }
+  turning.add_node(turning.add_mesh(hills.primitive(turning, {over, hills.deltas()}), {{"name", "hills"}}));
+  turning.add_animation("over");
+  turning.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0, 1, 1});
+  for (const GltfBuilder& builder : {moving(3, 5), moving(2, 6, 1.5), turning}) {
+    const Baked result = baked(builder);
+    const Json& primitive = result.mesh()["primitives"][0];
+    const std::vector<float> normals = result.numbers(primitive["attributes"]["NORMAL"]);
+    EXPECT_GT(result.report.added_targets, 0U);
+    for (const Json& target : primitive["targets"]) {
+      const std::vector<float> deltas = result.numbers(target["NORMAL"]);
+      for (std::size_t v = 0; 3 * v < deltas.size(); ++v) {
+        Real square = 0;
+        for (std::size_t c = 3 * v; c < 3 * v + 3; ++c) {
+          EXPECT_LE(std::fabs(deltas[c]), 1.0F);
+          square += (static_cast<Real>(normals[c]) + static_cast<Real>(deltas[c])) *
+                    (static_cast<Real>(normals[c]) + static_cast<Real>(deltas[c]));
+        }
+        EXPECT_NEAR(static_cast<double>(square), 1, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(BakeHarmless, weights_stay_within_0_and_1_and_tracks_linear_with_the_weights_that_they_had) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const Baked result = baked(moving(3, seed));
+    EXPECT_EQ(sampler_of(result)["interpolation"], "LINEAR");
+    EXPECT_EQ(result.report.converted_tracks, 0U);
+    ASSERT_GT(result.report.added_targets, 0U);
+    for (const Weights& pose : on_track(result)) {
+      for (std::size_t k = 0; k < pose.before.size(); ++k) EXPECT_NEAR(pose.before[k], pose.after[k], 1e-6);
+      for (const double weight : pose.after) {
+        EXPECT_GE(weight, 0);
+        EXPECT_LE(weight, 1.0001);
+      }
+    }
+  }
+}
+
+TEST(BakeHarmless, steps_and_splines_keep_their_keys) {
+  GltfBuilder spline = test::hills_document(2);
+  spline.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0, 1, 2, 0, 0, 1, 0.5F, 0, 0},
+                   "CUBICSPLINE");
+  for (const GltfBuilder& builder : {moving(2, 3, 0.4, "STEP"), spline}) {
+    const Baked result = baked(builder);
+    EXPECT_EQ(sampler_of(result)["interpolation"], builder.json["animations"][0]["samplers"][0]["interpolation"]);
+    EXPECT_EQ(sampler_of(result)["input"], builder.json["animations"][0]["samplers"][0]["input"]);
+    const std::vector<Weights> poses = on_track(result);
+    for (const Weights& pose : poses) {
+      for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(pose.before[k], pose.after[k], 1e-6);
+    }
+    for (const Rule rule : {Rule::kSum, Rule::kUnit}) EXPECT_LT(change(result, poses, rule).harm, 0.01);
+  }
+}
+
+// Gives the targets of the hills deltas of their normals: those of a bake, and something on top.
+GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned seed, double noise) {
+  BakeOptions options;
+  options.encoding = encoding;
+  const Baked right = test::bake_document(test::still_hills_document(2, seed), options);
+  test::Hills random(seed + 100);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<float> deltas = right.numbers(right.mesh()["primitives"][0]["targets"][k]["NORMAL"]);
+    for (float& c : deltas) c += random.uniform(-noise, noise);
+    builder.json["meshes"][0]["primitives"][0]["targets"][k]["NORMAL"] = builder.add_positions(deltas);
+  }
+  return builder;
+}
+
+TEST(BakeHarmless, nothing_is_worse_than_before_whatever_normals_the_author_gave) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    for (const double noise : {0.0, 0.02, 0.5}) {
+      SCOPED_TRACE(std::to_string(seed) + ", " + std::to_string(noise));
+      GltfBuilder builder = test::hills_document(2, seed);
+      builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
+      builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
+      const Baked result = baked(builder);
+      for (const Rule rule : {Rule::kSum, Rule::kUnit}) {
+        EXPECT_LT(change(result, on_track(result), rule).harm, 0.03);
+        EXPECT_LT(change(result, alone(result), rule).harm, 0.03);
+      }
+    }
+  }
+}
+
+TEST(BakeHarmless, endpoint_is_no_worse_than_before_where_hosts_add_up) {
+  BakeOptions endpoint;
+  endpoint.encoding = BakeEncoding::kEndpoint;
+  double harm_of_units = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    GltfBuilder builder = test::hills_document(2, seed);
+    builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 1, 0.5F, 1, 0, 0.5F});
+    builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, 0);
+    const Baked result = baked(builder, endpoint);
+    EXPECT_LT(change(result, alone(result), Rule::kSum).harm, 0.03);
+    EXPECT_LT(change(result, on_track(result), Rule::kSum).harm, 0.03);
+    harm_of_units = std::max(harm_of_units, change(result, alone(result), Rule::kUnit).harm);
+  }
+  RecordProperty("harm_in_hosts_of_unit_normals", std::to_string(harm_of_units));
+}
+
+TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_hosts) {
+  GltfBuilder builder = test::hills_document(24, 2);
+  std::vector<float> values(24, 0.0F);
+  for (int k = 0; k < 24; ++k) values.push_back(0.3F);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, values);
+  const Baked all = baked(builder);
+  EXPECT_LE(all.mesh()["primitives"][0]["targets"].size(), 256U);
+  EXPECT_GT(all.report.meshes[0].left_out, 0U);
+  const Baked three = baked(builder, for_hosts("three"));
+  EXPECT_EQ(three.report.meshes[0].left_out, 0U);
+}
+
+TEST(BakeHarmless, lengths_are_free_where_all_hosts_add_up) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    BakeOptions options = for_hosts("three,babylon");
+    options.tolerance = 0.01;
+    const Baked result = baked(moving(2, seed), options);
+    EXPECT_LT(change(result, on_track(result), Rule::kSum).worst, 0.1);
+    EXPECT_LE(result.report.added_targets, 3U) << "one for each term";
+    EXPECT_GT(change(result, on_track(result), Rule::kUnit).worst, 1);
+  }
+}
+
+TEST(BakeHarmless, the_report_says_what_each_host_shows) {
+  const Baked result = baked(moving(2, 4), for_hosts("three,filament"));
+  const std::vector<HostChange>& hosts = result.report.meshes[0].hosts;
+  ASSERT_EQ(hosts.size(), 2U);
+  for (const HostChange& host : hosts) {
+    const auto& [before, after] = host.poses[0];
+    EXPECT_GT(before.judged, 1000U);
+    EXPECT_LT(after.mean, before.mean);
+    EXPECT_LE(after.worst, before.worst);
+    EXPECT_LE(host.poses[1].after.mean, host.poses[1].before.mean);
+    EXPECT_LE(host.poses[1].after.worst, host.poses[1].before.worst);
+  }
+  std::vector<Weights> poses = on_track(result);
+  const std::vector<Weights> of_targets = alone(result);
+  poses.insert(poses.end(), of_targets.begin(), of_targets.end());
+  EXPECT_NEAR(change(result, poses, Rule::kSum).worst, hosts[0].poses[0].after.worst, 0.5);
+}
+
+TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
+  BakeOptions options;
+  options.encoding = BakeEncoding::kExact;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    GltfBuilder builder = test::hills_document(1, seed);
+    builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+    const Baked result = baked(builder, options);
+    ASSERT_EQ(result.report.added_targets, 1U);
+    EXPECT_LT(change(result, {{{1}, {1, 0}}, {{0}, {0, 0}}}, Rule::kSum).worst, 1e-3);
+    EXPECT_GT(change(result, {{{0.5}, {0.5, 0}}}, Rule::kSum).worst, 0.5) << "and between them it needs these";
+  }
+}
+
+}  // namespace
+}  // namespace chronormal::bake_harmless_test

@@ -1,0 +1,189 @@
+// What hosts keep and show of normals, against plain loops over the formulas of their sources.
+#include "chronormal/workflow/hosts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/host_oracle.h"
+
+namespace chronormal::hosts_test {
+namespace {
+
+using test::Triple;
+
+constexpr unsigned kSeed = 18;
+constexpr double kDegrees = 57.29577951308232;
+
+Host host_named(std::string_view name) { return find_hosts(name).value().at(0); }
+
+Vec3f to_vec(const Triple& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
+
+// Numbers as a file holds them.
+Triple random_vector(std::mt19937& random, double size) {
+  std::uniform_real_distribution<double> number(-size, size);
+  const auto draw = [&] { return static_cast<double>(static_cast<float>(number(random))); };
+  return {draw(), draw(), draw()};
+}
+
+Triple random_unit(std::mt19937& random) {
+  Triple u = test::scaled_to_one(random_vector(random, 1));
+  for (double& c : u) c = static_cast<double>(static_cast<float>(c));
+  return u;
+}
+
+Triple shown_of(const Host& host, const Triple& normal, const std::vector<Triple>& deltas,
+                std::vector<double> weights) {
+  drop_weights(host, weights);
+  HostSum sum(host, kept_normal(host, to_vec(normal)));
+  for (std::size_t k = 0; k < deltas.size(); ++k)
+    sum.add(weights[k], kept_delta(host, to_vec(normal), to_vec(deltas[k])));
+  const Vec3f shown = sum.normal();
+  return {static_cast<double>(shown.x), static_cast<double>(shown.y), static_cast<double>(shown.z)};
+}
+
+double degrees_between(const Triple& a, const Triple& b) {
+  return angle_between(Vec3d{a[0], a[1], a[2]}, Vec3d{b[0], b[1], b[2]}) * kDegrees;
+}
+
+TEST(Hosts, each_has_a_name_of_its_own_a_title_and_a_source) {
+  std::set<std::string_view> names, titles;
+  for (const Host& host : kHosts) {
+    names.insert(host.name);
+    titles.insert(host.title);
+    EXPECT_FALSE(host.source.empty()) << host.name;
+    EXPECT_EQ(host.most_targets > 0, !host.beyond.empty()) << host.name;
+  }
+  EXPECT_EQ(names.size(), kHosts.size());
+  EXPECT_EQ(titles.size(), kHosts.size());
+  EXPECT_EQ(names.count("all") + names.count(""), 0U);
+}
+
+TEST(Hosts, lists_are_in_the_order_asked_for_each_host_once) {
+  const Result<std::vector<Host>> hosts = find_hosts("godot,three,godot");
+  ASSERT_TRUE(hosts);
+  ASSERT_EQ(hosts.value().size(), 2U);
+  EXPECT_EQ(hosts.value()[0].title, "Godot 4");
+  EXPECT_EQ(hosts.value()[1].title, "three.js");
+  ASSERT_TRUE(find_hosts("all"));
+  EXPECT_TRUE(std::equal(kHosts.begin(), kHosts.end(), find_hosts("all").value().begin()));
+}
+
+TEST(Hosts, an_unknown_name_is_told_all_names_and_the_nearest) {
+  for (const char* wrong : {"gdot", "three,gdot", "gdot,three"}) {
+    const Result<std::vector<Host>> hosts = find_hosts(wrong);
+    ASSERT_FALSE(hosts) << wrong;
+    EXPECT_EQ(hosts.error().code, ErrorCode::kUsage);
+    EXPECT_EQ(hosts.error().message,
+              "there is no host 'gdot'; did you mean godot?; there are three, babylon, playcanvas, godot, filament, "
+              "bevy, gltfpack, quantize, meshopt, and all");
+  }
+  for (const char* wrong : {"", ",", "three,", "Three.js 187", "unreal"}) {
+    const Result<std::vector<Host>> hosts = find_hosts(wrong);
+    ASSERT_FALSE(hosts) << wrong;
+    EXPECT_EQ(hosts.error().message.find("did you mean"), std::string::npos) << wrong;
+  }
+}
+
+TEST(Hosts, each_shows_what_the_formulas_of_its_source_say) {
+  std::mt19937 random(kSeed);
+  for (const Host& host : kHosts) {
+    double worst = 0;
+    for (int round = 0; round < 400; ++round) {
+      const Triple normal = round % 4 == 0 ? random_vector(random, 1.2) : random_unit(random);
+      std::vector<Triple> deltas;
+      std::vector<double> weights;
+      for (std::size_t k = random() % 4 + 1; k > 0; --k) {
+        deltas.push_back(random_vector(random, round % 3 == 0 ? 2.5 : 0.8));
+        weights.push_back(std::uniform_real_distribution<double>(-0.5, 1.5)(random));
+      }
+      const Triple expected = test::shown_by(host.name, normal, deltas, weights);
+      // Where nearly nothing is left of a sum, its direction is rounding.
+      Triple plain = normal;
+      for (std::size_t k = 0; k < deltas.size(); ++k)
+        for (std::size_t c = 0; c < 3; ++c) plain[c] += weights[k] * deltas[k][c];
+      if (std::fabs(plain[0]) + std::fabs(plain[1]) + std::fabs(plain[2]) < 0.05) continue;
+      worst = std::max(worst, degrees_between(shown_of(host, normal, deltas, weights), expected));
+    }
+    // A component that lies between two that can be kept may go either way in float32, but few of these lie so.
+    EXPECT_LT(worst, host.keeps_halves() ? 0.2 : 0.02) << host.name << ", seed " << kSeed;
+  }
+}
+
+TEST(Hosts, targets_of_unit_length_look_alike_everywhere) {
+  std::mt19937 random(kSeed);
+  for (int round = 0; round < 200; ++round) {
+    const Triple normal = random_unit(random), first = random_unit(random);
+    Triple delta{};
+    for (std::size_t c = 0; c < 3; ++c) delta[c] = first[c] - normal[c];
+    if (std::any_of(delta.begin(), delta.end(), [](double d) { return std::fabs(d) > 1; })) continue;
+    const double weight = std::uniform_real_distribution<double>(0, 1)(random);
+    Triple sum{};
+    for (std::size_t c = 0; c < 3; ++c) sum[c] = normal[c] + weight * delta[c];
+    const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    for (const Host& host : kHosts) {
+      const double step = host.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, of its rounding
+      EXPECT_LT(degrees_between(shown_of(host, normal, {delta}, {weight}), sum), step / length) << host.name;
+    }
+  }
+}
+
+TEST(Hosts, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_kept) {
+  // N + D is (3, 0, 3): half the way there is (0.35, 0, 0.85) of unit normals, and (1.5, 0, 2) by the specification.
+  const Triple normal = {0, 0, 1}, delta = {3, 0, 2};
+  EXPECT_NEAR(degrees_between(shown_of(host_named("filament"), normal, {delta}, {0.5}), normal), 22.5, 1e-4);
+  EXPECT_NEAR(degrees_between(shown_of(host_named("godot"), normal, {delta}, {0.5}), normal), 22.5, 1e-2);
+  EXPECT_NEAR(degrees_between(shown_of(host_named("three"), normal, {delta}, {0.5}), normal), 36.8699, 1e-4);
+  // Cut to (1, 0, 1) it is (0.5, 0, 1.5).
+  EXPECT_NEAR(degrees_between(shown_of(host_named("gltfpack"), normal, {delta}, {0.5}), normal), 18.4349, 1e-4);
+}
+
+TEST(Hosts, keep_components_as_their_tools_write_them) {
+  // As glTF Transform 4.5 and gltfpack 1.3 write them.
+  EXPECT_EQ(kept_delta(host_named("quantize"), {}, {0.3F, -0.3F, 7}), (Vec3f{9811 / 32767.0F, -9811 / 32767.0F, 1}));
+  EXPECT_EQ(kept_delta(host_named("gltfpack"), {}, {0.3F, -0.3F, -7}), (Vec3f{38 / 127.0F, -38 / 127.0F, -1}));
+  EXPECT_EQ(kept_delta(host_named("playcanvas"), {}, {0.1F, 1e-9F, 1e6F}), (Vec3f{0.0999755859375F, 0, INFINITY}));
+}
+
+TEST(Hosts, zero_stays_zero) {
+  for (const Host& host : kHosts) {
+    EXPECT_EQ(kept_normal(host, {}), Vec3f{}) << host.name;
+    EXPECT_EQ(kept_delta(host, {}, {}), Vec3f{}) << host.name;
+    EXPECT_EQ(HostSum(host, {}).normal(), Vec3f{}) << host.name;
+    EXPECT_EQ(kept_delta(host, {0, 0, 1}, {}), Vec3f{}) << host.name;
+  }
+}
+
+TEST(Hosts, what_is_not_finite_does_not_become_a_normal_in_a_host_that_adds_floats) {
+  HostSum sum(host_named("three"), {0, 0, 1});
+  sum.add(1, {NAN, 0, 0});
+  EXPECT_TRUE(std::isnan(sum.normal().x));
+}
+
+TEST(Hosts, small_weights_and_targets_beyond_the_limit_are_left_out) {
+  std::vector<double> weights(258, 0.5);
+  weights[0] = 1e-4;
+  weights[1] = -1e-4;
+  weights[2] = 1.1e-4;
+  std::vector<double> of_godot = weights, of_filament = weights, of_three = weights;
+  drop_weights(host_named("godot"), of_godot);
+  drop_weights(host_named("filament"), of_filament);
+  drop_weights(host_named("three"), of_three);
+  EXPECT_EQ(of_three, weights);
+  EXPECT_EQ(of_godot[0], 0);
+  EXPECT_EQ(of_godot[1], 0);
+  EXPECT_EQ(of_godot[2], 1.1e-4);
+  EXPECT_EQ(of_godot[257], 0.5);
+  EXPECT_EQ(of_filament[0], 1e-4);
+  EXPECT_EQ(of_filament[255], 0.5);
+  EXPECT_EQ(of_filament[256], 0);
+  EXPECT_EQ(of_filament[257], 0);
+}
+
+}  // namespace
+}  // namespace chronormal::hosts_test
