@@ -22,15 +22,12 @@ const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real da
 const SIZE = { width: 256, height: 256 };
 const MOMENTS = FULL ? 15 : 7;
 
-// Hosts in which this is so.
-const CLOSER = ['three', 'babylon'];
-const DRAWN_ELSEWHERE = ['three', 'babylon'];
-const HOSTS = FULL ? CLOSER : CLOSER.filter((host) => !DRAWN_ELSEWHERE.includes(host));
+const HOSTS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
 // Degrees that are no difference: what PlayCanvas loses to half floats.
 const ROUNDING = 0.05;
 
-describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, () => {
+describe('what is baked is closer to the truth', () => {
   let browser, folder;
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'chronormal_closer_'));
