@@ -4,11 +4,13 @@
 //   CHRONORMAL_PROGRAM  the program
 //   CHRONORMAL_DATA     a head by Blender and a test of morphs, where it is set
 //   CHRONORMAL_FULL=1   every file in every host; otherwise one file in those that hosts.test.mjs does not draw in
+//   CHRONORMAL_UPDATE_DOCS=1  with it, writes docs/pictures/filament.png, which is rendered here
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, extname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
 import { openPage } from './browser.mjs';
 import { fixtures } from './fixtures.mjs';
 import { timesWithin } from './judge.mjs';
@@ -22,15 +24,14 @@ const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real da
 const SIZE = { width: 256, height: 256 };
 const MOMENTS = FULL ? 15 : 7;
 
-// Hosts in which this is so.
-const CLOSER = ['three', 'babylon'];
-const DRAWN_ELSEWHERE = ['three', 'babylon'];
-const HOSTS = FULL ? CLOSER : CLOSER.filter((host) => !DRAWN_ELSEWHERE.includes(host));
+const PICTURE = fileURLToPath(new URL('../../docs/pictures/filament.png', import.meta.url));
+const PICTURE_TIME = 0.8;
+const HOSTS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
 // Degrees that are no difference: what PlayCanvas loses to half floats.
 const ROUNDING = 0.05;
 
-describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, () => {
+describe('what is baked is closer to the truth', () => {
   let browser, folder;
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'chronormal_closer_'));
@@ -53,9 +54,10 @@ describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, (
     };
   }
 
-  const bake = once((input) => {
-    const output = join(folder, `${basename(input, extname(input))}.baked.glb`);
-    chronormal('bake', input, '-o', output);
+  const bake = once((input, ...options) => {
+    const name = [basename(input, extname(input)), ...options].join('.');
+    const output = join(folder, `${name}.glb`);
+    chronormal('bake', input, '-o', output, ...options);
     return output;
   });
 
@@ -83,6 +85,27 @@ describe('what is baked is closer to the truth', { skip: HOSTS.length === 0 }, (
     assert.ok(after.mean < before.mean && after.p99 < before.p99 + ROUNDING, shown);
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
+
+  // A head in Filament, and the picture of it in the documents.
+  async function assertPicture() {
+    const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
+    const items = [
+      [['not baked', 'as Blender wrote it'], input],
+      [['baked with --encode exact', 'for hosts that add up targets'], bake(input, '--encode', 'exact')],
+      [['baked', 'for all hosts'], bake(input)],
+    ].map(([caption, path]) => ({ base64: readFileSync(path).toString('base64'), caption }));
+    const [{ view }] = await stillMoments(input, 0, [PICTURE_TIME]);
+    const draw = (...all) => window.drawPicture(...all);
+    const size = { width: 1200, height: 440 };
+    const url = await browser.page.evaluate(draw, 'filament', items, 0, PICTURE_TIME, view, size);
+    const png = url.split(',')[1];
+    if (process.env.CHRONORMAL_UPDATE_DOCS === '1') writeFileSync(PICTURE, Buffer.from(png, 'base64'));
+    const differ = (...all) => window.differenceOfPictures(...all);
+    const difference = await browser.page.evaluate(differ, png, readFileSync(PICTURE).toString('base64'));
+    assert.ok(difference < 2, `docs/pictures/filament.png is another (${difference} of 255): CHRONORMAL_UPDATE_DOCS=1`);
+  }
+  if (FULL)
+    test('Filament lights a head as docs/pictures/filament.png has it', { skip: NO_DATA }, () => assertPicture());
 
   for (const host of HOSTS) {
     test(`twist in ${host}`, (context) => assertCloser(context, host, join(folder, 'twist.glb')));

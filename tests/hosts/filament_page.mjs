@@ -5,8 +5,10 @@
 // k (n + 1) / 2, where k depends on material and view; under a light of 1 the same surface shows k.
 
 const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];  // spherical harmonics in RGB: 1, y, z, x
+const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EXPOSURE = [16, 1 / 125, 100];  // aperture, shutter and sensitivity
+const INTENSITY = 38_400;  // of light, so that white is shown as 1 at that exposure
 const JSON_AT = 20;
 
 let host;
@@ -15,14 +17,13 @@ function createHost() {
   const { Filament } = window;
   const gl = framebuffersNoted(document.createElement('canvas').getContext('webgl2'));
   const engine = Filament.Engine.create(gl.canvas);
-  const light = (sh) => Filament.IndirectLight.Builder().irradianceSh(2, sh).intensity(38400).build(engine);
+  const light = (sh) => Filament.IndirectLight.Builder().irradianceSh(2, sh).intensity(INTENSITY).build(engine);
   const camera = engine.createCamera(Filament.EntityManager.get().create());
   camera.setExposure(...EXPOSURE);
   const scene = engine.createScene();
   const view = engine.createView();
   view.setCamera(camera);
   view.setScene(scene);
-  view.setPostProcessingEnabled(false);
   const renderer = engine.createRenderer();
   renderer.setClearOptions({ clearColor: [0, 0, 0, 0], clear: true });
   const lights = [NORMALS, WHITE].map(light);
@@ -40,21 +41,22 @@ function framebuffersNoted(gl) {
   return gl;
 }
 
-export async function load(bytes) {
+export const load = (bytes) => loadAs(bytes, WHITE_MATERIAL);
+
+async function loadAs(bytes, material) {
   if (!window.Filament.isReady) await new Promise((resolve) => window.Filament.init([], resolve));
   host ??= createHost();
-  const asset = host.loader.createAsset(whitened(bytes));
+  const asset = host.loader.createAsset(withMaterial(bytes, material));
   await new Promise((resolve) => asset.loadResources(resolve, null, null, 1));
   return { asset, animator: asset.getInstance().getAnimator() };
 }
 
-// A GLB in which all is white, rough and no metal, and has no textures.
-function whitened(bytes) {
+// A GLB in which everything has the same material, without textures.
+function withMaterial(bytes, pbrMetallicRoughness) {
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(bytes.subarray(JSON_AT, JSON_AT + length)));
-  const white = (doubleSided) => ({ pbrMetallicRoughness: { metallicFactor: 0, roughnessFactor: 1 }, doubleSided });
   const old = json.materials ?? [];
-  json.materials = [white(false), white(true)];
+  json.materials = [false, true].map((doubleSided) => ({ pbrMetallicRoughness, doubleSided }));
   for (const { primitives } of json.meshes)
     for (const primitive of primitives) primitive.material = old[primitive.material]?.doubleSided ? 1 : 0;
   const text = new TextEncoder().encode(JSON.stringify(json));
@@ -79,8 +81,8 @@ export function dispose({ asset }) {
 }
 
 // World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
-export async function drawNormals({ asset }, { eye, at, degrees, near, far }, size) {
-  const { camera, engine, lights, scene, view } = host;
+export async function drawNormals({ asset }, viewed, size) {
+  const { engine, lights, scene, view } = host;
   const { Filament } = window;
   const texture = (format, usage) => {
     const builder = Filament.Texture.Builder().width(size.width).height(size.height).levels(1);
@@ -90,9 +92,8 @@ export async function drawNormals({ asset }, { eye, at, degrees, near, far }, si
   const { COLOR, DEPTH } = Filament.RenderTarget$AttachmentPoint;
   const target = Filament.RenderTarget.Builder().texture(COLOR, colors).texture(DEPTH, depths).build(engine);
   view.setRenderTarget(target);
-  view.setViewport([0, 0, size.width, size.height]);
-  camera.lookAt(eye, at, [0, 1, 0]);
-  camera.setProjectionFov(degrees, size.width / size.height, near, far, Filament.Camera$Fov.VERTICAL);
+  view.setPostProcessingEnabled(false);
+  lookFrom(viewed, size);
   const entities = asset.getRenderableEntities();
   entities.forEach((entity) => scene.addEntity(entity));
   const normals = await drawn(lights[0], size);
@@ -103,8 +104,15 @@ export async function drawNormals({ asset }, { eye, at, degrees, near, far }, si
   return normals.map((value, i) => (i % 4 === 3 ? value : value / white[i]));
 }
 
-async function drawn(light, { width, height }) {
-  const { engine, gl, renderer, scene, swapChain, view } = host;
+function lookFrom({ eye, at, degrees, near, far }, size) {
+  const { Camera$Fov } = window.Filament;
+  host.view.setViewport([0, 0, size.width, size.height]);
+  host.camera.lookAt(eye, at, [0, 1, 0]);
+  host.camera.setProjectionFov(degrees, size.width / size.height, near, far, Camera$Fov.VERTICAL);
+}
+
+async function render(light) {
+  const { engine, renderer, scene, swapChain, view } = host;
   scene.setIndirectLight(light);
   // A frame is refused until the browser has said, in a task of its own, that an earlier one is done.
   while (!renderer.beginFrame(swapChain)) {
@@ -114,8 +122,39 @@ async function drawn(light, { width, height }) {
   renderer.renderView(view);
   renderer.endFrame();
   engine.execute();
+}
+
+async function drawn(light, { width, height }) {
+  await render(light);
+  const { gl } = host;
   const pixels = new Float32Array(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.lastFramebuffer);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
   return pixels;
+}
+
+const BLUE_MATERIAL = { baseColorFactor: [0.03, 0.22, 0.47, 1], metallicFactor: 0.1, roughnessFactor: 0.35 };
+const SKY = [0.5, 0.55, 0.6, 0.25, 0.27, 0.3, 0.1, 0.1, 0.1, -0.1, -0.1, -0.1];
+
+// A canvas with a file at a time of an animation, lit by a sun and a sky, with nothing behind it. The next
+// picture takes it away.
+export async function drawLit(bytes, animation, time, viewed, size) {
+  const model = await loadAs(bytes, BLUE_MATERIAL);
+  const { Filament } = window;
+  play(model, animation, time);
+  const { engine, gl, scene, view } = host;
+  Object.assign(gl.canvas, size);
+  view.setRenderTarget(null);
+  view.setPostProcessingEnabled(true);
+  view.setBlendMode(Filament.View$BlendMode.TRANSLUCENT);
+  lookFrom(viewed, size);
+  const sun = Filament.EntityManager.get().create();
+  Filament.LightManager.Builder(Filament.LightManager$Type.DIRECTIONAL)
+    .color([1, 0.95, 0.85]).intensity(90_000).direction([-0.5, -0.8, -0.55]).build(engine, sun);
+  const shown = [sun, ...model.asset.getRenderableEntities()];
+  shown.forEach((entity) => scene.addEntity(entity));
+  await render(Filament.IndirectLight.Builder().irradianceSh(2, SKY).intensity(INTENSITY).build(engine));
+  shown.forEach((entity) => scene.remove(entity));
+  dispose(model);
+  return gl.canvas;
 }

@@ -222,7 +222,7 @@ async function assertPicture(page) {
   const closer = view.eye.map((c, i) => view.at[i] + 0.97 * (c - view.at[i]));
   const lower = { ...view, eye: closer, at: [view.at[0], view.at[1] - 0.15, view.at[2]], near: 0.1 };
   const draw = (...all) => window.drawPicture(...all);
-  const url = await page.evaluate(draw, items, 0, TIME, lower, { width: 1200, height: 480 });
+  const url = await page.evaluate(draw, 'three', items, 0, TIME, lower, { width: 1200, height: 480 });
   const png = url.split(',')[1];
   if (process.env.CHRONORMAL_UPDATE_DOCS === '1') writeFileSync(PICTURE, Buffer.from(png, 'base64'));
   const differ = (...all) => window.differenceOfPictures(...all);

@@ -72,7 +72,7 @@ window.compareDriven = async (host, file, weights, { truth, view }, size) => {
   return results;
 };
 
-window.drawPicture = (items, ...others) =>
-  drawPicture(items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
+window.drawPicture = (host, items, ...others) =>
+  drawPicture(host, items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
 
 window.differenceOfPictures = (...pictures) => differenceOfPictures(...pictures.map(bytesOf));

@@ -1,7 +1,7 @@
-// The picture of wrong beside right, in the page: files side by side at the same moment, as three.js draws them with
-// its standard material under the lights of a room.
+// Pictures of wrong beside right, in the page: files side by side at the same moment, lit by a host.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
+import * as filament from './filament_page.mjs';
 import { cameraOf, load, play, rendererOf } from './three_page.mjs';
 
 const BACKGROUND = '#f8fafc';
@@ -11,36 +11,18 @@ const FONTS = [`600 17px ${FAMILY}`, `14px ${FAMILY}`];
 const SAMPLES = 2;  // rendered that much larger, each way
 
 // Each of `items` is {bytes, caption}, a caption two lines. Returns a PNG as a data URL.
-export async function drawPicture(items, animation, time, view, size) {
+export async function drawPicture(host, items, animation, time, view, size) {
+  const drawLit = { three: drawLitByThree, filament: filament.drawLit }[host];
   const canvas = document.createElement('canvas');
   Object.assign(canvas, size);
   const sheet = canvas.getContext('2d');
   sheet.fillStyle = BACKGROUND;
   sheet.fillRect(0, 0, size.width, size.height);
-  const part = { width: SAMPLES * Math.floor(size.width / items.length), height: SAMPLES * size.height };
-  const renderer = rendererOf(part);
-  renderer.toneMapping = THREE.ACESFilmicToneMapping;
-  const room = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment(), 0.02).texture;
+  sheet.imageSmoothingQuality = 'high';
+  const width = Math.floor(size.width / items.length);
+  const part = { width: SAMPLES * width, height: SAMPLES * size.height };
   for (const [i, { bytes, caption }] of items.entries()) {
-    const model = await load(bytes);
-    play(model, animation, time);
-    model.scene.environment = room;
-    model.scene.background = null;
-    const sun = new THREE.DirectionalLight('#fff1dc', 2.2);
-    sun.position.set(2, 3, 2.5);
-    model.scene.add(sun);
-    model.scene.traverse((object) => {
-      if (!object.isMesh) return;
-      const side = THREE.DoubleSide;
-      object.material = new THREE.MeshStandardMaterial({ color: '#2f7fb5', roughness: 0.22, metalness: 0.35, side });
-    });
-    renderer.setRenderTarget(null);
-    renderer.setClearColor(BACKGROUND, 1);
-    renderer.clear();
-    renderer.render(model.scene, cameraOf(view, part));
-    const width = part.width / SAMPLES;
-    sheet.imageSmoothingQuality = 'high';
-    sheet.drawImage(renderer.domElement, i * width, 0, width, size.height);
+    sheet.drawImage(await drawLit(bytes, animation, time, view, part), i * width, 0, width, size.height);
     sheet.textAlign = 'center';
     caption.forEach((line, l) => {
       sheet.fillStyle = INK[l];
@@ -49,6 +31,29 @@ export async function drawPicture(items, animation, time, view, size) {
     });
   }
   return canvas.toDataURL('image/png');
+}
+
+// A canvas with a file as three.js draws it with its standard material under the lights of a room.
+async function drawLitByThree(bytes, animation, time, view, size) {
+  const renderer = rendererOf(size);
+  renderer.toneMapping = THREE.ACESFilmicToneMapping;
+  const model = await load(bytes);
+  play(model, animation, time);
+  model.scene.environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment(), 0.02).texture;
+  model.scene.background = null;
+  const sun = new THREE.DirectionalLight('#fff1dc', 2.2);
+  sun.position.set(2, 3, 2.5);
+  model.scene.add(sun);
+  model.scene.traverse((object) => {
+    if (!object.isMesh) return;
+    const side = THREE.DoubleSide;
+    object.material = new THREE.MeshStandardMaterial({ color: '#2f7fb5', roughness: 0.22, metalness: 0.35, side });
+  });
+  renderer.setRenderTarget(null);
+  renderer.setClearColor(BACKGROUND, 1);
+  renderer.clear();
+  renderer.render(model.scene, cameraOf(view, size));
+  return renderer.domElement;
 }
 
 // How different two PNGs are: the mean of |a - b| over all channels, of 255. Infinity where their sizes differ.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "io/gltf/gltf_bake_mark.h"
 #include "io/json/json_writer.h"
@@ -114,8 +116,13 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras) {
       append(std::string("/nodes/").append(std::to_string(n)).append("/weights"), node.weights);
   }
   if (mesh_.target_names.empty()) return;
-  for (const GltfExtraTarget& extra : extras)
-    edit_.append(pointer_ + "/extras/targetNames", quote_json(name_of_extra(extra)));
+  // Each name once: PlayCanvas finds targets by it.
+  std::map<std::string, std::size_t> count;
+  for (const GltfExtraTarget& extra : extras) {
+    std::string name = name_of_extra(extra);
+    if (const std::size_t n = ++count[name]; n > 1) name.append(" (").append(std::to_string(n)).append(")");
+    edit_.append(pointer_ + "/extras/targetNames", quote_json(name));
+  }
 }
 
 std::vector<std::size_t> MeshWriter::set_mark(const GltfBakeMark& mark) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,14 @@ TEST(BakeTraps, target_names_grow_where_there_are_some) {
   EXPECT_TRUE(result.mesh()["extras"]["mine"].is_null());
   EXPECT_EQ(result.mesh()["extras"]["chronormal"]["extras"][1],
             R"({"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]})"_json);
+}
+
+TEST(BakeTraps, every_target_has_a_name_of_its_own) {
+  GltfBuilder builder = moving_hills();
+  builder.json["meshes"][0]["extras"] = {{"targetNames", {"smile", "blink"}}};
+  const Json names = baked(builder, {.encoding = BakeEncoding::kHarmless}).mesh()["extras"]["targetNames"];
+  EXPECT_GT(names.size(), 2U);
+  EXPECT_EQ(std::set<Json>(names.begin(), names.end()).size(), names.size()) << names;
 }
 
 TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
