@@ -7,11 +7,8 @@
 #include <string_view>
 #include <utility>
 
-<<<<<<< HEAD
-#include "io/gltf/gltf_bake_mark.h"
-=======
 #include "chronormal/io/expansion.h"
->>>>>>> main
+#include "io/gltf/gltf_bake_mark.h"
 #include "io/gltf/gltf_model_parser.h"
 
 namespace chronormal::inline internal::gltf {
