@@ -77,7 +77,7 @@ Result<int> run(const Options& options) {
 Command inspect_command() {
   auto options = std::make_shared<Options>();
   return {"inspect",
-          "What is in a file, and what in it will trouble you",
+          "List what a file contains and what may cause wrong normals",
           {input_table(options->input), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
           "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
           "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"

@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "cli/format.h"
+#include "cli/help.h"
 #include "cli/print.h"
 #include "cli/table.h"
 #include "cli/text.h"
 #include "cli/version.h"
+#include "core/nearest.h"
 
 namespace chronormal::cli {
 namespace {
@@ -79,8 +82,9 @@ void add_option(const Option& option, CLI::App& command) {
 
 void add_command(const Command& command, CLI::App& program) {
   CLI::App* const added = program.add_subcommand(command.name, command.summary);
-  added->group("Commands");
-  added->footer(command.footer);
+  added->formatter_fn([&command](const CLI::App*, const std::string&, CLI::AppFormatMode) {
+    return help_of_command(command, columns_of_output());
+  });
   for (const std::vector<Option>& table : command.tables)
     for (const Option& option : table) add_option(option, *added);
 }
@@ -96,20 +100,59 @@ int report(const std::string& command, const Error& error) {
   return static_cast<int>(error.code);
 }
 
+int print_or_report(const std::string& text) {
+  const Status printed = print(text);
+  return printed ? kExitDone : report("", printed.error());
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& names, std::string otherwise) {
+  const std::string nearest = nearest_name(word, names);
+  return nearest.empty() ? otherwise : formatted("; did you mean {}?", nearest);
+}
+
 // A word that is no command deserves a better answer than the parser's.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
-  std::string names;
+  std::vector<std::string> names;
+  std::string list;
   for (const Command& command : commands) {
     if (command.name == first) return true;
-    names += (names.empty() ? "" : ", ") + command.name;
+    names.push_back(command.name);
+    list += (list.empty() ? "" : ", ") + command.name;
   }
   if (first.empty())
-    say("", "name a command: " + names);
+    say("", "name a command: " + list);
   else
-    say("", formatted("there is no command '{}'; there are {}", first, names));
+    say("", formatted("there is no command '{}'{} there are {}", first, suggestion(first, names, ";"), list));
   say_where_help_is("");
   return false;
+}
+
+// The first option that the command does not have, which the parser would pass over where a required one is missing. A
+// word after an option that takes a value is that value, whatever it looks like.
+std::optional<Error> find_unknown_option(const Command& command, std::span<char* const> arguments) {
+  std::vector<std::string> names = {"-h", "--help"}, with_value;
+  for (const std::vector<Option>& table : command.tables) {
+    for (const Option& option : table) {
+      const std::vector<std::string> own = names_of(option);
+      names.insert(names.end(), own.begin(), own.end());
+      if (takes_value(option)) with_value.insert(with_value.end(), own.begin(), own.end());
+    }
+  }
+  const auto is_in = [](const std::vector<std::string>& list, std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word == "--") break;
+    if (word.size() < 2 || word.front() != '-') continue;
+    const bool is_long = word.starts_with("--");
+    const std::string_view name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+    if (!is_in(names, name))
+      return Error{ErrorCode::kUsage, "", formatted("there is no option '{}'{}", name, suggestion(name, names, ""))};
+    if (name == word && is_in(with_value, name)) ++i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -131,23 +174,38 @@ Check check_given(std::string message) {
 }
 
 int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
-  CLI::App program("Normals of triangle meshes that deform: exact at every instant.", "chronormal");
-  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  program.get_formatter()->label("Subcommands", "Commands");
-  program.set_version_flag("--version", formatted("chronormal {}", kVersion));
+  CLI::App program("", "chronormal");
+  program.formatter_fn([&](const CLI::App*, const std::string&, CLI::AppFormatMode) {
+    return help_of_program(commands, columns_of_output());
+  });
+  program.set_version_flag("-V,--version", formatted("chronormal {}", kVersion));
   program.require_subcommand(1);
-  program.footer("chronormal COMMAND --help explains a command.");
   for (const Command& command : commands) add_command(command, program);
 
-  const std::string_view first = argument_count > 1 ? arguments[1] : "";
-  if (!is_known(commands, first)) return kExitUsage;
+  const std::string_view first = argument_count > 1 ? arguments[1] : "",
+                         second = argument_count > 2 ? arguments[2] : "";
+  if (first == "--manual-page") return print_or_report(manual_page(commands));
+  if (first == "--completions") {
+    const Result<std::string> text = completions(commands, second);
+    return text ? print_or_report(text.value()) : report("", text.error());
+  }
+  const std::string_view asked = first == "help" && !second.empty() ? second : first;
+  if (asked == "help") return print_or_report(help_of_program(commands, columns_of_output()));
+  if (!is_known(commands, asked)) return kExitUsage;
+  const auto command_of = [&](std::string_view name) {
+    return std::find_if(commands.begin(), commands.end(), [&](const Command& command) { return command.name == name; });
+  };
+  if (first == "help") return print_or_report(help_of_command(*command_of(asked), columns_of_output()));
+  if (const auto named = command_of(first); named != commands.end()) {
+    const std::span<char* const> rest(arguments + 2, static_cast<std::size_t>(argument_count) - 2);
+    if (const auto unknown = find_unknown_option(*named, rest)) return report(named->name, *unknown);
+  }
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::Success& request) {  // --help and --version
     std::ostringstream text;
     (void)program.exit(request, text, text);
-    const Status printed = print(text.str());
-    return printed ? kExitDone : report("", printed.error());
+    return print_or_report(text.str());
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();

@@ -51,7 +51,8 @@ struct Command {
 /// A check that there is a value, with the message otherwise.
 [[nodiscard]] Check check_given(std::string message);
 
-/// Reads the command line and runs the command that it names, or prints the help or the version. An error goes to stderr
+/// Reads the command line and runs the command that it names, or prints help, the version, --manual-page or
+/// --completions SHELL (cli/help.h). An error goes to stderr
 /// as "chronormal COMMAND: place: message". Returns the exit code.
 [[nodiscard]] int run_program(const std::vector<Command>& commands, int argument_count, char** arguments);
 

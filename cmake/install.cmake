@@ -42,8 +42,25 @@ if(CHRONORMAL_C)
 endif()
 if(CHRONORMAL_PROGRAM)
   install(TARGETS chronormal_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The program writes its own manual page and completions.
+  set(written ${PROJECT_BINARY_DIR}/share)
+  set(program $<TARGET_FILE:chronormal_cli>)
+  file(MAKE_DIRECTORY ${written})
+  add_custom_command(
+    TARGET chronormal_cli POST_BUILD
+    COMMAND ${program} --manual-page > ${written}/chronormal.1
+    COMMAND ${program} --completions bash > ${written}/chronormal
+    COMMAND ${program} --completions zsh > ${written}/_chronormal
+    COMMAND ${program} --completions fish > ${written}/chronormal.fish
+    VERBATIM)
+  install(FILES ${written}/chronormal.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/chronormal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 file(CONFIGURE OUTPUT ${config_folder}/chronormalConfig.cmake CONTENT
 "include(CMakeFindDependencyMacro)
@@ -74,3 +91,16 @@ endforeach()
 write_basic_package_version_file(${config_folder}/chronormalConfigVersion.cmake VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
 install(FILES ${config_folder}/chronormalConfig.cmake ${config_folder}/chronormalConfigVersion.cmake
         DESTINATION ${package_folder})
+
+# `cpack` in the build folder makes a Debian package of all of it, which depends on the shared libraries that it uses.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME chronormal)
+set(CPACK_PACKAGE_CONTACT "the authors of chronormal <chronormal@users.noreply.github.com>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libhwy-dev, libtbb-dev, zlib1g-dev, libpugixml-dev, libmeshoptimizer-dev, libdraco-dev")
+include(CPack)

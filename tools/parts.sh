@@ -56,6 +56,25 @@ expect_skipped() {
   }
 }
 
+# expect_skipped_under_sanitizers PRESET: the same of the shards, whose tests say in XML why they were skipped.
+tests_without_sanitizers=13
+expect_skipped_under_sanitizers() {
+  local reasons elsewhere
+  reasons=$(sed -nE 's/.*<skipped message="([^"]*)".*/\1/p' build/"$1"/sanitized_*.xml)
+  elsewhere=$(grep -vE 'sanitizer|/dev/full|no terminal|may not mount|no small file system|files of 4 GiB' <<<"$reasons" || true)
+  [ -n "${CHRONORMAL_DATA-}" ] || elsewhere=$(grep -v CHRONORMAL_DATA <<<"$elsewhere" || true)
+  [ -z "$elsewhere" ] || {
+    say "under sanitizers, tests were skipped for another reason than those that tools/parts.sh knows:"
+    say "$elsewhere"
+    return 1
+  }
+  [ "$(grep -c sanitizer <<<"$reasons")" -eq "$tests_without_sanitizers" ] || {
+    say "$tests_without_sanitizers tests say that they are not for sanitizers, and these did:"
+    say "$reasons"
+    return 1
+  }
+}
+
 show_hosts() {
   say "what Node's test runner counted:"
   grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' build/release/hosts.tap

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
 
 class Cli : public testing::Test {
  protected:
@@ -44,6 +52,29 @@ class Cli : public testing::Test {
     write("b.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
   }
 
+  // The names that the help of the program lists.
+  [[nodiscard]] std::vector<std::string> command_names() const {
+    std::vector<std::string> commands;
+    bool are_listed = false;
+    for (const std::string& line : lines_of(run("--help").out)) {
+      are_listed = line == "Commands:" || (are_listed && !line.empty());
+      if (are_listed && line.starts_with("  ") && !line.starts_with("   "))
+        commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+    }
+    return commands;
+  }
+
+  // The long names of the options that the help of a command lists.
+  [[nodiscard]] std::vector<std::string> option_names(const std::string& command) const {
+    std::vector<std::string> names;
+    for (const std::string& line : lines_of(run(command + " --help").out)) {
+      const std::size_t dashes = line.find("--");
+      if (line.starts_with("  -") && dashes != std::string::npos)
+        names.push_back(line.substr(dashes, line.find_first_of(" ", dashes) - dashes));
+    }
+    return names;
+  }
+
   fs::path folder_;
 };
 
@@ -67,15 +98,66 @@ TEST_F(Cli, version_and_help_go_to_stdout) {
     EXPECT_NE(compare_help.out.find(word), std::string::npos) << word;
 }
 
-TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
-  std::istringstream help(run("--help").out);
-  std::vector<std::string> commands;
-  for (std::string line; std::getline(help, line);) {
-    if (line == "Commands:") {
-      while (std::getline(help, line) && line.starts_with("  "))
-        commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+TEST_F(Cli, help_fits_the_width_of_the_output) {
+  std::vector<std::string> asked = command_names();
+  asked.push_back("");
+  for (const std::string& command : asked) {
+    for (const std::string& line : lines_of(run("help " + command).out)) EXPECT_LE(line.size(), 80U) << line;
+    const ProcessResult wide = run_shell("COLUMNS=120 " + std::string(kProgram) + " help " + command, folder_.string());
+    const ProcessResult narrow =
+        run_shell("COLUMNS=60 " + std::string(kProgram) + " help " + command, folder_.string());
+    std::size_t longest = 0;
+    for (const std::string& line : lines_of(wide.out)) longest = std::max(longest, line.size());
+    EXPECT_LE(longest, 120U);
+    EXPECT_GT(longest, command.empty() ? 60U : 80U) << command;
+    for (const std::string& line : lines_of(narrow.out)) EXPECT_LE(line.size(), 60U) << line;
+  }
+}
+
+TEST_F(Cli, help_and_version_have_short_ways) {
+  EXPECT_EQ(run("-V").out, run("--version").out);
+  EXPECT_EQ(run("help").out, run("--help").out);
+  EXPECT_EQ(run("help bake").out, run("bake -h").out);
+  expect_error(run("help bkae"), 2, {"did you mean bake?"});
+}
+
+TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
+  expect_error(run("compare a.obj b.obj --shcemes linear"), 2, {"'--shcemes'; did you mean --schemes?"});
+  // Also where something that is required is missing, or the mistake is in a value's own name.
+  expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
+  expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
+  expect_error(run("compare a.obj b.obj --colour-of-the-sky"), 2, {"'--colour-of-the-sky'\n"});
+  // What follows an option that takes a value is that value.
+  expect_error(run("compare a.obj b.obj --samples --sample"), 2, {"--samples"});
+}
+
+TEST_F(Cli, completions_and_the_manual_page_name_every_option) {
+  const std::string manual = run("--manual-page").out, zsh = run("--completions zsh").out,
+                    fish = run("--completions fish").out;
+  write("bash", run("--completions bash").out);
+  for (const std::string& command : command_names()) {
+    std::string script = ". ./bash; COMP_WORDS=(chronormal " + command + " --) COMP_CWORD=2; _chronormal; ";
+    const ProcessResult completed =
+        run_shell("bash -c '" + script + "printf \"%s\\n\" \"${COMPREPLY[@]}\"'", folder_.string());
+    EXPECT_EQ(completed.exit_code, 0) << completed.err;
+    const std::vector<std::string> found = lines_of(completed.out), names = option_names(command);
+    EXPECT_GE(names.size(), 5U);
+    for (const std::string& name : names) {
+      EXPECT_NE(std::find(found.begin(), found.end(), name), found.end()) << command << ' ' << name;
+      std::string escaped;
+      for (const char c : name) escaped += c == '-' ? "\\-" : std::string(1, c);
+      EXPECT_NE(manual.find(escaped), std::string::npos) << name;
+      if (name == "--help") continue;
+      EXPECT_NE(zsh.find("'*" + name + "["), std::string::npos) << name;
+      EXPECT_NE(fish.find("from " + command + "'"), std::string::npos) << name;
+      EXPECT_NE(fish.find(" -l " + name.substr(2)), std::string::npos) << name;
     }
   }
+  expect_error(run("--completions powershell"), 2, {"bash, zsh and fish"});
+}
+
+TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
+  const std::vector<std::string> commands = command_names();
   EXPECT_GE(commands.size(), 6u);
   for (const std::string& command : commands) {
     SCOPED_TRACE(command);

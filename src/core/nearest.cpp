@@ -1,0 +1,39 @@
+#include "core/nearest.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace chronormal::inline internal {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, last,
+      row(b.size() + 1);  // of the prefixes of a with two letters and one less, and this
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    before = std::exchange(last, row);
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0 : 1), last[j + 1] + 1, row[j] + 1});
+      const bool are_swapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+      if (are_swapped) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_name(std::string_view word, std::span<const std::string> names) {
+  constexpr std::size_t kMostLetters = 2, kLongest = 32;
+  if (word.size() > kLongest) return "";
+  std::size_t least = std::min(kMostLetters, word.size() / 3) + 1;
+  std::string nearest;
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(word, name);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = name;
+  }
+  return nearest;
+}
+
+}  // namespace chronormal::inline internal
