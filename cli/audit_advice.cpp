@@ -94,19 +94,11 @@ std::string outcome(const Audited& input) {
   const MotionError& error = input.audit.error;
   const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
                                           : formatted("{} degrees", degrees(error.worst));
-  if (driven == 0)
-    return formatted(
-        "makes each target right at weight 1, and between 0 and 1 as near as one delta comes, and says what is left of "
-        "{}",
-        now);
-  if (driven < wrong.size())
-    return formatted(
-        "makes right what animations move, comes as near as one delta can elsewhere, and says what is left of {}", now);
-  if (!by_area)
-    return formatted("fits {} normals, as the file has them, and says what is left of {}", weighting_words(wrong), now);
-  if (error.unlit > 0)
-    return formatted("makes right all but base normals that are zero, and says what is left of {}", now);
-  return formatted("brings the worst from {} to about 0.01 or less", now);
+  std::string text =
+      formatted("writes what all hosts show alike, nowhere worse than before, and says what is left of {}", now);
+  if (driven == wrong.size() && by_area && error.unlit == 0)
+    text += "; for hosts that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
+  return text;
 }
 
 std::string original_words(const Audited& input) {
