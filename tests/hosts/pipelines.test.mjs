@@ -87,10 +87,12 @@ async function assertKept(context, name, lines) {
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    const text = ({ mean, worst }) => `${mean.toFixed(3)} / ${worst.toFixed(2)}`;
+    // What keeps the delta of its author is as far off as in the file as it came.
+    const worst = Math.max(plain.worst, (await measure(line, name, 'exported')).worst);
+    const text = (degrees) => `${degrees.mean.toFixed(3)} / ${degrees.worst.toFixed(2)}`;
     const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
     context.diagnostic(outcome);
-    if (!(kept.worst <= plain.worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
+    if (!(kept.worst <= worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
   }
   assert.deepEqual(faults, []);
 }
