@@ -102,22 +102,30 @@ std::string outcome(const Audited& input) {
 }
 
 std::string original_words(const Audited& input) {
-  bool all_single = true, any_driven = false, all_fitted = true;
+  bool all_single = true, any_driven = false, all_fitted = true, any_harmless = false;
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, true);
   for (const AuditSubject* subject : wrong) {
+    const BakeEncoding encoding = input.document()->meshes()[*subject->mesh].mark->encoding;
     all_fitted = all_fitted && subject->weighting != Weighting::kArea;
-    all_single = all_single && input.document()->meshes()[*subject->mesh].mark->encoding == BakeEncoding::kEndpoint;
+    all_single = all_single && encoding == BakeEncoding::kEndpoint;
+    any_harmless = any_harmless || encoding == BakeEncoding::kHarmless;
     any_driven = any_driven || is_driven(input, *subject);
   }
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
+  if (any_harmless && any_driven)
+    return baked +
+           "this is what all hosts of that bake show alike; bake the original with --for and those hosts that count, "
+           "or "
+           "with --encode exact where these play targets as glTF says";
+  if (any_harmless)
+    return baked + "what hosts show alike of each target is all that there is where no animation moves them";
   if (!all_single && all_fitted)
     return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
                      weighting_words(wrong));
   if (!all_single)
     return baked +
            "positions, normals or weights were changed after that, or --weighting was another; start again from the "
-           "file "
-           "before its bake";
+           "file before its bake";
   if (any_driven)
     return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
   return baked + "one delta for each target is all that there is where no animation moves them";

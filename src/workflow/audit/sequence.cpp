@@ -223,7 +223,7 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
       const Vec3d normal = stored_normal(normals, 0, output);
       if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
     }
-    const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), stored);
+    const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), std::move(stored));
     result.offsets.push_back(authored_offset(authored, asked));
     weighting = result.offsets.back().weighting;
   }

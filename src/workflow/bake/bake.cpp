@@ -82,10 +82,13 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
+// How many stored normals say which weighting they follow: a median over these is as good as one over all.
+constexpr std::size_t kAskedForWeighting = 20000;
+
 // The weighting of the right normals. Base normals that are made anew have no author.
 Weighting weighting_of(const GltfShading& shading, const BakeOptions& options) {
   if (options.weighting) return *options.weighting;
-  return options.recompute_base ? Weighting::kArea : find_authored_weighting(shading).detected;
+  return options.recompute_base ? Weighting::kArea : find_authored_weighting(shading, kAskedForWeighting).detected;
 }
 
 // The report as far as it follows from the plan.

@@ -4,40 +4,68 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
-#include "core/blocks.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kBlock = 1024;                // elements that are looked at together
 constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians, and small enough to be its own sine
 constexpr double kClear = 2.0 / 3;
-constexpr double kNone = -1;  // in place of an angle
 
-// The angle of each stored normal to that of its element, in degrees.
-std::vector<double> angles_to(std::span<const StoredNormal> stored, const std::vector<Vec3d>& normals) {
-  std::vector<double> angles(stored.size());
-  parallel_each(stored.size(), kBlock, [&](std::size_t i) {
-    const Vec3d& normal = normals[stored[i].element];
-    angles[i] = normal == Vec3d{} ? kNone : angle_between(stored[i].normal, normal) * kDegreesPerRadian;
-  });
-  return angles;
-}
+using Stored = std::span<const StoredNormal>;  // in the order of their elements
 
-WeightingDistance distance_of(std::span<const StoredNormal> stored, const std::vector<double>& angles) {
-  WeightingDistance result;
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    if (angles[i] == kNone) continue;
-    ++result.count;
-    result.sum += angles[i];
-    if (angles[i] > result.worst) {
-      result.worst = angles[i];
-      result.worst_at = stored[i].vertex;
+// Some elements as a mesh of its own in which each has its faces for itself, so that memory is that of a block: the
+// element is one vertex of them, and their other vertices belong to nobody else.
+class Block {
+ public:
+  Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {
+    std::vector<std::uint32_t> offsets = {0}, corners;
+    std::vector<float> placed;
+    const auto place = [&](std::uint32_t vertex) {
+      const Vec3f p = positions[vertex];
+      placed.insert(placed.end(), {p.x, p.y, p.z});
+      return static_cast<std::uint32_t>(placed.size() / 3 - 1);
+    };
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      const std::uint32_t element = stored[i].element;
+      if (i > 0 && element == stored[i - 1].element) {
+        own_.push_back(own_.back());
+        continue;
+      }
+      const auto own_corners = groups.corners(element), faces = groups.faces(element);
+      own_.push_back(own_corners.empty() ? kNone : place(topology.corners()[own_corners[0]]));
+      for (std::size_t k = 0; k < faces.size(); ++k) {
+        const std::span<const std::uint32_t> face = topology.face(faces[k]);
+        const auto first = static_cast<std::size_t>(face.data() - topology.corners().data());
+        for (std::size_t c = 0; c < face.size(); ++c)
+          corners.push_back(first + c == own_corners[k] ? own_.back() : place(face[c]));
+        offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+      }
     }
+    topology_ = Topology::polygons(placed.size() / 3, std::move(offsets), std::move(corners)).value();
+    positions_ = std::move(placed);
+    groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
-  return result;
-}
+
+  // The normals of the elements by a weighting, one for each stored normal; zero where there is none.
+  [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
+    const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
+    const std::vector<Vec3d> all = all_weighted_normals_at({&topology_, view, view, 0, 1, 0}, groups_, weighting, 0);
+    std::vector<Vec3d> result;
+    for (const std::uint32_t own : own_) result.push_back(own == kNone ? Vec3d{} : all[own]);
+    return result;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+
+  std::vector<std::uint32_t> own_;  // the vertex that an element is, of each stored normal
+  Topology topology_;
+  std::vector<float> positions_;
+  NormalGroups groups_;
+};
 
 bool differ(const Vec3d& a, const Vec3d& b) {
   const Vec3d across = cross(a, b);
@@ -45,44 +73,90 @@ bool differ(const Vec3d& a, const Vec3d& b) {
   return dot(across, across) > kTells * kTells * dot(a, a) * dot(b, b) || along < 0;
 }
 
-double median_of_telling(std::span<const StoredNormal> stored, const std::vector<char>& tells,
-                         const std::vector<float>& angles) {
-  std::vector<float> told;
-  for (std::size_t i = 0; i < angles.size(); ++i)
-    if (tells[stored[i].element] != 0 && angles[i] >= 0) told.push_back(angles[i]);
-  if (told.empty()) return 0;
-  const auto middle = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 2);
-  std::nth_element(told.begin(), middle, told.end());
+// What blocks add up to.
+struct Distances {
+  std::array<WeightingDistance, kWeightings.size()> of_weightings;
+  std::array<std::vector<float>, kWeightings.size()> told;  // degrees, of the normals that tell
+  std::size_t telling = 0;
+
+  void add(std::size_t w, const StoredNormal& stored, double degrees) {
+    WeightingDistance& distance = of_weightings[w];
+    ++distance.count;
+    distance.sum += degrees;
+    if (degrees > distance.worst || (degrees == distance.worst && stored.vertex < distance.worst_at)) {
+      distance.worst = degrees;
+      distance.worst_at = stored.vertex;
+    }
+  }
+
+  void add(const Distances& other) {
+    telling += other.telling;
+    for (std::size_t w = 0; w < kWeightings.size(); ++w) {
+      WeightingDistance& distance = of_weightings[w];
+      const WeightingDistance& more = other.of_weightings[w];
+      distance.count += more.count;
+      distance.sum += more.sum;
+      if (more.worst > distance.worst || (more.worst == distance.worst && more.worst_at < distance.worst_at)) {
+        distance.worst = more.worst;
+        distance.worst_at = more.worst_at;
+      }
+      told[w].insert(told[w].end(), other.told[w].begin(), other.told[w].end());
+    }
+  }
+};
+
+Distances distances_of(const Block& block, Stored stored) {
+  Distances result;
+  std::array<std::vector<Vec3d>, kWeightings.size()> normals;
+  for (std::size_t w = 0; w < kWeightings.size(); ++w) normals[w] = block.normals(kWeightings[w].weighting);
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    bool tells = false;
+    for (std::size_t w = 1; w < kWeightings.size(); ++w) tells = tells || differ(normals[w][i], normals[0][i]);
+    result.telling += tells ? 1U : 0U;
+    for (std::size_t w = 0; w < kWeightings.size(); ++w) {
+      if (normals[w][i] == Vec3d{}) continue;
+      const double degrees = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
+      result.add(w, stored[i], degrees);
+      if (tells) result.told[w].push_back(static_cast<float>(degrees));
+    }
+  }
+  return result;
+}
+
+double median(std::vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
 }  // namespace
 
 AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
-                                          const NormalGroups& groups, std::span<const StoredNormal> stored) {
+                                          const NormalGroups& groups, std::vector<StoredNormal> stored) {
   AuthoredWeighting result;
-  if (stored.empty()) return result;
-  const Segment still{&topology, positions, positions, 0, 1, 0};
-  std::vector<Vec3d> by_area;
-  std::vector<char> tells(groups.size());  // of each element
-  std::array<std::vector<float>, kWeightings.size()> angles;
-  for (std::size_t w = 0; w < kWeightings.size(); ++w) {
-    std::vector<Vec3d> normals = all_weighted_normals_at(still, groups, kWeightings[w].weighting, 0);
-    const std::vector<double> of_weighting = angles_to(stored, normals);
-    result.distances[w] = distance_of(stored, of_weighting);
-    angles[w].assign(of_weighting.begin(), of_weighting.end());
-    if (w == 0) {
-      by_area = std::move(normals);
-      continue;
-    }
-    parallel_each(normals.size(), kBlock, [&](std::size_t e) {
-      if (differ(normals[e], by_area[e])) tells[e] = 1;
+  std::sort(stored.begin(), stored.end(), [](const StoredNormal& a, const StoredNormal& b) {
+    return std::pair(a.element, a.vertex) < std::pair(b.element, b.vertex);
+  });
+  Distances all;
+  const Stored sorted(stored);
+  const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
+  // Some blocks at a time, so that what they found is not all there at once.
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t first = 0; first < blocks; first += kAtOnce) {
+    std::vector<Distances> found(std::min(kAtOnce, blocks - first));
+    parallel_for(found.size(), [&](std::size_t k) {
+      const std::size_t begin = (first + k) * kBlock;
+      const Stored part = sorted.subspan(begin, std::min(kBlock, sorted.size() - begin));
+      found[k] = distances_of(Block(topology, positions, groups, part), part);
     });
+    for (const Distances& of_block : found) all.add(of_block);
   }
-  for (const StoredNormal& normal : stored) result.telling += tells[normal.element] != 0 ? 1U : 0U;
+  result.distances = all.of_weightings;
+  result.telling = all.telling;
   std::size_t closest = 0;
   for (std::size_t w = 0; w < kWeightings.size(); ++w) {
-    result.distances[w].of_telling = median_of_telling(stored, tells, angles[w]);
+    result.distances[w].of_telling = median(all.told[w]);
     if (result.distances[w].of_telling < result.distances[closest].of_telling) closest = w;
   }
   if (result.distances[closest].of_telling <= kClear * result.distances[0].of_telling)
@@ -90,17 +164,26 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   return result;
 }
 
-AuthoredWeighting find_authored_weighting(const GltfShading& shading) {
+AuthoredWeighting find_authored_weighting(const GltfShading& shading, std::size_t most) {
   const std::size_t vertices = shading.set.topology.vertex_count();
+  const auto normal_of = [&](std::size_t v) {
+    const float* const n = shading.normals.data() + 3 * v;
+    return to_double(Vec3f{n[0], n[1], n[2]});
+  };
+  const auto is_stored = [&](std::size_t v) {
+    return shading.element_of_vertex[v] != GltfShading::kNoElement && normal_of(v) != Vec3d{};
+  };
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < vertices; ++v) count += is_stored(v) ? 1U : 0U;
+  const std::size_t step = count / most + 1;
   std::vector<StoredNormal> stored;
-  for (std::uint32_t v = 0; v < vertices; ++v) {
-    const float* const n = shading.normals.data() + 3 * std::size_t{v};
-    const Vec3d normal = to_double(Vec3f{n[0], n[1], n[2]});
-    if (shading.element_of_vertex[v] != GltfShading::kNoElement && normal != Vec3d{})
-      stored.push_back({v, shading.element_of_vertex[v], normal});
+  stored.reserve(count / step + 1);
+  for (std::size_t v = 0, seen = 0; v < vertices; ++v) {
+    if (is_stored(v) && seen++ % step == 0)
+      stored.push_back({static_cast<std::uint32_t>(v), shading.element_of_vertex[v], normal_of(v)});
   }
-  return find_authored_weighting(
-      shading.set.topology, VectorView<const float>::packed(shading.set.base.data(), vertices), shading.groups, stored);
+  const auto base = VectorView<const float>::packed(shading.set.base.data(), vertices);
+  return find_authored_weighting(shading.set.topology, base, shading.groups, std::move(stored));
 }
 
 }  // namespace chronormal::inline internal

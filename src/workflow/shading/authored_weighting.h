@@ -17,7 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
@@ -55,13 +55,15 @@ struct AuthoredWeighting {
 };
 
 /// Holds stored normals against all weightings of the geometry. groups must be those of the topology, with corners.
-/// O(corners), five times; on all cores.
+/// O(corners), five times; on all cores, and in little memory beside the stored normals. The same bits on any number of
+/// threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
-                                                        const NormalGroups& groups,
-                                                        std::span<const StoredNormal> stored);
+                                                        const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// The same of the base normals of a mesh; area where it has none. Its groups must have their corners.
-[[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading);
+/// The same of the base normals of a mesh; area where it has none. Its groups must have their corners. Where there are
+/// more normals than `most`, about that many of them are asked, evenly.
+[[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
+                                                        std::size_t most = static_cast<std::size_t>(-1));
 
 }  // namespace chronormal::inline internal
 
