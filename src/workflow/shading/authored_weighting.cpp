@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kBlock = 1024;                // elements that are looked at together
 constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians, and small enough to be its own sine
 constexpr double kClear = 2.0 / 3;
+constexpr double kFollows = 1;  // degrees
 
 using Stored = std::span<const StoredNormal>;  // in the order of their elements
 
@@ -159,7 +160,8 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
     result.distances[w].of_telling = median(all.told[w]);
     if (result.distances[w].of_telling < result.distances[closest].of_telling) closest = w;
   }
-  if (result.distances[closest].of_telling <= kClear * result.distances[0].of_telling)
+  const double least = result.distances[closest].of_telling;
+  if (least <= kFollows && least <= kClear * result.distances[0].of_telling)
     result.detected = kWeightings[closest].weighting;
   return result;
 }

@@ -5,8 +5,8 @@
 ///
 ///     tells      a stored normal around which two weightings differ by more than 0.1 degrees: elsewhere all agree
 ///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored one
-///     detected   the weighting at the smallest distance, where that is at most two thirds of the distance of area;
-///                else area, which is exact at every time
+///     detected   the weighting at the smallest distance, where that is at most a degree, and two thirds of the
+///                distance of area; else area, which is exact at every time
 ///
 /// It is the median because it does not ask about the normals that an author bent by hand, as long as most are as they
 /// were computed. Normals in 8 bits, and quads that were cut into triangles afterwards, leave it well within the two
