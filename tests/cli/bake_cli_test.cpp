@@ -261,12 +261,23 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb", 2, "--output");
   expect_error("moving.glb -o out.glb --max-bytes 100", 3, "at most 100");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");
+  expect_error("f_0.obj f_1.obj -o out.gltf", 2, "a sequence is written as .glb");
   expect_error("--base f_0.obj f_1.obj -o out.glb", 2, "--base");
   expect_error("f_0.obj f_1.obj -o out.glb --smooth", 2, "--smooth");
   expect_error("f_0.obj f_1.obj -o out.glb --recompute-base", 2, "--recompute-base");
   expect_error("none.glb -o out.glb", 1, "none.glb");
   folder_.write("bad.glb", "glTF");
   expect_error("bad.glb -o out.glb", 3, "bad.glb");
+}
+
+TEST_F(BakeCli, a_motion_that_jumps_is_no_sequence) {
+  test::GltfBuilder steps = test::hills_document(2);
+  steps.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0, 0, 1}, "STEP");
+  folder_.write("steps.glb", steps.glb());
+  const ProcessResult kept =
+      run_shell(std::string(kProgram) + " convert steps.glb --animation move -o steps.npz", folder_.path());
+  ASSERT_EQ(kept.exit_code, 0) << kept.err;
+  expect_error("steps.npz -o out.glb", 3, "steps.npz: its weights jump");
 }
 
 TEST_F(BakeCli, file_in_which_nothing_moves_is_copied) {

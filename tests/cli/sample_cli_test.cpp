@@ -154,6 +154,7 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   expect_error("a.obj b.obj -o n.npy --times=-1", 2, "from 0 to 1");
   expect_error("a.obj b.obj -o n.npy --times 1 --fps 30", 2, "from 0 to 0.03333333333333333");
   expect_error("a.obj b.obj -o n.npy", 2, "0 to 1");
+  expect_error("a.obj b.obj -o n.npy --times 0:1:999998,0,0", 2, "--times: these are more than 1,000,000 times");
 }
 
 TEST_F(SampleCli, weights_are_for_blend_shapes) {
@@ -238,6 +239,9 @@ TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
   EXPECT_EQ(run("a.obj b.obj --times 0 --elements corners --hard-edges groups -o -", "").exit_code, 0);
   folder_.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_error("plain.obj --elements corners --hard-edges groups -o n.npy", 3, "no smoothing groups");
+  ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj -o bare.npz", folder_.path()).exit_code, 0);
+  expect_error("bare.npz --times 0 --elements corners --hard-edges normals -o n.npy", 2,
+               "bare.npz stores neither normals nor smoothing groups");
 }
 
 TEST_F(SampleCli, hard_edges_are_those_of_the_first_mesh) {

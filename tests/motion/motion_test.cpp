@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -52,6 +53,14 @@ TEST(Topology, refuses_offsets_that_do_not_cover_the_corners) {
   expect_refused(Topology::triangles(4, {0, 1}), "", "threes");
 }
 
+TEST(Topology, refuses_more_vertices_than_32_bits_can_name) {
+  if constexpr (sizeof(std::size_t) > 4) {
+    expect_refused(Topology::triangles(static_cast<std::size_t>(std::uint64_t{1} << 32), {0, 1, 2}), "",
+                   "more than 4,294,967,295 vertices or corners");
+  }
+  EXPECT_TRUE(Topology::triangles(0xFFFFFFFF, {0, 1, 2}).ok());
+}
+
 Motion two_frames() {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -84,12 +93,21 @@ TEST(Validate, refuses_what_is_not_finite_and_says_where) {
   motion = two_frames();
   motion.keyframes[1].positions[0] = std::numeric_limits<float>::infinity();
   expect_invalid(motion, "frame 1, vertex 0", "finite");
+  motion = two_frames();
+  motion.keyframes[1].time = std::numeric_limits<double>::infinity();
+  expect_invalid(motion, "frame 1", "the time is not finite");
 }
 
 TEST(Validate, refuses_frames_of_another_size) {
   Motion motion = two_frames();
   motion.keyframes[1].positions.resize(6);
   expect_invalid(motion, "frame 1", "6 coordinates");
+}
+
+TEST(Validate, refuses_bodies_of_another_number_of_vertices) {
+  Motion motion = two_frames();
+  motion.body_of_vertex = {0, 0};
+  expect_invalid(motion, "", "there are 2 bodies for 3 vertices");
 }
 
 TEST(Validate, refuses_segments_that_lead_nowhere) {

@@ -82,6 +82,8 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
             "a.mc, byte 136: the channel 'a' has 2 points here, but 1 before");
+  EXPECT_EQ(error_with(writer.points<float>("a", {}), writer.header(0)),
+            "a.mc, byte 92: the channel 'a' has no points");
   std::string bytes = test::small_maya<float>(true);
   bytes.replace(8, 8, "\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF");
   EXPECT_NE(error_text(read_maya_points(bytes, "a.mc")).find("the chunk 'FOR8' declares 9223372036854775807 bytes"),
@@ -119,6 +121,8 @@ TEST(ReadMayaDescription, errors_say_where_and_what) {
   EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate above 0"), std::string::npos);
   EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not after its EndTime"), std::string::npos);
+  EXPECT_EQ(error_text(read_maya_description(std::string((std::size_t{1} << 24) + 1, ' '), "c.xml")),
+            "c.xml, byte 16777216: a description has no more than 16 MiB");
 }
 
 TEST(ReadMayaCache, reads_one_file) {
@@ -195,6 +199,15 @@ TEST(ReadMayaCache, files_that_are_not_there_are_named) {
   ASSERT_FALSE(cache.ok());
   EXPECT_EQ(cache.error().code, ErrorCode::kFailed);
   EXPECT_EQ(cache.error().place, folder / "c.mc");
+}
+
+TEST(ReadMayaCache, files_for_each_frame_are_not_found_in_memory) {
+  const std::string xml = test::maya_xml("OneFilePerFrame", "mcx", 125, 250, 375);
+  const Result<PositionCache> cache =
+      read_maya_cache("c.xml", {1, 3, ""}, [&xml](const std::string&) { return Result<std::string_view>(xml); });
+  ASSERT_FALSE(cache.ok());
+  EXPECT_EQ(cache.error().code, ErrorCode::kUsage);
+  EXPECT_EQ(cache.error().text(), "c.xml: its files, one for each frame, can only be listed in a folder on disk");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <utility>
 
 #include "chronormal/motion/motion.h"
@@ -41,6 +42,23 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
   EXPECT_EQ(error_of(3, cache_at({0, 1, 1})), "walk.pc2, sample 2: its time, 1 s, is not after that of sample 1, 1 s");
   EXPECT_EQ(error_of(3, cache_at({0, -0.5})),
             "walk.pc2, sample 1: its time, -0.5 s, is not after that of sample 0, 0 s");
+}
+
+TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {
+  PositionCache cache = cache_at({0, 1});
+  cache.samples[1].positions[4] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(error_of(3, std::move(cache)),
+            "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is not a finite number");
+}
+
+TEST(CheckKeyframes, refuses_a_keyframe_of_another_number_of_vertices) {
+  Motion motion = test::turning_motion(0, 1);
+  EXPECT_TRUE(check_keyframes(motion).ok());
+  motion.keyframes[1].positions.resize(6);
+  const Status status = check_keyframes(motion);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kUsage);
+  EXPECT_EQ(status.error().text(), "a keyframe has another number of coordinates than the vertices need");
 }
 
 }  // namespace

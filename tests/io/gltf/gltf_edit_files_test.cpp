@@ -197,6 +197,18 @@ TEST(GltfEditFiles, images_beside_the_source_are_taken_along) {
             "in.gltf, /images/2/uri: the file is neither PNG, JPEG, WebP nor KTX2, so it can not be taken in");
 }
 
+TEST(GltfEditFiles, an_image_that_a_change_took_away_is_not_taken_along) {
+  const TemporaryFolder folder;
+  folder.write("a.png", "\x89PNG\r\n\x1A\n...");
+  GltfBuilder builder = test::quad_document();
+  builder.json["images"] = {{{"uri", "a.png"}}};
+  const Result<GltfDocument> document = GltfDocument::open(folder.write("in.gltf", builder.gltf()));
+  ASSERT_TRUE(document.ok()) << document.error().text();
+  GltfEdit edit(document.value());
+  edit.set("/images", "[]");
+  EXPECT_EQ(bytes_or_error(edit, folder / "out.glb"), "in.gltf, /images/0: the array has 0 items, and no item 0");
+}
+
 TEST(GltfEditFiles, path_that_names_no_gltf_file_is_refused) {
   const GltfFixture fixture(test::quad_document());
   const GltfEdit edit(*fixture);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -463,6 +465,37 @@ TEST(GltfMemory, keyframes_beyond_what_is_allowed_are_refused_before_they_are_ma
   EXPECT_TRUE(read_gltf_motion(*GltfFixture(builder), options).ok());
   options.most_bytes = 3 * 4 * 12 - 1;
   EXPECT_EQ(error_of(builder, options).code, ErrorCode::kInvalidInput);
+}
+
+TEST(GltfMemory, vertices_that_32_bits_cannot_name_are_refused_before_they_are_read) {
+  constexpr std::size_t kVertices = 300000, kNodes = 5000;  // one mesh that many nodes carry
+  GltfBuilder builder;
+  const std::size_t base = builder.add_positions(std::vector<float>(3 * kVertices)),
+                    target = builder.add_accessor_over(std::nullopt, "VEC3", 5126, kVertices);
+  builder.make_sparse<std::uint32_t, float>(target, {1}, {1, 2, 3});
+  const std::size_t mesh =
+      builder.add_mesh(GltfBuilder::primitive(base, builder.add_indices(test::kQuadCorners), {{{"POSITION", target}}}));
+  for (std::size_t n = 0; n < kNodes; ++n) (void)builder.add_node(mesh);
+  GltfOptions reading;
+  reading.max_expansion = std::numeric_limits<std::size_t>::max();
+  const GltfFixture file(builder.glb(), std::nullopt, reading);
+  ASSERT_TRUE(file.ok()) << file.error();
+  GltfMotionOptions options;
+  options.world = true;
+  options.most_bytes = std::numeric_limits<std::size_t>::max();
+  const Result<GltfMotion> motion = read_gltf_motion(*file, options);
+  ASSERT_FALSE(motion.ok());
+  if constexpr (sizeof(std::size_t) > 4) {
+    EXPECT_EQ(motion.error().text(), "a.gltf: indices of 32 bits cannot name so many vertices");
+  }
+}
+
+TEST(GltfTargets, of_meshes_without_a_whole_face_are_no_motion) {
+  GltfBuilder builder = test::quad_document();
+  auto& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["mode"] = 5;
+  primitive["indices"] = builder.add_indices(std::vector<std::uint16_t>{0, 1});
+  EXPECT_EQ(error_of(builder).text(), "a.gltf: the meshes have no faces");
 }
 
 }  // namespace

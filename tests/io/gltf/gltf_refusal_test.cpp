@@ -393,5 +393,22 @@ TEST(GltfRefusals, of_containers_name_a_byte) {
       "");
 }
 
+TEST(GltfRefusals, a_bin_chunk_has_the_bytes_of_the_buffer_and_at_most_three_more) {
+  const GltfBuilder builder = test::quad_document();
+  const auto error_with = [&builder](std::size_t declared) {
+    Json document = Json::parse(builder.gltf());
+    document["buffers"][0] = {{"byteLength", declared}};
+    const GltfFixture file(test::glb_bytes(document.dump(), builder.buffer));
+    if (!file.ok()) return file.error();
+    const Result<GltfGeometry> geometry = file->geometry(0, 0, {});
+    return geometry ? "" : geometry.error().text();
+  };
+  const std::size_t size = builder.buffer.size();
+  ASSERT_EQ(size % 4, 0U);
+  EXPECT_EQ(error_with(size), "");
+  EXPECT_EQ(error_with(size + 1), "a.gltf, /buffers/0/byteLength: the BIN chunk has only " + std::to_string(size) +
+                                      " bytes, not " + std::to_string(size + 1));
+}
+
 }  // namespace
 }  // namespace chronormal::gltf_refusal_test

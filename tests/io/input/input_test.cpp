@@ -102,6 +102,16 @@ TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
   EXPECT_EQ(read({"walk.npz"}, 0).error().code, ErrorCode::kUsage);
 }
 
+TEST_F(OpenInput, a_cache_over_a_mesh_has_no_animations) {
+  InputOptions options = test::files({folder_ / "body.obj", folder_ / "walk.pc2"});
+  options.animation = "walk";
+  const Result<Motion> motion = test::read_motion(options);
+  ASSERT_FALSE(motion.ok());
+  EXPECT_EQ(motion.error().code, ErrorCode::kUsage);
+  EXPECT_NE(motion.error().text().find("walk.pc2"), std::string::npos) << motion.error().text();
+  EXPECT_NE(motion.error().text().find("animation"), std::string::npos) << motion.error().text();
+}
+
 TEST_F(OpenInput, errors_name_the_file) {
   folder_.write("small.obj", "v 0 0 0\nf 1 1 1\n");
   expect_error({"small.obj", "walk.pc2"}, ErrorCode::kInvalidInput,
@@ -271,6 +281,15 @@ TEST_F(OpenInput, bytes_in_memory_give_the_same_as_paths) {
   expect_same("body.obj", {"body2.obj", "lift.target", "body.obj"});
   EXPECT_TRUE(asked.contains("quad data.bin"));
   EXPECT_TRUE(asked.contains("c.mcx"));
+
+  InputOptions without = test::files({"split.gltf"});
+  without.resolve = [&resolve](const std::string& name) -> Result<std::string_view> {
+    if (name == "quad data.bin") return Error{ErrorCode::kFailed, name, "it is not in the archive"};
+    return resolve(name);
+  };
+  const Result<Motion> lacking = test::read_motion(without);
+  ASSERT_FALSE(lacking.ok());
+  EXPECT_EQ(lacking.error().text(), "split.gltf, /buffers/0/uri: quad data.bin: it is not in the archive");
 
   InputOptions outside = test::files({"split.gltf"});
   outside.resolve = resolve;

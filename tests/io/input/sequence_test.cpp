@@ -11,6 +11,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/motion/motion.h"
 #include "io/mesh/ply.h"
+#include "tests/support/no_descriptors.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
@@ -98,6 +99,17 @@ TEST(FindFrames, what_is_not_there_is_an_error_with_its_name) {
   const Error empty = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(empty.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(empty.text(), folder.path() + ": the folder has no mesh files (.obj or .ply)");
+}
+
+TEST(FindFrames, folder_that_cannot_be_listed_is_an_error_with_its_name) {
+  const TemporaryFolder folder;
+  (void)folder.write("a.obj", obj(0));
+  const Error error = [&] {
+    const test::NoDescriptors none;
+    return error_of(find_frames(test::files(Names{folder.path()})));
+  }();
+  EXPECT_EQ(error.code, ErrorCode::kFailed);
+  EXPECT_EQ(error.text(), folder.path() + ": Too many open files");
 }
 
 TEST(FindFrames, folder_of_two_formats_is_an_error_that_says_what_to_do) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
+#include "tests/support/no_descriptors.h"
 #include "tests/support/read_input.h"
 #include "tests/support/target_bytes.h"
 #include "tests/support/temporary_folder.h"
@@ -144,6 +145,16 @@ TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
   EXPECT_NE(both.message.find("the folder has both "), std::string::npos) << both.message;
   EXPECT_NE(both.message.find(folder_ / "t/in/b.target"), std::string::npos) << both.message;
   EXPECT_EQ(names_of(read({folder_ / "t/*.obj", folder_ / "t/in"})), (Names{"base", "a", "b"}));
+}
+
+TEST_F(Targets, folder_that_cannot_be_listed_is_an_error_with_its_name) {
+  make_folder("t");
+  const Error error = [&] {
+    const test::NoDescriptors none;
+    return error_of(read({folder_ / "t"}));
+  }();
+  EXPECT_EQ(error.code, ErrorCode::kFailed);
+  EXPECT_EQ(error.text(), folder_ / "t" + ": Too many open files");
 }
 
 TEST_F(Targets, errors_have_the_file_as_their_place) {

@@ -452,6 +452,19 @@ TEST(Bake, errors_say_what_and_where) {
   expect_unchanged(none);
 }
 
+TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
+  constexpr std::size_t kTargets = 141;  // of 10,011 pairs
+  GltfBuilder builder = test::hills_document(kTargets);
+  std::vector<float> weights(2 * kTargets);
+  for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;
+  builder.add_track(0, 0, std::vector<float>{0, 1}, weights);
+  const Baked baked = test::bake_document(builder, {.encoding = BakeEncoding::kExact});
+  EXPECT_NE(baked.error.find("there are more than 10000 pairs of targets that move the same normals at once: use "
+                             "--encode endpoint"),
+            std::string::npos)
+      << baked.error;
+}
+
 TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
   for (const float scale : {1e-30F, 1e-12F, 1e12F, 1e18F}) {
     SCOPED_TRACE(scale);

@@ -443,6 +443,11 @@ TEST(BlendCompare, files_without_anything_to_compare_say_so) {
   EXPECT_EQ(compared(sequence, {.animation = "walk"}).subjects.size(), 1U);
 }
 
+TEST(BlendCompare, an_animation_and_a_number_of_active_targets_are_not_both_taken) {
+  expect_error(try_comparing(random_sheet(2, 4, 1, 0.1).file(), {.active = 1, .animation = "walk"}), ErrorCode::kUsage,
+               "an animation says itself which targets are active");
+}
+
 TEST(BlendCompare, so_many_targets_that_their_weights_do_not_fit_are_refused_before_anything_is_read) {
   GltfBuilder builder = random_sheet(2, 4, 1, 0.1).file();
   Json& targets = builder.json["meshes"][0]["primitives"][0]["targets"];

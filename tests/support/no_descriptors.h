@@ -1,0 +1,27 @@
+/// A process that can open no file, for errors of the system that no file can cause.
+#ifndef CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
+#define CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
+
+#include <sys/resource.h>
+
+namespace chronormal::test {
+
+/// While it lives, this process opens neither files nor folders.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &saved_);
+    const rlimit none{0, saved_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+  }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+  ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &saved_); }
+
+ private:
+  rlimit saved_{};
+};
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
