@@ -40,7 +40,8 @@ function bake(input, ...options) {
   const key = [input, ...options].join(' ');
   if (!bakedBefore.has(key)) {
     const output = join(folder, `${basename(input, extname(input))}.${bakedBefore.size}.glb`);
-    chronormal('bake', input, '-o', output, ...options);
+    // The truth that files are held against is area-weighted, whatever the normals of their authors are.
+    chronormal('bake', input, '-o', output, '--weighting', 'area', ...options);
     bakedBefore.set(key, output);
   }
   return bakedBefore.get(key);
