@@ -531,22 +531,6 @@ TEST(BakeSequence, what_cannot_be_written_is_refused) {
   EXPECT_EQ(far.place, "keyframe 1, vertex 0");
 }
 
-TEST(BakeSequence, weighted_normals_that_jump_where_a_face_has_no_area_are_refused) {
-  // A face shrinks to an edge and opens on its other side, beside a face that stays.
-  Motion motion;
-  motion.topology = Topology::triangles(4, {0, 1, 2, 0, 3, 1}).value();
-  for (const float height : {1.0F, 0.0F, -1.0F})
-    motion.keyframes.push_back({{0, 0, 0, 1, 0, 0, 0, height, 0, 0, 0, 1}, 1 - double{height}, ""});
-  motion.connect_as_sequence();
-  std::string glb;
-  EXPECT_TRUE(bake_sequence(motion, {}, glb).ok());
-  const Result<SequenceBake> baked = bake_sequence(motion, {.weighting = Weighting::kAngle}, glb);
-  ASSERT_FALSE(baked.ok());
-  EXPECT_EQ(baked.error().code, ErrorCode::kUsage);
-  EXPECT_EQ(baked.error().place, "keyframe 1, element 0");
-  EXPECT_EQ(baked.error().message, "the normal by angle jumps there, where a face has no area; weight by area");
-}
-
 TEST(BakeSequence, progress_ends_with_everything_done) {
   const Motion motion = wandering(fixtures::icosphere(1), 4, 0.1, 18);
   std::size_t last = 0, whole = 0;
