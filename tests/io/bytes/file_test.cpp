@@ -334,23 +334,5 @@ TEST(WriteOutput, temporary_becomes_no_file_that_somebody_made_meanwhile) {
   EXPECT_EQ(read_whole(theirs), "");
 }
 
-TEST(WriteOutput, file_that_somebody_makes_while_it_is_written_is_kept) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "new", bytes(std::size_t{32} << 20, 'x');
-  std::string error = "no error";
-  for (int attempt = 0; attempt < 20 && error == "no error"; ++attempt) {
-    std::filesystem::remove(path);
-    std::thread somebody([&folder] {
-      while (folder.entry_count() == 0) std::this_thread::yield();
-      (void)folder.write("new", "theirs");
-    });
-    error = error_of(write_output(path, bytes, false));
-    somebody.join();
-  }
-  EXPECT_EQ(error, path + ": the file exists already; pass --force to overwrite it");
-  EXPECT_EQ(read_whole(path), "theirs");
-  EXPECT_EQ(folder.entry_count(), 1U);
-}
-
 }  // namespace
 }  // namespace chronormal::file_test
