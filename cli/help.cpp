@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
 #include <variant>
 
 #include "cli/format.h"
@@ -30,12 +29,22 @@ struct Paragraph {
   std::size_t hang = 0;  ///< by how much lines after the first are indented
 };
 
+// The parts of a text between separators. (A stream would take a lack of memory for the end of the text.)
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 // What a text consists of: paragraphs that flow, and rows that stand for themselves.
 std::vector<Paragraph> paragraphs_of(const std::string& text) {
   std::vector<Paragraph> paragraphs;
-  std::istringstream lines(text);
   bool flows = false;
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : parts_of(text, '\n')) {
     if (line.empty() || line.front() == ' ') {
       const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
       const std::size_t gap = line.find("  ", first);
@@ -251,11 +260,8 @@ std::size_t columns_of_output() {
 }
 
 std::vector<std::string> names_of(const Option& option) {
-  std::vector<std::string> names;
-  if (option.spelling.front() != '-') return names;
-  std::istringstream text(option.spelling.substr(0, option.spelling.find(' ')));
-  for (std::string name; std::getline(text, name, ',');) names.push_back(name);
-  return names;
+  if (option.spelling.front() != '-') return {};
+  return parts_of(option.spelling.substr(0, option.spelling.find(' ')), ',');
 }
 
 bool takes_value(const Option& option) { return !std::holds_alternative<bool*>(option.target); }

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -82,9 +81,6 @@ void add_option(const Option& option, CLI::App& command) {
 
 void add_command(const Command& command, CLI::App& program) {
   CLI::App* const added = program.add_subcommand(command.name, command.summary);
-  added->formatter_fn([&command](const CLI::App*, const std::string&, CLI::AppFormatMode) {
-    return help_of_command(command, columns_of_output());
-  });
   for (const std::vector<Option>& table : command.tables)
     for (const Option& option : table) add_option(option, *added);
 }
@@ -178,10 +174,8 @@ Check check_given(std::string message) {
 
 int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
   CLI::App program("", "chronormal");
-  program.formatter_fn([&](const CLI::App*, const std::string&, CLI::AppFormatMode) {
-    return help_of_program(commands, columns_of_output());
-  });
-  program.set_version_flag("-V,--version", formatted("chronormal {}", kVersion));
+  const std::string version = formatted("chronormal {}\n", kVersion);
+  program.set_version_flag("-V,--version", version);
   program.require_subcommand(1);
   for (const Command& command : commands) add_command(command, program);
 
@@ -205,10 +199,13 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   }
   try {
     program.parse(argument_count, arguments);
-  } catch (const CLI::Success& request) {  // --help and --version
-    std::ostringstream text;
-    (void)program.exit(request, text, text);
-    return print_or_report(text.str());
+  } catch (const CLI::CallForVersion&) {
+    return print_or_report(version);
+  } catch (const CLI::Success&) {  // --help
+    const auto parsed = program.get_subcommands();
+    return print_or_report(parsed.empty()
+                               ? help_of_program(commands, columns_of_output())
+                               : help_of_command(*command_of(parsed.front()->get_name()), columns_of_output()));
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
