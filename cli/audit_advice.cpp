@@ -11,9 +11,9 @@
 namespace chronormal::cli {
 namespace {
 
-// What would help.
+// What a person can do about the errors that an audit found; the last line of its report says it.
 enum class Remedy {
-  kNone,      // nothing is off
+  kNone,      // no normal is off
   kTangents,  // normals are right, and bake writes no tangents
   kHosts,     // right by the specification, and not in hosts that do otherwise
   kRule,      // what was judged is not what a glTF file makes hosts show
@@ -83,7 +83,7 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   return text + "-weighted";
 }
 
-// What a bake gets for this file, as far as that is known beforehand.
+// Says what the user will get from `chronormal bake` on this file, as far as the audit can know it beforehand.
 std::string outcome(const Audited& input) {
   if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);

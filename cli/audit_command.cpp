@@ -153,7 +153,8 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   return say_what_is_beyond(audited.value(), "") ? kExitDone : kExitBeyond;
 }
 
-// What could not be judged goes before what is beyond the tolerance.
+// Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
+// tolerance.
 int worse_exit(int a, int b) {
   constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
                                               static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};

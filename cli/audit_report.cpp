@@ -101,7 +101,8 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// What each host shows, the specification first, which the tables below are about.
+// Prints a row of errors for each host. The first row is a host that follows the specification; the tables that come
+// after this one are about that host alone.
 std::string host_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.hosts.empty()) return "";

@@ -86,7 +86,8 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.worst = std::max(all.worst, of_mesh.worst);
 }
 
-// What each named host shows of the animations and targets of the file, all meshes together.
+// Prints a row for each named host: the errors that it shows before and after, over all meshes, in the animations of the
+// file and for each target alone.
 std::string hosts_text(const GltfBake& bake) {
   Table table;
   table.add_column("host", "", Table::Align::kLeft);
@@ -115,7 +116,7 @@ std::string hosts_text(const GltfBake& bake) {
   return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() + "\n" : "";
 }
 
-// What was left as it was.
+// Says how many normals keep their old deltas and how many corrections bake left out, and why.
 std::string left_text(const GltfBake& bake) {
   std::size_t kept = 0, left_out = 0;
   for (const BakedMesh& mesh : bake.meshes) {
@@ -155,7 +156,8 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// Of animations and targets alone, of random poses, and of cross-fades.
+// JSON keys for the kinds of poses that the errors of a host are measured at: the animations and single targets of the
+// file, random poses, and cross-fades between two animations.
 constexpr std::array<const char*, 3> kPoses = {"file", "random", "cross_fades"};
 
 Json shown_json(const ShownErrors& errors) {

@@ -62,10 +62,12 @@ describe('what is baked is closer to the truth', () => {
     return output;
   });
 
-  // {files, moments} of an animation of a file: the file as it was and as it is baked, and the truth at some times.
+  // {files, moments} of an animation of a file: the file as it was and as it is baked (in full also by --encode exact,
+  // for the figures of docs/hosts.md), and the truth at some times.
   const prepare = once(async (input, animation) => {
     const unbaked = Buffer.from(await newIO().writeBinary(await newIO().read(input)));
-    const files = [unbaked, readFileSync(bake(input))].map((bytes) => bytes.toString('base64'));
+    const baked = [bake(input), ...(FULL ? [bake(input, '--encode', 'exact')] : [])];
+    const files = [unbaked, ...baked.map((path) => readFileSync(path))].map((bytes) => bytes.toString('base64'));
     const times = timesWithin((await read(input)).animations[animation], MOMENTS);
     return { files, moments: await stillMoments(input, animation, times) };
   });
@@ -74,13 +76,13 @@ describe('what is baked is closer to the truth', () => {
     const { files, moments } = await prepare(input, animation);
     const compare = (...all) => window.compareInHost(...all);
     const rows = await browser.page.evaluate(compare, host, files, animation, moments, SIZE);
-    const [before, after] = [0, 1].map((f) => ({
+    const [before, after, exact] = files.map((_, f) => ({
       mean: rows.reduce((sum, row) => sum + row[f].mean, 0) / rows.length,
       p99: rows.reduce((sum, row) => sum + row[f].p99, 0) / rows.length,
       max: Math.max(...rows.map((row) => row[f].max)),
     }));
     const figures = ({ mean, p99, max }) => `${mean.toFixed(3)} / ${p99.toFixed(2)} / ${max.toFixed(1)}`;
-    const shown = `mean / 99 % / worst degrees: ${figures(before)} before, ${figures(after)} after`;
+    const shown = `mean / 99 % / worst degrees: ${figures(before)} before, ${figures(after)} after${exact ? `, ${figures(exact)} by exact` : ''}`;
     context.diagnostic(shown);
     assert.ok(rows.every((row) => row[1].pixels > 2000), shown);
     assert.ok(after.mean < before.mean && after.p99 < before.p99 + ROUNDING, shown);

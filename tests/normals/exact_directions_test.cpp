@@ -227,7 +227,7 @@ TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
 
 TEST(ExactDirections, are_right_in_files_that_broke_them) {
   const char* const folder = std::getenv("CHRONORMAL_DATA");
-  if (folder == nullptr) GTEST_SKIP() << "CHRONORMAL_DATA does not name a folder";
+  if (folder == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(folder) / "attack")) {
     if (entry.path().extension() != ".obj") continue;

@@ -45,16 +45,18 @@ using Triple = std::array<double, 3>;
   return std::copysign((1 + kept) * std::pow(2.0, exponent), value);
 }
 
+/// The two coordinates of a direction on an octahedron, whose lower half is folded out; sum is |x| + |y| + |z|.
+[[nodiscard]] inline std::array<double, 2> on_octahedron(const Triple& v, double sum) {
+  const double x = v[0] / sum, y = v[1] / sum;
+  if (v[2] >= 0) return {x, y};
+  return {(1 - std::fabs(y)) * (x >= 0 ? 1 : -1), (1 - std::fabs(x)) * (y >= 0 ? 1 : -1)};
+}
+
 /// Godot: a direction on an octahedron whose two coordinates are integers from 0 to 65535, cut off.
 [[nodiscard]] inline Triple through_godot(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
-  double x = v[0] / sum, y = v[1] / sum;
-  if (v[2] < 0) {
-    const double folded_x = (1 - std::fabs(y)) * (x >= 0 ? 1 : -1), folded_y = (1 - std::fabs(x)) * (y >= 0 ? 1 : -1);
-    x = folded_x;
-    y = folded_y;
-  }
+  auto [x, y] = on_octahedron(v, sum);
   const auto kept_x = static_cast<std::uint16_t>((x * 0.5 + 0.5) * 65535);
   const auto kept_y = static_cast<std::uint16_t>((y * 0.5 + 0.5) * 65535);
   x = kept_x / 65535.0 * 2 - 1;
@@ -114,12 +116,7 @@ using Triple = std::array<double, 3>;
 [[nodiscard]] inline Triple through_meshopt(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
-  double x = v[0] / sum, y = v[1] / sum;
-  if (v[2] < 0) {
-    const double folded_x = (1 - std::fabs(y)) * (x >= 0 ? 1 : -1), folded_y = (1 - std::fabs(x)) * (y >= 0 ? 1 : -1);
-    x = folded_x;
-    y = folded_y;
-  }
+  auto [x, y] = on_octahedron(v, sum);
   x = as_byte(x);
   y = as_byte(y);
   const double z = 1 - std::fabs(x) - std::fabs(y);

@@ -191,7 +191,7 @@ struct HostAudit {
 
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
-  /// Of the right normals of all subjects; nothing where they differ from mesh to mesh.
+  /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
   std::optional<Weighting> weighting = Weighting::kArea;
   /// Whether normals are stored for every keyframe; else a host computes them there.
   bool stored = true;

@@ -2,7 +2,6 @@
 // target from weight 0 to 1, and every track of weights.
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -147,20 +146,6 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   add_subject(std::move(*measured), result);
 }
 
-// The first and the last time of all tracks of an animation.
-Result<TimeRange> range_of(const GltfDocument& document, std::size_t animation) {
-  const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
-  TimeRange range{std::numeric_limits<double>::max(), 0};
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    if (tracks[t].same_keys_as != t) continue;
-    const Result<GltfKeys> keys = document.keys(animation, t);
-    if (!keys) return keys.error();
-    range.first = std::min(range.first, keys.value().times.front());
-    range.last = std::max(range.last, keys.value().times.back());
-  }
-  return range;
-}
-
 // Audits the weights between two keys of a track, and what of the mesh they move. Nothing for a track that moves
 // nothing.
 Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index) {
@@ -168,7 +153,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   Result<GltfKeys> keys = mesh.document.keys(animation, index);
   if (!keys) return keys.error();
   Result<TimeRange> range = TimeRange();
-  if (!mesh.options.hosts.empty()) range = range_of(mesh.document, animation);
+  if (!mesh.options.hosts.empty()) range = weight_time_range(mesh.document, animation);
   if (!range) return range.error();
   const std::vector<double> times = keys.value().times;
   const std::size_t width = mesh.shading.set.targets.size();

@@ -148,6 +148,25 @@ struct Gathered {
   std::array<std::atomic<std::size_t>, kBins> bins{};
 };
 
+// The same of the stored forms and of the chosen ones, in each kind of host.
+struct GatheredPairs {
+  GatheredPairs(std::size_t kinds, std::size_t vertices) {
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      before.emplace_back(vertices);
+      after.emplace_back(vertices);
+    }
+  }
+
+  // errors has those of the stored form at all poses, and then those of the chosen one.
+  void add(std::size_t vertex, std::size_t kind, std::span<const float> errors) {
+    const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
+    before[kind].add(vertex, then, then);
+    after[kind].add(vertex, now, then);
+  }
+
+  std::deque<Gathered> before, after;  // they cannot be moved
+};
+
 // Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
 // those that grew into the upper half of what 99.9 % were below, since other poses would find more of them.
 void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
@@ -334,24 +353,19 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
     const std::array<VertexColumns, 2> both = {forms[0], chosen_form(forms, choice)};
     for (const PoseSet& set : sets) {
       const std::vector<Kind> kinds = kinds_of(set);
-      std::deque<Gathered> before, after;
-      for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-        before.emplace_back(vertices_.size());
-        after.emplace_back(vertices_.size());
-      }
+      GatheredPairs gathered(kinds.size(), vertices_.size());
       compare(both, set, kinds, [&](std::size_t n, std::size_t kind, std::span<const float> errors) {
-        const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
         if (is_new_[vertices_[n]]) return;
-        before[kind].add(n, then, then);
-        after[kind].add(n, now, then);
+        gathered.add(n, kind, errors);
+        const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
         if (set.kind != PoseSet::Kind::kFile || !kinds[kind].is_binding) return;
         for (std::size_t p = 0; p < then.size(); ++p)
           if (is_harmed(then[p], now[p])) is_harmful[n] = 1;
       });
       for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         if (set.kind != PoseSet::Kind::kFile && kinds[kind].is_binding)
-          note_what_makes_worse(before[kind], after[kind], tolerance_, makes_worse);
-        const Spread then = before[kind].spread(), now = after[kind].spread();
+          note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, makes_worse);
+        const Spread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
         for (const std::size_t h : set.hosts) {
           if (!shows_alike(judged_as(hosts_[h]), kinds[kind].host)) continue;
           Errors& errors = of_hosts[static_cast<std::size_t>(set.kind)][h];
@@ -377,22 +391,15 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
     PoseSet some{set.kind, set.hosts, {}, set.numbers};
     const std::size_t count = std::min(kMostRounded, set.poses.size());
     for (std::size_t n = 0; n < count; ++n) some.poses.push_back(set.poses[n * set.poses.size() / count]);
-    std::deque<Gathered> before, after;
-    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-      before.emplace_back(vertices_.size());
-      after.emplace_back(vertices_.size());
-    }
+    GatheredPairs gathered(kinds.size(), vertices_.size());
     compare(both, some, kinds, [&](std::size_t n, std::size_t kind, std::span<const float> errors) {
-      const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
-      if (is_new_[vertices_[n]]) return;
-      before[kind].add(n, then, then);
-      after[kind].add(n, now, then);
+      if (!is_new_[vertices_[n]]) gathered.add(n, kind, errors);
     });
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       for (const std::size_t h : set.hosts) {
         if (!(hosts_[h] == kinds[kind].host)) continue;
-        of_file[h].before.add(before[kind].spread());
-        of_file[h].after.add(after[kind].spread());
+        of_file[h].before.add(gathered.before[kind].spread());
+        of_file[h].after.add(gathered.after[kind].spread());
       }
     }
   }

@@ -1,29 +1,9 @@
 #include "workflow/bake/mesh_weights.h"
 
-#include <algorithm>
-#include <limits>
 #include <set>
 #include <utility>
 
 namespace chronormal::inline internal {
-namespace {
-
-// The first and the last key of all weights of an animation.
-Result<TimeRange> time_range(const GltfDocument& document, std::size_t animation) {
-  TimeRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
-  const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    if (tracks[t].same_keys_as != t) continue;
-    const Result<GltfKeys> keys = document.keys(animation, t);
-    if (!keys) return keys.error();
-    range.first = std::min(range.first, keys.value().times.front());
-    range.last = std::max(range.last, keys.value().times.back());
-  }
-  return range;
-}
-
-}  // namespace
-
 Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
   const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
   MeshWeights weights{{}, {}, {}, {}, WeightUse(targets), false};
@@ -34,7 +14,7 @@ Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading
       if (document.nodes()[tracks[t].node].mesh != mesh || !seen.insert(tracks[t].same_keys_as).second) continue;
       Result<GltfKeys> keys = document.keys(a, t);
       if (!keys) return keys.error();
-      const Result<TimeRange> range = time_range(document, a);
+      const Result<TimeRange> range = weight_time_range(document, a);
       if (!range) return range.error();
       weights.tracks.push_back({tracks[t].interpolation, std::move(keys).value(), targets});
       weights.names.push_back({a, tracks[t].same_keys_as});

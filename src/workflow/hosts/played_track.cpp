@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,19 @@ double index_of_last_sample(const TimeRange& animation) noexcept {
 }
 
 }  // namespace
+
+Result<TimeRange> weight_time_range(const GltfDocument& document, std::size_t animation) {
+  TimeRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+  const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (tracks[t].same_keys_as != t) continue;
+    const Result<GltfKeys> keys = document.keys(animation, t);
+    if (!keys) return keys.error();
+    range.first = std::min(range.first, keys.value().times.front());
+    range.last = std::max(range.last, keys.value().times.back());
+  }
+  return range;
+}
 
 PlayedTrack::PlayedTrack(const Host& host, GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count,
                          const TimeRange& animation)

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 
+#include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/workflow/hosts.h"
 #include "io/gltf/gltf_weights.h"
@@ -17,6 +18,9 @@ namespace chronormal::inline internal {
 struct TimeRange {
   double first = 0, last = 0;
 };
+
+/// Reads that range. Errors: of GltfDocument
+[[nodiscard]] Result<TimeRange> weight_time_range(const GltfDocument& document, std::size_t animation);
 
 class PlayedTrack {
  public:

@@ -483,7 +483,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
 // Every moving glTF of the data: along its animations, and each target alone.
 TEST(BakeRealData, exact_is_exact_in_every_file) {
   const char* data = std::getenv("CHRONORMAL_DATA");
-  if (data == nullptr) GTEST_SKIP() << "CHRONORMAL_DATA names no folder";
+  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(data) + "/gltf")) {
     const std::string extension = entry.path().extension().string();
