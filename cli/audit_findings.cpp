@@ -110,6 +110,9 @@ std::string group_words(const Audited& input, const Group& group) {
                        counted(found.count, "node has", "nodes have"));
     case Kind::kBaked:
       return formatted("{}: baked by chronormal, with {}", who, counted(found.count, "extra target", "extra targets"));
+    case Kind::kEmptied:
+      return formatted("{}: {} of an earlier bake lost normals to a program that made its own: bake it again", who,
+                       counted(found.count, "extra target", "extra targets"));
     case Kind::kSequenceTargets:
       return formatted("{}: {} baked keyframes: only animations were judged", who,
                        counted(found.count, "target is one of its", "targets are"));

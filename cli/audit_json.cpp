@@ -7,9 +7,9 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",  "wrong_between",
-                                  "wrong_together", "stale_tangents",  "flat_primitive", "skin",
-                                  "baked",          "baked_keyframes", "beyond_host"};
+constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",   "wrong_between",
+                                  "wrong_together", "stale_tangents",  "flat_primitive",  "skin",
+                                  "baked",          "emptied",         "baked_keyframes", "beyond_host"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;

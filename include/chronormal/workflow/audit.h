@@ -159,6 +159,7 @@ struct AuditFinding {
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
     kSkinned,         ///< a note: skins turn the shown and the right normal alike
     kBaked,           ///< a note: a bake was here
+    kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its extra targets turn nothing now
     kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
     kBeyondHost        ///< a note: a mesh has more targets than a host takes
   };

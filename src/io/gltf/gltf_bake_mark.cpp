@@ -103,6 +103,13 @@ std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras,
   return own;
 }
 
+// A flag that may be 0 or 1: editors that keep extras as custom properties know no booleans (Blender 3.4).
+bool read_flag(const JsonView& view, const Json& value, const char* key) {
+  const auto found = value.find(key);
+  if (found != value.end() && (*found == 0 || *found == 1)) return *found == 1;
+  return view.flag(key);
+}
+
 GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t target_count) {
   GltfBakeMark mark;
   const std::size_t version = view.required_count("version", std::size_t{1} << 31);
@@ -111,7 +118,7 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
   if (!encoding) view.complain("encode", "it is none of harmless, exact and endpoint");
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
-  mark.sequence = view.flag("sequence");
+  mark.sequence = read_flag(view, value, "sequence");
   const std::vector<JsonView> extras = items_of(view, value, "extras");
   if (extras.size() > target_count) {
     view.complain("extras", "there are more of them than targets");

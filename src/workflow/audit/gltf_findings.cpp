@@ -72,6 +72,7 @@ std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShadi
                                   [&](const GltfPart& p) { return !primitives[p.primitive].has_normals; });
   if (flat > 0) note(Kind::kFlat, static_cast<std::size_t>(flat));
   if (shading.mark) note(Kind::kBaked, shading.mark->extras.size());
+  if (shading.emptied > 0) note(Kind::kEmptied, shading.emptied);
   if (shading.mark && shading.mark->sequence) note(Kind::kSequenceTargets, shading.own_targets());
   const auto skinned = std::count_if(document.nodes().begin(), document.nodes().end(), [&](const GltfNode& node) {
     return node.mesh && *node.mesh == shading.mesh && node.has_skin;

@@ -193,6 +193,12 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   return Success{};
 }
 
+// A mesh is baked once: a second time would add targets to targets. One that has none of them can be baked in another way.
+bool is_baked(const GltfShading& shading, const BakeOptions& options) {
+  return shading.mark && (shading.mark->sequence || !shading.mark->extras.empty() ||
+                          shading.mark->encoding == options.encoding.value_or(BakeEncoding::kHarmless));
+}
+
 // Nothing for a mesh that does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
                                           const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit) {
@@ -200,16 +206,16 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   MeshBake baked;
   baked.report.mesh = index;
   baked.report.name = mesh.name;
-  if (mesh.mark_fault) return *mesh.mark_fault;
-  if (mesh.mark) {
-    baked.report.already_baked = true;
-    baked.report.encoding = mesh.mark->encoding;
-    baked.report.extras = mesh.mark->extras;
-    return std::optional(std::move(baked));
-  }
   Result<GltfShading> shading = read_gltf_shading(
       document, index, {options.smooth, options.crease_angle, options.encoding != BakeEncoding::kExact});
   if (!shading) return shading.error();
+  if (is_baked(shading.value(), options)) {
+    const GltfBakeMark& mark = *shading.value().mark;
+    baked.report.already_baked = true;
+    baked.report.encoding = mark.encoding;
+    baked.report.extras = mark.extras;
+    return std::optional(std::move(baked));
+  }
   if (!any_changes(shading.value())) return std::optional<MeshBake>();
   baked.report.weighting = weighting_of(shading.value(), options);
   if (baked.report.weighting == Weighting::kArea) shading.value().groups.forget_corners();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
+#include <set>
 #include <string>
 
 #include "io/gltf/gltf_bake_mark.h"
@@ -117,10 +117,12 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras) {
   }
   if (mesh_.target_names.empty()) return;
   // Each name once: PlayCanvas finds targets by it.
-  std::map<std::string, std::size_t> count;
+  std::set<std::string> taken(mesh_.target_names.begin(), mesh_.target_names.end());
   for (const GltfExtraTarget& extra : extras) {
-    std::string name = name_of_extra(extra);
-    if (const std::size_t n = ++count[name]; n > 1) name.append(" (").append(std::to_string(n)).append(")");
+    const std::string of_extra = name_of_extra(extra);
+    std::string name = of_extra;
+    for (std::size_t n = 2; !taken.insert(name).second; ++n)
+      name = std::string(of_extra).append(" (").append(std::to_string(n)).append(")");
     edit_.append(pointer_ + "/extras/targetNames", quote_json(name));
   }
 }

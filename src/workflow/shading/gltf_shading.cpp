@@ -312,6 +312,16 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
   return Success{};
 }
 
+// A program that makes normals of its own for every target leaves nothing of extra ones but their names: what stands in
+// the mark is true no more. A bake writes none that turns nothing.
+void drop_mark_of_emptied_targets(GltfShading& shading) {
+  if (!shading.mark || shading.mark->extras.empty()) return;
+  for (const GltfExtraTarget& extra : shading.mark->extras)
+    if (shading.turns[extra.target]) return;
+  shading.emptied = shading.mark->extras.size();
+  shading.mark.reset();
+}
+
 }  // namespace
 
 Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
@@ -323,6 +333,7 @@ Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t 
   shading.mark = document.meshes()[mesh].mark;
   if (Status status = read_parts(document, options.keep_deltas, shading); !status) return status.error();
   if (Status status = check_mark(document, shading); !status) return status.error();
+  drop_mark_of_emptied_targets(shading);
   if (Status status = find_elements(document, options, shading); !status) return status.error();
   return shading;
 }

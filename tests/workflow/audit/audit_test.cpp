@@ -524,6 +524,17 @@ TEST(Audit, skins_and_baked_sequences_are_notes) {
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongAtKeys, Kind::kBaked, Kind::kSequenceTargets}));
 }
 
+TEST(Audit, extra_targets_that_lost_their_normals_are_a_note) {
+  ShadedMesh mesh = hinge();
+  mesh.targets.push_back({std::vector<float>(12, 0), std::vector<float>(12, 0), {}});
+  GltfBuilder builder = mesh.file();
+  builder.json["meshes"][0]["extras"]["chronormal"] = {
+      {"version", 1}, {"encode", "exact"}, {"extras", {{{"target", 1}, {"factors", {0, 0}}}}}};
+  const Audit result = audit_of(builder);
+  EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kEmptied}));
+  EXPECT_EQ(result.findings[1].count, 1U);
+}
+
 // ---- tracks
 
 TEST(Audit, tracks_with_the_same_keys_are_subjects_of_their_own_nodes) {

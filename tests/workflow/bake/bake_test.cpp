@@ -255,6 +255,42 @@ TEST(Bake, a_baked_file_is_left_as_it_is) {
   }
 }
 
+// Blender 3.4 exports so what it imported: normals of its own for each target, and numbers for true and false.
+TEST(Bake, extra_targets_that_another_program_emptied_are_left_and_new_ones_written_beside_them) {
+  GltfBuilder builder = test::still_hills_document(1);
+  Json& mesh = builder.json["meshes"][0];
+  const std::size_t zeros = builder.add_positions(std::vector<float>(75));
+  mesh["primitives"][0]["targets"].push_back({{"POSITION", zeros}, {"NORMAL", zeros}});
+  const Json mark = R"({"version": 2, "encode": "exact", "sequence": 0, "extras": [
+    {"target": 1, "linear": [[0.0, 1.0]], "quadratic": [[0.0, 0.0, -1.0]]}]})"_json;
+  mesh["extras"] = {{"chronormal", mark}, {"targetNames", {"raise", "chronormal w0*(1-w0)"}}};
+  builder.json["nodes"][0]["extras"] = {{"chronormal", mark}};
+  const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
+  ASSERT_EQ(baked.error, "");
+  EXPECT_TRUE(baked.report.changed);
+  EXPECT_FALSE(baked.report.meshes[0].already_baked);
+  EXPECT_EQ(baked.mesh()["extras"]["targetNames"], Json({"raise", "chronormal w0*(1-w0)", "chronormal w0*(1-w0) (2)"}));
+  EXPECT_EQ(baked.mesh()["extras"]["chronormal"]["extras"].size(), 1U);
+  EXPECT_EQ(baked.mesh()["extras"]["chronormal"]["extras"][0]["target"], 2);
+  EXPECT_EQ(baked.json()["nodes"][0]["extras"], Json({{"chronormal", baked.mesh()["extras"]["chronormal"]}}));
+  std::vector<Pose> poses;
+  for (const float w : {0.25F, 0.5F, 1.0F}) poses.push_back({{static_cast<double>(w), 0}, {w, 0, w * (1 - w)}});
+  test::expect_exact(test::shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses));
+}
+
+TEST(Bake, a_baked_file_without_extra_targets_can_be_baked_in_another_way) {
+  GltfBuilder builder = test::hills_document(2);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  const Baked endpoint = test::bake_document(builder, with(BakeEncoding::kEndpoint));
+  ASSERT_EQ(endpoint.error, "");
+  ASSERT_TRUE(endpoint.report.meshes[0].extras.empty());
+  const Baked exact = test::bake_bytes(endpoint.bytes, with(BakeEncoding::kExact));
+  ASSERT_EQ(exact.error, "");
+  EXPECT_FALSE(exact.report.meshes[0].already_baked);
+  EXPECT_EQ(exact.mesh()["extras"]["chronormal"]["encode"], "exact");
+  test::expect_exact(test::track_error(exact));
+}
+
 TEST(Bake, stored_normals_of_any_length_keep_their_length_and_offset) {
   GltfBuilder builder;
   test::Hills hills(4);

@@ -276,6 +276,32 @@ TEST(GltfShading, weight_of_an_extra_target_is_the_sum_of_its_terms) {
   EXPECT_TRUE(read(marked(mark)).mark->extras[1].follows(1));
 }
 
+TEST(GltfShading, mark_whose_flag_became_a_number_is_read) {
+  Json mark = good_mark();
+  for (const int flag : {0, 1}) {
+    mark["sequence"] = flag;
+    EXPECT_EQ(read(marked(mark)).mark->sequence, flag == 1);
+  }
+  mark["sequence"] = 2;
+  EXPECT_NE(error_of(marked(mark)).find("/sequence: this must be true or false"), std::string::npos);
+}
+
+TEST(GltfShading, mark_whose_extra_targets_all_turn_nothing_is_none) {
+  const auto emptied = [](std::initializer_list<std::size_t> targets) {
+    GltfBuilder builder = marked(good_mark());
+    Json& all = builder.json["meshes"][0]["primitives"][0]["targets"];
+    for (const std::size_t k : targets) all[k]["NORMAL"] = all[k]["POSITION"];
+    return builder;
+  };
+  const GltfShading half = read(emptied({2}));
+  EXPECT_TRUE(half.mark.has_value());
+  EXPECT_EQ(half.emptied, 0U);
+  const GltfShading none = read(emptied({2, 3}));
+  EXPECT_FALSE(none.mark.has_value());
+  EXPECT_EQ(none.emptied, 2U);
+  EXPECT_EQ(none.own_targets(), 4U);
+}
+
 TEST(GltfShading, mark_without_extra_targets_is_a_mark) {
   Json mark = good_mark();
   mark["extras"] = Json::array();

@@ -1,0 +1,45 @@
+"""Imports a glTF file into Blender, says what came of it, and exports it again. Run inside Blender by blender.test.mjs:
+
+    blender --background --factory-startup --python-exit-code 1 --python blender.py -- IN.glb REPORT.json OUT.glb
+
+REPORT.json has, of each mesh in order of name: `keys`, the names of its shape keys without the basis, and `positions`, those of
+all vertices at ten instants of the animation, one instant after the other, in Blender's own axes.
+"""
+import json
+import sys
+
+import numpy
+
+# The glTF add-on of Blender 3.4 uses a name that NumPy dropped in 1.24; Debian 12 has both.
+if not hasattr(numpy, "bool"):
+    numpy.bool = bool
+
+import bpy  # noqa: E402 (only after what it needs)
+
+INSTANTS = 10
+
+source, report, target = sys.argv[sys.argv.index("--") + 1:]
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_scene.gltf(filepath=source)
+
+scene = bpy.context.scene
+objects = sorted((o for o in bpy.data.objects if o.type == "MESH"), key=lambda o: o.name)
+ends = [tuple(action.frame_range) for action in bpy.data.actions]
+first, last = min(begin for begin, _ in ends), max(end for _, end in ends)
+positions = {o.name: [] for o in objects}
+for n in range(INSTANTS):
+    frame = first + (last - first) * n / (INSTANTS - 1)
+    scene.frame_set(int(frame), subframe=frame % 1)
+    evaluated = bpy.context.evaluated_depsgraph_get()
+    for o in objects:
+        mesh = o.evaluated_get(evaluated).data
+        flat = numpy.empty(3 * len(mesh.vertices), numpy.float32)
+        mesh.vertices.foreach_get("co", flat)
+        positions[o.name].extend(flat.tolist())
+
+meshes = [{"name": o.name, "keys": [key.name for key in o.data.shape_keys.key_blocks][1:], "positions": positions[o.name]}
+          for o in objects]
+with open(report, "w", encoding="utf-8") as file:
+    json.dump({"version": bpy.app.version_string, "meshes": meshes}, file)
+scene.frame_set(0)
+bpy.ops.export_scene.gltf(filepath=target, export_format="GLB", export_morph_normal=True, export_extras=True)

@@ -1,0 +1,100 @@
+// What Blender makes of a baked file, and what a bake makes of that. Run by ctest as `blender`, where Blender is installed
+// (`./test --full pipelines` installs it).
+//
+// Blender shows normals that it makes itself, so that a bake changes no picture there. It must not change the shape either;
+// and whoever exports the file again bakes it again.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { fixtures } from './fixtures.mjs';
+import { chronormal } from './program.mjs';
+import { newIO } from './reader.mjs';
+import { newComplaints } from './validator.mjs';
+
+const DATA = process.env.CHRONORMAL_DATA;
+const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real data to run this test';
+const SCRIPT = fileURLToPath(new URL('blender.py', import.meta.url));
+const SUZANNE = join(DATA ?? '', 'rigs/blender_suzanne_two_keys.glb');
+
+let folder;
+before(() => (folder = mkdtempSync(join(tmpdir(), 'chronormal_blender_'))));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+// Opens a file in Blender, and exports it to `again`.
+function throughBlender(input, again) {
+  const report = `${again}.json`;
+  const options = ['--background', '--factory-startup', '--python-exit-code', '1', '--python', SCRIPT];
+  const { status, stdout, stderr, error } = spawnSync('blender', [...options, '--', input, report, again], {
+    encoding: 'utf8',
+    maxBuffer: 1 << 28,
+  });
+  if (error) throw error;
+  assert.equal(status, 0, stderr + stdout);
+  return JSON.parse(readFileSync(report, 'utf8'));
+}
+
+const audited = (path) => JSON.parse(chronormal('audit', path, '--json', '--quiet'));
+const kinds = (path) => audited(path).findings.map(({ kind }) => kind);
+
+function assertSameShape(before, after) {
+  assert.equal(after.meshes.length, before.meshes.length);
+  before.meshes.forEach(({ keys, positions }, m) => {
+    const now = after.meshes[m];
+    assert.deepEqual(now.keys.slice(0, keys.length), keys);
+    assert.ok(positions.length > 0);
+    assert.equal(now.positions.length, positions.length);
+    let moved = 0;
+    positions.forEach((x, i) => (moved = Math.max(moved, Math.abs(x - now.positions[i]))));
+    assert.ok(moved < 1e-5, `a vertex is ${moved} away`);
+  });
+}
+
+// Blender 3.4 imports no target whose name is empty.
+async function nameTargets(path) {
+  const document = await newIO().read(path);
+  for (const mesh of document.getRoot().listMeshes())
+    for (const primitive of mesh.listPrimitives())
+      primitive.listTargets().forEach((target, k) => target.setName(`shape ${k}`));
+  await newIO().write(path, document);
+}
+
+async function checkRoundTrip(context, original) {
+  const before = throughBlender(original, join(folder, 'original_again.glb'));
+  context.diagnostic(`Blender ${before.version}`);
+  for (const encoding of ['harmless', 'exact']) {
+    const [baked, again, anew] = ['baked', 'again', 'anew'].map((name) => join(folder, `${encoding}_${name}.glb`));
+    chronormal('bake', original, '-o', baked, '--encode', encoding, '--force', '--no-audit', '--quiet');
+    const extras = before.meshes.map(({ keys }) => keys.length);
+    const imported = throughBlender(baked, again);
+    assertSameShape(before, imported);
+    assert.ok(imported.meshes.some(({ keys }, m) => keys.length > extras[m]), 'the bake added no target');
+
+    assert.ok(kinds(again).includes('emptied'), `${encoding}: ${kinds(again)}`);
+    assert.ok(!kinds(again).includes('baked'));
+    chronormal('bake', again, '-o', anew, '--encode', encoding, '--force', '--no-audit', '--quiet');
+    assert.deepEqual(await newComplaints(anew, again), []);
+    assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
+    const [first, second] = [audited(baked), audited(anew)];
+    const text = ({ mean_degrees: mean, worst_degrees: worst }) => `${mean.toFixed(3)} / ${worst.toFixed(2)}`;
+    const outcome = `${encoding}: exported by Blender ${text(audited(again))}, baked first ${text(first)}, again ${text(second)}`;
+    context.diagnostic(outcome);
+    // Blender writes weights at every frame, and normals with a few decimals.
+    assert.ok(second.mean_degrees <= first.mean_degrees + 0.1, outcome);
+    const spare = join(folder, 'spare.glb');
+    assertSameShape(throughBlender(again, spare), throughBlender(anew, spare));
+  }
+}
+
+describe('Blender opens a baked file as it was, and its export can be baked again', () => {
+  test('pair', async (context) => {
+    const path = join(folder, 'pair.glb');
+    await fixtures.pair(path);
+    await nameTargets(path);
+    await checkRoundTrip(context, path);
+  });
+  test('Suzanne', { skip: NO_DATA }, (context) => checkRoundTrip(context, SUZANNE));
+});
