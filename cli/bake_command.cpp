@@ -153,8 +153,9 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
-  if (how.encoding == BakeEncoding::kHarmless) return misuse("--encode", "a sequence is written exact or endpoint");
-  if (options.hosts != "all") return misuse("--for", "a sequence is written for hosts that add up deltas");
+  const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
+                                   [](const Host& host) { return host.normals == NormalRule::kSum; });
+  if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();

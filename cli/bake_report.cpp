@@ -275,8 +275,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
     text += "exact at every instant\n";
   else
     text +=
-        formatted("{}: at most {} degrees from the right normals, as far as can be proven\n",
-                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error));
+        formatted("{}: at most {} degrees from the right normals, {}\n",
+                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
+                  encoding == BakeEncoding::kHarmless ? "at 40 instants of each segment" : "as far as can be proven");
   return text + lines_after(report);
 }
 

@@ -5,6 +5,7 @@
 
 #include "chronormal/core/views.h"
 #include "io/gltf/gltf_bake_mark.h"
+#include "workflow/bake/harmless_sequence.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -61,17 +62,21 @@ std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   return normals;
 }
 
-// What an animation gives the weights: hats over the keys, and t (1 - t) in bent segments. For each key the weights, or
-// of exact, which is a cubic spline, in-tangents, weights and out-tangents.
-std::vector<float> weight_track(const SequenceTargets& targets, std::span<const float> times) {
-  const std::size_t keys = targets.keys, n = targets.count(), rows = targets.exact ? 3 : 1;
-  std::vector<float> values(keys * rows * n, 0.0F);
+// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
+// out-tangents.
+struct WeightTrack {
+  std::vector<float> times, values;
+};
+
+// Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
+WeightTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::size_t keys = targets.keys, n = targets.count();
+  WeightTrack track{times, std::vector<float>(keys * 3 * n, 0.0F)};
   enum Row : std::size_t { kIn, kValue, kOut };
   const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
-    return values[(key * rows + (targets.exact ? std::size_t{row} : 0U)) * n + target];
+    return track.values[(key * 3 + row) * n + target];
   };
   for (std::size_t k = targets.has_key_0 ? 0 : 1; k < keys; ++k) at(k, kValue, targets.of_key(k)) = 1;
-  if (!targets.exact) return values;
   // Per second, with the length of the segment as a reader computes it from the times in the file.
   const auto slope = [&](std::size_t s) { return static_cast<float>(1 / (double{times[s + 1]} - double{times[s]})); };
   for (std::size_t s = 0; s + 1 < keys; ++s) {
@@ -86,23 +91,56 @@ std::vector<float> weight_track(const SequenceTargets& targets, std::span<const 
     at(s, kOut, target) = slope(s);
     at(s + 1, kIn, target) = -slope(s);
   }
-  return values;
+  return track;
 }
 
-// The weight t (1 - t) as a product of the weights of two keys. That of key 0, where it has no target, is 1 minus all of
-// the others.
+// Of the others: the hats, and in bent segments 4 t (1 - t) at keys between.
+WeightTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::size_t n = targets.count();
+  WeightTrack track;
+  const auto add_key = [&](float time) {
+    track.times.push_back(time);
+    track.values.resize(track.values.size() + n);
+    return track.values.end() - static_cast<std::ptrdiff_t>(n);
+  };
+  const auto set_hat = [&](auto row, std::size_t key, double weight) {
+    if (key > 0 || targets.has_key_0)
+      row[static_cast<std::ptrdiff_t>(targets.of_key(key))] = static_cast<float>(weight);
+  };
+  std::size_t bend = 0;
+  for (std::size_t k = 0; k < targets.keys; ++k) {
+    set_hat(add_key(times[k]), k, 1);
+    if (bend == targets.bent_segments.size() || targets.bent_segments[bend] != k) continue;
+    const double from = times[k], length = double{times[k + 1]} - from;
+    for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
+      const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
+      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between
+      const double t = (double{time} - from) / length;
+      const auto row = add_key(time);
+      set_hat(row, k, 1 - t);
+      set_hat(row, k + 1, t);
+      row[static_cast<std::ptrdiff_t>(targets.of_keys() + bend)] = static_cast<float>(4 * t * (1 - t));
+    }
+    ++bend;
+  }
+  return track;
+}
+
+// The weight t (1 - t), or 4 times that, as a product of the weights of two keys. That of key 0, where it has no target,
+// is 1 minus all of the others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
-  GltfBakeMark mark{targets.exact ? BakeEncoding::kExact : BakeEncoding::kEndpoint, true, {}};
+  GltfBakeMark mark{targets.encoding, true, {}};
+  const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;
   for (const std::size_t s : targets.bent_segments) {
     GltfExtraTarget& extra = mark.extras.emplace_back();
     extra.target = targets.of_keys() + mark.extras.size() - 1;
     const std::size_t next = targets.of_key(s + 1);
     if (s > 0 || targets.has_key_0) {
-      extra.quadratic.push_back({targets.of_key(s), next, 1});
+      extra.quadratic.push_back({targets.of_key(s), next, factor});
       continue;
     }
-    extra.linear.push_back({next, 1});
-    for (std::size_t i = 0; i < targets.of_keys(); ++i) extra.quadratic.push_back({i, next, -1});
+    extra.linear.push_back({next, factor});
+    for (std::size_t i = 0; i < targets.of_keys(); ++i) extra.quadratic.push_back({i, next, -factor});
   }
   return mark;
 }
@@ -125,7 +163,7 @@ std::vector<float> SequenceVertices::vectors(std::span<const Vec3d> of_elements,
 }
 
 SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
-                           bool exact, const BakeOptions& options)
+                           const BakeOptions& options)
     : vertices_(make_vertices(motion.topology, groups)),
       dense_zeros_(options.dense_zeros),
       expansion_(options.expansion),
@@ -135,19 +173,23 @@ SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std
       {"POSITION", builder_.add_vectors(vertices_.positions(motion.keyframes[0].positions), {true, true})},
       {"NORMAL", builder_.add_vectors(vertices_.vectors(normals_of(elements), kAnyNormal), {false, true})},
   };
-  if (exact)
-    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {true, options.dense_zeros});
+}
+
+std::size_t SequenceFile::zero_positions() {
+  if (!zero_positions_)
+    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {true, dense_zeros_});
+  return *zero_positions_;
 }
 
 void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals) {
   add_target(
       "key " + std::to_string(key),
-      positions.empty() ? zero_positions_ : builder_.add_vectors(vertices_.positions(positions), {true, dense_zeros_}),
+      positions.empty() ? zero_positions() : builder_.add_vectors(vertices_.positions(positions), {true, dense_zeros_}),
       normals);
 }
 
 void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals) {
-  add_target("bend " + std::to_string(segment), zero_positions_, normals);
+  add_target("bend " + std::to_string(segment), zero_positions(), normals);
 }
 
 void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {
@@ -164,10 +206,13 @@ Status SequenceFile::check_size(std::uint64_t more) const {
 }
 
 Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
-  const std::uint64_t weights = std::uint64_t{targets.keys} * targets.count() * (targets.exact ? 3 : 1);
-  if (Status status = check_size(sizeof(float) * (times.size() + weights)); !status) return status.error();
-  const std::size_t input = builder_.add_scalars(times, {true, true}),
-                    output = builder_.add_scalars(weight_track(targets, times), {false, true});
+  const bool exact = targets.encoding == BakeEncoding::kExact;
+  const std::uint64_t keys = targets.keys + std::uint64_t{targets.bent_segments.size()} * (exact ? 0 : kBendPieces - 1),
+                      weights = keys * targets.count() * (exact ? 3 : 1);
+  if (Status status = check_size(sizeof(float) * (keys + weights)); !status) return status.error();
+  const WeightTrack track = exact ? spline_track(targets, times) : linear_track(targets, times);
+  const std::size_t input = builder_.add_scalars(track.times, {true, true}),
+                    output = builder_.add_scalars(track.values, {false, true});
   std::vector<int> rest(targets_.size(), 0);
   if (targets.has_key_0) rest[0] = 1;
   Json& document = builder_.document();
@@ -182,8 +227,7 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
                      {"weights", rest},
                      {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
   document["meshes"] = Json::array({mesh});
-  const Json sampler = {
-      {"input", input}, {"interpolation", targets.exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};
+  const Json sampler = {{"input", input}, {"interpolation", exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};
   const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
   document["animations"] =
       Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});

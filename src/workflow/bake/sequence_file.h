@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ namespace chronormal::inline internal {
 /// Which target stands for what: first one for each key, key 0 only where some normal needs it, then one for each
 /// segment in which normals bend.
 struct SequenceTargets {
-  bool exact = true;
+  BakeEncoding encoding = BakeEncoding::kExact;
   bool has_key_0 = false;
   std::size_t keys = 0;
   std::vector<std::size_t> bent_segments;
@@ -51,15 +52,15 @@ class SequenceFile {
  public:
   /// Writes key 0 with the normals of the elements, and polygons as fans of triangles. (Their normals are those of the
   /// polygons all the same.)
-  SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements, bool exact,
+  SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
                const BakeOptions& options);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
   /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
-  /// key 0 itself, which only exact has.
+  /// key 0 itself.
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Of exact: adds a target for the bend of a segment.
+  /// Adds a target for the bend of a segment.
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
   /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more.
@@ -70,13 +71,15 @@ class SequenceFile {
 
  private:
   void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);
+  // The accessor that targets share which move nothing.
+  [[nodiscard]] std::size_t zero_positions();
 
   SequenceVertices vertices_;
   bool dense_zeros_;
   Expansion expansion_;
   GlbBuilder builder_;
-  std::size_t triangles_ = 0;       // accessor
-  std::size_t zero_positions_ = 0;  // accessor that targets share which move nothing; of exact
+  std::size_t triangles_ = 0;  // accessor
+  std::optional<std::size_t> zero_positions_;
   nlohmann::ordered_json base_, targets_ = nlohmann::ordered_json::array();
   std::vector<std::string> names_;
 };
