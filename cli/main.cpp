@@ -3,9 +3,9 @@
 #include <exception>
 #include <new>
 
-#include "cli/command.h"
-#include "cli/print.h"
-#include "cli/process.h"
+#include "cli/options/command.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/process.h"
 
 int main(int argument_count, char** arguments) {
   using namespace chronormal::cli;
