@@ -18,7 +18,7 @@ int main(int argument_count, char** arguments) {
   } catch (const std::bad_alloc&) {
     say_raw("chronormal: out of memory\n");
   } catch (const std::exception& error) {
-    say("", std::string("internal error: ").append(error.what()));
+    say("", std::string("internal error: ").append(error.what()), Tone::kError);
   }
   return kExitFailed;
 }

@@ -101,8 +101,6 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   }
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
-  if (options.input.world)
-    return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
   if (const Status status = check_input(options.input); !status) return status.error();
   how.samples = options.samples;
   how.animation = options.input.animation;
@@ -137,9 +135,9 @@ std::string why_beyond(const Audited& audited) {
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
   const std::vector<HostAudit>& hosts = audited.audit.hosts;
-  if (hosts.empty()) say("audit", place + why_beyond(audited));
+  if (hosts.empty()) say("audit", place + why_beyond(audited), Tone::kError);
   for (const HostAudit& found : hosts)
-    if (!audited.passed(found)) say("audit", place + why_beyond(audited, found));
+    if (!audited.passed(found)) say("audit", place + why_beyond(audited, found), Tone::kError);
   return false;
 }
 
@@ -148,7 +146,7 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   progress.clear();
   if (!audited) return audited.error();
   const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
-  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return say_what_is_beyond(audited.value(), "") ? kExitDone : kExitBeyond;
 }
@@ -180,12 +178,12 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
     }
     if (audited.error().code == ErrorCode::kUsage) return audited.error();
     files.emplace_back(name, audited.error());
-    say("audit", audited.error().text());
+    say("audit", audited.error().text(), Tone::kError);
     exit = worse_exit(exit, static_cast<int>(audited.error().code));
   }
   const std::string text =
       options.json ? audit_files_json(std::move(files), options.tolerance) : audit_files_text(files);
-  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return exit;
 }
@@ -207,10 +205,12 @@ Result<int> run(const Options& options) {
 
 Command audit_command() {
   auto options = std::make_shared<Options>();
+  const std::vector<RefusedOption> refused = {
+      {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
   return {
       "audit",
       "How wrong are the normals that a file makes hosts show",
-      {input_table(options->input),
+      {input_table(options->input, refused),
        {{"--rule NAME", &options->rule,
          "what a host makes of stored normals between keyframes: gltf (default for\n"
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
@@ -240,7 +240,8 @@ Command audit_command() {
       "  chronormal audit face.glb --host three,godot,gltfpack\n"
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
-      [options] { return run(*options); }};
+      [options] { return run(*options); },
+      refused};
 }
 
 }  // namespace chronormal::cli

@@ -78,7 +78,7 @@ Result<BakeOptions> understand(const Options& options) {
 // Where the report goes: beside the result, or out of its way.
 Result<int> report(const Options& options, const std::string& text, const std::string& json) {
   const bool is_aside = is_stream(options.common.output) && !options.json;
-  if (is_aside && !options.common.quiet) say_raw(text);
+  if (is_aside && !options.common.quiet) say_text(text);
   if (is_aside) return kExitDone;
   const Status printed = print(options.json ? json : text);
   if (!printed) return printed.error();
@@ -86,7 +86,7 @@ Result<int> report(const Options& options, const std::string& text, const std::s
 }
 
 void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) say("bake", warning);
+  for (const std::string& warning : warnings) say("bake", warning, Tone::kWarning);
 }
 
 void warn_if_worse(const BakeReport& report) {
@@ -116,9 +116,6 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const O
 Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
-  if (!options.input.animation.empty())
-    return misuse("--animation", "all animations of a glTF file are baked: leave it out");
-  if (options.input.world) return misuse("--world", "meshes are baked where they are: leave it out");
   if (options.input.frames_per_second != 1)
     return misuse("--fps", "the animations of a glTF file have times of their own");
   if (options.crease_angle != 180 && !options.smooth)
@@ -206,8 +203,6 @@ Result<int> run(const Options& options) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
   }
   InputOptions wanted = options.input;
-  if (!wanted.base.empty())
-    return misuse("--base", "targets over a base are no sequence: bake takes keyframes, or a glTF file");
   if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
@@ -219,9 +214,13 @@ Result<int> run(const Options& options) {
 
 Command bake_command() {
   auto options = std::make_shared<Options>();
+  const std::vector<RefusedOption> refused = {
+      {"--base", "bake takes keyframes or a glTF file; put the base and its targets into one glTF file, and bake that"},
+      {"--animation", "bake writes normals for all animations of a glTF file"},
+      {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
   return {"bake",
           "Write right normals into a glTF file, or make one of a sequence",
-          {input_table(options->input),
+          {input_table(options->input, refused),
            {{"--for HOST,...", &options->hosts,
              "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
                  ", or all (default)"},
@@ -258,7 +257,8 @@ Command bake_command() {
           "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
           "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
           "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
-          [options] { return run(*options); }};
+          [options] { return run(*options); },
+          refused};
 }
 
 }  // namespace chronormal::cli

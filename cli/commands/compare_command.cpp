@@ -8,6 +8,7 @@
 #include "cli/options/command.h"
 #include "cli/reports/compare_report.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -118,7 +119,8 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
       return error;
     }
     const bool has_own_name = !options.each || wanted.base.empty();  // else the base is that of all
-    comparisons.push_back({has_own_name ? input.value().name() : wanted.files.front(), std::move(comparison).value()});
+    comparisons.push_back({has_own_name ? input.value().name() : wanted.files.front(), std::move(comparison).value(),
+                           target_names(input.value()).value()});
   }
   return comparisons;
 }
@@ -133,7 +135,7 @@ Result<int> run_blend(const Options& options) {
   const std::string text = options.json  ? blend_json(comparison.value())
                            : options.csv ? blend_csv(comparison.value())
                                          : blend_table(comparison.value());
-  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return kExitDone;
 }
@@ -162,7 +164,7 @@ Result<int> run(const Options& options) {
     text = compare_tables_side_by_side(comparisons.value());
   else
     text = compare_table(comparisons.value().front(), with_times);
-  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return kExitDone;
 }

@@ -4,6 +4,7 @@
 #include "chronormal/io/output.h"
 #include "cli/options/command.h"
 #include "cli/reports/inspect_report.h"
+#include "cli/terminal/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -67,7 +68,7 @@ Result<int> run(const Options& options) {
   const auto inspected = inspect_input(options.input, progress);
   if (!inspected) return inspected.error();
   const std::string text = options.json ? inspect_json(inspected.value()) : inspect_text(inspected.value());
-  if (const Status written = write_output(options.common.output, text, options.common.force); !written)
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return kExitDone;
 }

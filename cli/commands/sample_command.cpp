@@ -1,13 +1,10 @@
-#include <charconv>
-#include <cmath>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/options/command.h"
+#include "cli/options/moments.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
@@ -15,13 +12,10 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr std::size_t kMostTimes = 1000000;
-
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::string times;                 // as written; empty: none
-  std::vector<std::string> weights;  // a list per pose
+  MomentArguments moments;
   ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
@@ -40,87 +34,17 @@ std::string footer() {
          "\nExamples:\n"
          "  chronormal sample walk/ --times 0:0.25:12 -o normals.npy\n"
          "  chronormal sample body.obj walk.pc2 --times 1.5 --elements corners --crease 60 -o shaded.obj\n"
+         "  chronormal sample face.glb --weights jawOpen=0.5,smile=1 -o talking.npz\n"
+         "  chronormal sample face.glb --animation Smile --times keys -o keys.npz\n"
          "  chronormal sample face.glb --weights 1,0,0 --weights 0.5,0.5,0 --weighting angle -o 'face_%d.ply'\n"
          "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
-// The parts of a list between separators.
-std::vector<std::string_view> split(std::string_view list, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t first = 0;;) {
-    const std::size_t end = list.find(separator, first);
-    parts.push_back(list.substr(first, end == std::string_view::npos ? end : end - first));
-    if (end == std::string_view::npos) return parts;
-    first = end + 1;
-  }
-}
-
-Result<double> parse_number(const std::string& option, std::string_view word) {
-  std::string_view digits = word;
-  while (digits.starts_with(' ')) digits.remove_prefix(1);
-  while (digits.ends_with(' ')) digits.remove_suffix(1);
-  if (digits.size() > 1 && digits.starts_with('+') && digits[1] != '-') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    return misuse(option, formatted("'{}' is not a number", word));
-  return value;
-}
-
-// The times of A:STEP:B, of which the last is B itself if the steps lead there.
-Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
-  const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
-  if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
-  double numbers[3] = {};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Result<double> number = parse_number("--times", ends[i]);
-    if (!number) return number.error();
-    numbers[i] = number.value();
-  }
-  const auto [first, step, last] = numbers;
-  if (!(step > 0) || !(first <= last)) return wrong("the step must be positive, and the range ascend");
-  const double steps = (last - first) / step;
-  if (!(steps + static_cast<double>(times.size()) < static_cast<double>(kMostTimes)))
-    return wrong("these are more than 1,000,000 times");
-  const double rounded = std::round(steps);
-  const bool reaches = std::fabs(steps - rounded) <= 1e-9 * std::fmax(1, steps);
-  const auto count = static_cast<std::size_t>(reaches ? rounded : std::floor(steps));
-  for (std::size_t i = 0; i <= count; ++i)
-    times.push_back(reaches && i == count ? last : first + static_cast<double>(i) * step);
-  return Success{};
-}
-
-Result<std::vector<double>> parse_times(const std::string& list) {
-  std::vector<double> times;
-  for (const std::string_view part : split(list, ',')) {
-    const std::vector<std::string_view> ends = split(part, ':');
-    if (ends.size() > 1) {
-      if (Status status = append_range(ends, part, times); !status) return status.error();
-      continue;
-    }
-    const Result<double> time = parse_number("--times", part);
-    if (!time) return time.error();
-    times.push_back(time.value());
-  }
-  if (times.size() > kMostTimes) return misuse("--times", "these are more than 1,000,000 times");
-  return times;
-}
-
-Result<std::vector<double>> parse_weights(const std::string& list) {
-  std::vector<double> weights;
-  for (const std::string_view part : split(list, ',')) {
-    const Result<double> weight = parse_number("--weights", part);
-    if (!weight) return weight.error();
-    weights.push_back(weight.value());
-  }
-  return weights;
-}
-
 // What was asked for, after the words were understood.
 struct Request {
   SampleOptions sample;
-  Moments moments;
+  AskedMoments asked;
   SampleOutput output;
 };
 
@@ -165,56 +89,14 @@ Result<Request> understand(const Options& options) {
   if (!sample) return sample.error();
   const Result<SampleFormat> format = format_of(options);
   if (!format) return format.error();
-  Request request{sample.value(), {}, {options.common.output, format.value(), options.common.force}};
-  if (!options.times.empty() && !options.weights.empty())
-    return misuse("--weights", "a motion has times, or targets with weights, not both");
-  if (!options.times.empty()) {
-    Result<std::vector<double>> times = parse_times(options.times);
-    if (!times) return times.error();
-    request.moments.times = std::move(times).value();
-  }
-  for (const std::string& list : options.weights) {
-    Result<std::vector<double>> weights = parse_weights(list);
-    if (!weights) return weights.error();
-    request.moments.weights.push_back(std::move(weights).value());
-  }
+  Result<AskedMoments> asked = understand(options.moments);
+  if (!asked) return asked.error();
+  Request request{
+      sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}};
   if (const Status status = check_input(options.input); !status) return status.error();
-  if (const auto files = sample_files(request.output, request.sample.elements.kind, request.moments.count()); !files)
+  if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();
   return request;
-}
-
-std::string range_of(const Motion& motion) {
-  double first = motion.keyframes.front().time, last = first;
-  for (const auto& keyframe : motion.keyframes) {
-    first = std::fmin(first, keyframe.time);
-    last = std::fmax(last, keyframe.time);
-  }
-  return formatted("{} to {}", first, last);
-}
-
-// Whether the moments go with the motion. Those of a mesh that stands still become none.
-Status fit_moments(const Motion& motion, Moments& moments) {
-  if (motion.segments.empty()) {
-    if (!moments.weights.empty()) return misuse("--weights", "the mesh has no targets");
-    for (const double time : moments.times) {
-      if (time != 0) return misuse("--times", "the mesh does not move: leave it out, or give 0");
-    }
-    if (moments.times.size() > 1) return misuse("--times", "the mesh does not move: one time is enough");
-    moments.times.clear();
-    return Success{};
-  }
-  if (motion.kind == MotionKind::kTargets) {
-    const std::size_t count = motion.segments.size();
-    const std::string how = formatted("give --weights, {} number{} for each pose", count, count == 1 ? "" : "s");
-    if (!moments.times.empty()) return misuse("--times", "blend shapes have no times: " + how);
-    if (moments.weights.empty()) return misuse("--weights", "the input is blend shapes: " + how);
-    return Success{};
-  }
-  if (!moments.weights.empty())
-    return misuse("--weights", "only blend shapes have weights; this motion has --times from " + range_of(motion));
-  if (moments.times.empty()) return misuse("--times", "say at which times: the motion goes from " + range_of(motion));
-  return Success{};
 }
 
 // Takes the hard edges from where the input stores them: its smoothing groups, or its normals.
@@ -241,17 +123,17 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
 }
 
 // Says how much was asked for, where that is much: it is not refused.
-void announce(const Topology& topology, const Request& request) {
+void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   constexpr double kMuch = 1e9;
-  const ElementKind kind = request.sample.elements.kind;
   const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()
                                : kind == ElementKind::kCorners ? topology.corner_count()
                                                                : topology.vertex_count();
-  const double bytes =
-      3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(request.moments.count());
+  const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
-    say("sample", formatted("the normals of {} times {} elements are {:.1f} GB", grouped(request.moments.count()),
-                            grouped(elements), bytes / 1e9));
+    say("sample",
+        formatted("the normals of {} times {} elements are {:.1f} GB", grouped(moments), grouped(elements),
+                  bytes / 1e9),
+        Tone::kWarning);
 }
 
 Result<int> run(const Options& options) {
@@ -267,19 +149,22 @@ Result<int> run(const Options& options) {
   const Result<const Motion*> read = input.value().motion();
   if (!read) return read.error();
   const Motion& motion = *read.value();
-  if (const Status status = fit_moments(motion, request.moments); !status) return status.error();
-  if (!options.common.quiet) announce(motion.topology, request);
+  const Result<Moments> moments = moments_of(input.value(), request.asked);
+  if (!moments) return moments.error();
+  if (!options.common.quiet) announce(motion.topology, request.sample.elements.kind, moments.value().count());
   if (!options.hard_edges.empty()) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
   }
   const auto written =
-      write_samples(motion, request.sample, request.moments, request.output, progress.callback("sampling"));
+      write_samples(motion, request.sample, moments.value(), request.output, progress.callback("sampling"));
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)
-    say("sample", formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one",
-                            written.value().zeros, written.value().normals, options.elements.kind()));
+    say("sample",
+        formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
+                  written.value().normals, options.elements.kind()),
+        Tone::kWarning);
   return kExitDone;
 }
 
@@ -290,12 +175,7 @@ Command sample_command() {
   return {"sample",
           "Write the normals of a motion at chosen times",
           {input_table(options->input),
-           {{"--times LIST", &options->times,
-             "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; none where\n"
-             "a mesh does not move"},
-            {"--weights W1,W2,...", &options->weights,
-             "a pose of blend shapes: one weight for each target; repeat it\n"
-             "for more poses"}},
+           options->moments.table(),
            options->elements.table(),
            {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
             {"--length KIND", &options->length, "unit (default), or area: of weighting area, n itself"},

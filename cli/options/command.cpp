@@ -30,30 +30,35 @@ std::vector<Option> CommonOptions::table(bool output_required) {
           {"-q,--quiet", &quiet, "no progress bar"}};
 }
 
-std::vector<Option> input_table(InputOptions& input) {
-  return {{"INPUT", &input.files,
-           "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
-           "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
-           ".gltf, .glb, .npz or .md2; - is one file on stdin"},
-          {"--base FILE",
-           &input.base,
-           "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
-           ".target or .target.gz of MakeHuman, folders of them",
-           {.check = check_given("it must name a file")}},
-          {"--animation NAME",
-           &input.animation,
-           "an animation of a glTF file, by name or index; without it\n"
-           "every morph target is a segment",
-           {.check = check_given("it must be a name or an index")}},
-          {"--world", &input.world, "vertices of a glTF file are where its nodes put them"},
-          {"--allow-external", &input.allow_external, "a glTF file may name files outside its folder"},
-          {"--max-expansion N",
-           &input.max_expansion,
-           "what is read may ask for N times its bytes of memory and output (default 100;\n"
-           "always for 32 MiB)",
-           {.check = check_whole(0)}},
-          {"--sample NAME", &input.samples, morph_list()},
-          {"--fps N", &input.frames_per_second, "frames per second of the keyframes (default 1)"}};
+std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused) {
+  std::vector<Option> table = {
+      {"INPUT", &input.files,
+       "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
+       "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
+       ".gltf, .glb, .npz or .md2; - is one file on stdin"},
+      {"--base FILE",
+       &input.base,
+       "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
+       ".target or .target.gz of MakeHuman, folders of them",
+       {.check = check_given("it must name a file")}},
+      {"--animation NAME",
+       &input.animation,
+       "an animation of a glTF file, by name or index; without it\n"
+       "every morph target is a segment",
+       {.check = check_given("it must be a name or an index")}},
+      {"--world", &input.world, "vertices of a glTF file are where its nodes put them"},
+      {"--allow-external", &input.allow_external, "a glTF file may name files outside its folder"},
+      {"--max-expansion N",
+       &input.max_expansion,
+       "what is read may ask for N times its bytes of memory and output (default 100;\n"
+       "always for 32 MiB)",
+       {.check = check_whole(0)}},
+      {"--sample NAME", &input.samples, morph_list()},
+      {"--fps N", &input.frames_per_second, "frames per second of the keyframes (default 1)"}};
+  for (const RefusedOption& option : refused)
+    std::erase_if(table,
+                  [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });
+  return table;
 }
 
 std::vector<Option> ElementArguments::table() {

@@ -28,8 +28,9 @@ struct CommonOptions {
   [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
-/// The options that choose what to read, as io/input.h has them. The table refers to input.
-[[nodiscard]] std::vector<Option> input_table(InputOptions& input);
+/// The options that choose what to read, as io/input.h has them, without those that the command refuses. The table
+/// refers to input.
+[[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
 /// Opens the input that the options name, with a progress bar.
 [[nodiscard]] Result<Input> open_input(InputOptions options, Progress& progress);

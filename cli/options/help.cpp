@@ -2,24 +2,18 @@
 // rows of a list do; all others flow together into paragraphs.
 #include "cli/options/help.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cstdlib>
-#include <cstring>
 #include <variant>
 
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/text.h"
 #include "cli/terminal/version.h"
 
 namespace chronormal::cli {
 namespace {
 
-constexpr std::size_t kUsualColumns = 80, kLeastColumns = 40;
 constexpr std::size_t kNameColumn = 2, kTextColumn = 27;
 
 constexpr std::string_view kAbout = "Normals of triangle meshes that deform: exact at every instant.";
@@ -250,15 +244,6 @@ std::string fish_completions(const std::vector<Command>& commands) {
 
 }  // namespace
 
-std::size_t columns_of_output() {
-  std::size_t columns = 0;
-  if (const char* given = std::getenv("COLUMNS"); given != nullptr)
-    std::from_chars(given, given + std::strlen(given), columns);
-  winsize size{};
-  if (columns == 0 && isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
-  return columns == 0 ? kUsualColumns : std::max(columns, kLeastColumns);
-}
-
 std::vector<std::string> names_of(const Option& option) {
   if (option.spelling.front() != '-') return {};
   return parts_of(option.spelling.substr(0, option.spelling.find(' ')), ',');
@@ -272,7 +257,7 @@ std::string help_of_program(const std::vector<Command>& commands, std::size_t co
   for (const Command& command : commands) text += row(command.name, command.summary, columns);
   text += "\nOptions:\n" + row("-h, --help", "explain the program; after a command, explain that", columns) +
           row("-V, --version", "print the version", columns);
-  return text + "\n" + flowing("chronormal help COMMAND explains a command.", 0, columns) + "\n";
+  return with_headings(text) + "\n" + flowing("chronormal help COMMAND explains a command.", 0, columns) + "\n";
 }
 
 std::string help_of_command(const Command& command, std::size_t columns) {
@@ -283,7 +268,7 @@ std::string help_of_command(const Command& command, std::size_t columns) {
   visit_options(command, true, [&](const Option& option) { text += row(spelled(option), meaning(option), columns); });
   text += row("-h, --help", "print this", columns);
   if (!command.footer.empty()) text += formatted("\n{}\n", flowing(command.footer, 0, columns));
-  return text;
+  return with_headings(text);
 }
 
 std::string manual_page(const std::vector<Command>& commands) {

@@ -13,10 +13,6 @@
 
 namespace chronormal::cli {
 
-/// How many columns lines may have: COLUMNS where it is set, else as many as the terminal has on stdout, else 80; at
-/// least 40.
-[[nodiscard]] std::size_t columns_of_output();
-
 /// The help of the program and of one command, in lines of at most so many columns where words allow it.
 [[nodiscard]] std::string help_of_program(const std::vector<Command>& commands, std::size_t columns);
 [[nodiscard]] std::string help_of_command(const Command& command, std::size_t columns);

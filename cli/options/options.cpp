@@ -14,6 +14,7 @@
 #include "cli/options/help.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 #include "cli/terminal/version.h"
@@ -91,7 +92,7 @@ void say_where_help_is(std::string_view command) {
 
 // Says the error, and returns its exit code.
 int report(const std::string& command, const Error& error) {
-  say(command, error.text());
+  say(command, error.text(), Tone::kError);
   if (error.code == ErrorCode::kUsage) say_where_help_is(command);
   return static_cast<int>(error.code);
 }
@@ -118,29 +119,52 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
     list += (list.empty() ? "" : ", ") + command.name;
   }
   if (first.empty())
-    say("", "name a command: " + list);
+    say("", "name a command: " + list, Tone::kError);
   else if (const std::string nearest = suggestion(first, names); !nearest.empty())
-    say("", formatted("there is no command '{}'{} There are {}", first, nearest, list));
+    say("", formatted("there is no command '{}'{} There are {}", first, nearest, list), Tone::kError);
   else
-    say("", formatted("there is no command '{}'; there are {}", first, list));
+    say("", formatted("there is no command '{}'; there are {}", first, list), Tone::kError);
   say_where_help_is("");
   return false;
 }
 
-// The first option that the command does not have, which the parser would pass over where a required one is missing. A
-// word after an option that takes a value is that value, whatever it looks like.
-std::optional<Error> find_unknown_option(const Command& command, std::span<char* const> arguments) {
-  std::vector<std::string> names = {"-h", "--help"}, with_value;
+bool is_in(const std::vector<std::string>& list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+std::vector<std::string> names_of_options(const Command& command, bool only_with_value = false) {
+  std::vector<std::string> names;
   for (const std::vector<Option>& table : command.tables) {
     for (const Option& option : table) {
+      if (only_with_value && !takes_value(option)) continue;
       const std::vector<std::string> own = names_of(option);
       names.insert(names.end(), own.begin(), own.end());
-      if (takes_value(option)) with_value.insert(with_value.end(), own.begin(), own.end());
     }
   }
-  const auto is_in = [](const std::vector<std::string>& list, std::string_view name) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
+  return names;
+}
+
+// What to do in place of an option that the command does not have: its own reason, else the commands that have the
+// option, else the nearest of its options.
+std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
+  for (const RefusedOption& refused : command.refused)
+    if (refused.name == name) return " here: " + refused.reason;
+  std::string others;
+  for (const Command& other : commands)
+    if (is_in(names_of_options(other), name)) others += (others.empty() ? "" : ", ") + other.name;
+  if (!others.empty()) return " here; it belongs to " + others;
+  std::vector<std::string> own = names_of_options(command);
+  own.emplace_back("--help");
+  return suggestion(name, own);
+}
+
+// The first option that the command does not have, which the parser would pass over where a required one is missing. A
+// word after an option that takes a value is that value, whatever it looks like.
+std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
+                                         std::span<char* const> arguments) {
+  std::vector<std::string> names = names_of_options(command);
+  const std::vector<std::string> with_value = names_of_options(command, true);
+  names.insert(names.end(), {"-h", "--help"});
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string_view word = arguments[i];
     if (word == "--") break;
@@ -148,7 +172,8 @@ std::optional<Error> find_unknown_option(const Command& command, std::span<char*
     const bool is_long = word.starts_with("--");
     const std::string_view name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
     if (!is_in(names, name))
-      return Error{ErrorCode::kUsage, "", formatted("there is no option '{}'{}", name, suggestion(name, names))};
+      return Error{ErrorCode::kUsage, "",
+                   formatted("there is no option '{}'{}", name, advice_on(name, command, commands))};
     if (name == word && is_in(with_value, name)) ++i;
   }
   return std::nullopt;
@@ -195,7 +220,7 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   if (first == "help") return print_or_report(help_of_command(*command_of(asked), columns_of_output()));
   if (const auto named = command_of(first); named != commands.end()) {
     const std::span<char* const> rest(arguments + 2, static_cast<std::size_t>(argument_count) - 2);
-    if (const auto unknown = find_unknown_option(*named, rest)) return report(named->name, *unknown);
+    if (const auto unknown = find_unknown_option(*named, commands, rest)) return report(named->name, *unknown);
   }
   try {
     program.parse(argument_count, arguments);
@@ -209,7 +234,8 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
-    say(name, parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what());
+    say(name, parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what(),
+        Tone::kError);
     say_where_help_is(name);
     return kExitUsage;
   }

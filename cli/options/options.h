@@ -37,12 +37,18 @@ struct Option {
   Rules rules = {};
 };
 
+/// An option that other commands have and this one has not, with the reason, or with what to do instead.
+struct RefusedOption {
+  std::string name, reason;
+};
+
 /// A command of the program. Its tables of options come one after the other.
 struct Command {
   std::string name, summary;
   std::vector<std::vector<Option>> tables;
   std::string footer;
   std::function<Result<int>()> run;  ///< returns the exit code; the targets of the options have their values by then
+  std::vector<RefusedOption> refused = {};
 };
 
 /// A check that the value is a whole number in a range, in digits alone.

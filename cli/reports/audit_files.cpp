@@ -24,7 +24,7 @@ std::string headline(const std::vector<AuditedFile>& files) {
   std::string text = counted(files.size(), "file", "files");
   if (judged < files.size()) text += formatted(", {} judged", judged);
   if (worst != nullptr)
-    text += formatted(": worst {} degrees, in {}", degrees(worst->error->worst), printable(worst->name));
+    text += formatted(": worst {} degrees, in {}", judged_degrees(worst->error->worst), printable(worst->name));
   return text + '\n';
 }
 
@@ -51,7 +51,7 @@ std::string audit_files_text(const std::vector<AuditedFile>& files) {
     if (!file.error || file.error->judged == 0)
       cells.insert(cells.end(), {"-", "-", "-", "-"});
     else
-      cells.insert(cells.end(), {degrees(file.error->worst), degrees(file.error->percentile(0.99)),
+      cells.insert(cells.end(), {judged_degrees(file.error->worst), degrees(file.error->percentile(0.99)),
                                  degrees(file.error->mean()), grouped(file.faults)});
     cells.push_back(file.verdict);
     table.add_row(std::move(cells));

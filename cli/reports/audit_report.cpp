@@ -11,6 +11,7 @@
 #include "cli/reports/audit_words.h"
 #include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -43,9 +44,9 @@ std::string weighting_words(const Audited& input) {
 
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
-  std::string text = printable(input.name()) + ": ";
+  std::string text = heading(printable(input.name())) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", degrees(audit.error.worst),
+  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", judged_degrees(audit.error.worst),
                     degrees(audit.error.mean()), degrees(audit.error.percentile(kMost)),
                     degrees(audit.error.percentile(kNearlyAll)));
   if (input.tolerance) text += ", " + tolerance_words(input);
@@ -87,7 +88,7 @@ std::string subject_table(const Audited& input) {
   for (const std::size_t s : indices_of_largest(errors, kMostAuditRows)) {
     const AuditSubject& subject = subjects[s];
     const bool some = subject.error.worst > 0;
-    table.add_row({subject_words(input, subject), degrees(subject.error.worst), degrees(subject.error.mean()),
+    table.add_row({subject_words(input, subject), judged_degrees(subject.error.worst), degrees(subject.error.mean()),
                    degrees(subject.error.percentile(kMost)), degrees(subject.error.percentile(kNearlyAll)),
                    degrees(subject.at_keys.worst), some ? formatted("{}", subject.error.worst_at.vertex) : "-",
                    some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
@@ -115,7 +116,8 @@ std::string host_table(const Audited& input) {
   const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
                            const std::string& note) {
     table.add_row({std::string(title), degrees(error.mean()), degrees(error.percentile(kMost)),
-                   degrees(error.percentile(kNearlyAll)), degrees(error.worst), grouped(error.unlit), displaced, note});
+                   degrees(error.percentile(kNearlyAll)), judged_degrees(error.worst), grouped(error.unlit), displaced,
+                   note});
   };
   add_row("(specification)", audit.error, "-", "");
   for (const HostAudit& found : audit.hosts) {
@@ -202,7 +204,7 @@ std::string audit_text(const Audited& input) {
   std::string text = headline(input);
   if (!input.audit.subjects.empty())
     text += host_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
-  return text + offset_lines(input) + fault_lines(input) + note_lines(input) + advice(input);
+  return with_headings(text + offset_lines(input) + fault_lines(input) + note_lines(input) + advice(input));
 }
 
 }  // namespace chronormal::cli

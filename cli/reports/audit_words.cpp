@@ -4,6 +4,7 @@
 
 #include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -21,6 +22,8 @@ std::string named(std::string what, const std::string& name) {
 std::string degrees(double value) {
   return value == 0 || value >= 0.005 ? formatted("{:.2f}", value) : formatted("{:.0e}", value);
 }
+
+std::string judged_degrees(double value) { return value > kAuditFault ? alarming(degrees(value)) : degrees(value); }
 
 std::string pairs(std::size_t count) { return counted(count, "pair", "pairs"); }
 

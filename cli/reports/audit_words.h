@@ -16,6 +16,9 @@ inline constexpr std::size_t kMostAuditRows = 16;
 /// Two decimals, or the power of ten of what would be none of it.
 [[nodiscard]] std::string degrees(double value);
 
+/// The same, with emphasis where it is a fault.
+[[nodiscard]] std::string judged_degrees(double value);
+
 /// "1 pair", "12 pairs": of a vertex and a sample.
 [[nodiscard]] std::string pairs(std::size_t count);
 

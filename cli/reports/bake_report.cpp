@@ -6,6 +6,7 @@
 #include "chronormal/normals/weighting.h"
 #include "cli/json.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr std::size_t kLongestName = 32;
 
 std::string headline(const BakeReport& report) {
-  return formatted("{} -> {}\n", printable(report.input), printable(report.output));
+  return formatted("{} -> {}\n", heading(printable(report.input)), heading(printable(report.output)));
 }
 
 std::string mesh_name(const BakedMesh& mesh) {

@@ -7,6 +7,7 @@
 #include "cli/reports/compare_report.h"
 #include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -27,7 +28,7 @@ bool is_several_primitives(const BlendSubject& subject) {
 }
 
 std::string headline(const NamedBlendComparison& input, const BlendSubject& subject) {
-  std::string text = printable(input.name);
+  std::string text = heading(printable(input.name));
   if (subject.mesh) {
     text += formatted(", mesh {}", *subject.mesh);
     if (!subject.name.empty()) text += formatted(" '{}'", printable(subject.name, kShownName));
@@ -63,7 +64,9 @@ std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
   std::string text;
   for (std::size_t i = 0; i < std::min(weights.size(), kShownTargets); ++i) {
     if (i > 0) text += ", ";
-    text += formatted("{} {:.2f}", printable(target_name(subject, weights[i].target), kShownName), weights[i].weight);
+    const std::string& name = subject.targets[weights[i].target];
+    text += formatted("{}{} {:.2f}", weights[i].target, name.empty() ? "" : " (" + printable(name, kShownName) + ")",
+                      weights[i].weight);
   }
   if (weights.size() > kShownTargets) text += formatted(" and {} more", weights.size() - kShownTargets);
   return text;

@@ -4,6 +4,7 @@
 #include "cli/options/command.h"
 #include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -19,7 +20,7 @@ bool is_of_targets(const Comparison& comparison) { return comparison.motion == M
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   return formatted(
-             "{}: {}, {}, {} x {} samples\n", printable(input.name), counted(c.vertices, "vertex", "vertices"),
+             "{}: {}, {}, {} x {} samples\n", heading(printable(input.name)), counted(c.vertices, "vertex", "vertices"),
              counted(c.faces, "face", "faces"),
              counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
              c.samples) +
@@ -105,6 +106,11 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
   return text;
 }
 
+std::string segment_cell(const NamedComparison& input, std::size_t segment) {
+  constexpr std::size_t kLongest = 24;
+  return segment < input.targets.size() ? printable(target_label(input.targets, segment), kLongest) : grouped(segment);
+}
+
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
@@ -134,8 +140,10 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   table.add_column("rms", "degrees", Align::kRight);
   table.add_column("max", "degrees", Align::kRight);
   const bool several_segments = input.comparison.segments > 1;
-  if (several_segments)
-    table.add_column("worst at", is_of_targets(input.comparison) ? "target" : "segment", Align::kRight);
+  if (several_segments && is_of_targets(input.comparison))
+    table.add_column("worst at", "target", Align::kLeft);
+  else if (several_segments)
+    table.add_column("worst at", "segment", Align::kRight);
   const std::string element = one_element(input.comparison.kind);
   table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
   table.add_column("", is_of_targets(input.comparison) ? "weight" : "t", Align::kRight);
@@ -153,7 +161,7 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
                                       four_decimals(degrees(q.mean())),
                                       four_decimals(degrees(q.rms())),
                                       four_decimals(degrees(q.max))};
-    if (several_segments) cells.push_back(q.max > 0 ? grouped(q.max_at.segment) : "-");
+    if (several_segments) cells.push_back(q.max > 0 ? segment_cell(input, q.max_at.segment) : "-");
     cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
     cells.push_back(q.max > 0 ? formatted("{:.2f}", q.max_at.t) : "-");
     cells.push_back(formatted("{:.0f}", row.bytes));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "chronormal/io/target_names.h"
 #include "chronormal/workflow/compare.h"
 
 namespace chronormal::cli {
@@ -12,6 +13,7 @@ namespace chronormal::cli {
 struct NamedComparison {
   std::string name;
   Comparison comparison;
+  TargetNames targets = {};  ///< of a set of targets
 };
 
 /// One aligned table with a line per scheme. Without times it is the same on every run.

@@ -7,6 +7,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 
@@ -45,7 +46,7 @@ std::string rows_left_out(std::size_t rows, const char* what) {
 }
 
 std::string headline(const Inspected& input) {
-  std::string text = printable(input.name()) + ": ";
+  std::string text = heading(printable(input.name())) + ": ";
   if (!input.inspection) return text + "no faces\n";
   const Inspection& found = *input.inspection;
   text += counted(found.vertices, "vertex", "vertices") + ", " +
@@ -261,7 +262,7 @@ std::string inspect_text(const Inspected& input) {
 
   const std::vector<Trouble> troubles = find_trouble(input);
   if (troubles.empty()) return text + "\nnothing that will trouble you\n";
-  text += "\nWhat will trouble you:\n";
+  text += '\n' + heading("What will trouble you:") + '\n';
   for (const Trouble& trouble : troubles) {
     text += "  " + trouble.what;
     if (!trouble.where.empty()) text += formatted(" ({}{})", trouble.count > 1 ? "first: " : "", trouble.where);

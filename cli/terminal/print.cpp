@@ -6,11 +6,19 @@
 #include <cerrno>
 
 #include "chronormal/io/output.h"
+#include "cli/terminal/screen.h"
 #include "cli/terminal/text.h"
 
 namespace chronormal::cli {
 
-Status print(std::string_view text) { return write_output("-", text, false); }
+Status print(std::string_view text) { return print_to("-", text, false); }
+
+Status print_to(const std::string& path, std::string_view text, bool force) {
+  if (path == "-" && shows_colour(STDOUT_FILENO)) return write_output(path, text, force);
+  return write_output(path, plain(text), force);
+}
+
+void say_text(std::string_view text) { say_raw(shows_colour(STDERR_FILENO) ? std::string(text) : plain(text)); }
 
 void say_raw(std::string_view text) noexcept {
   const int system_error = errno;
@@ -28,10 +36,11 @@ void say_raw(std::string_view text) noexcept {
   errno = system_error;
 }
 
-void say(std::string_view command, std::string_view message) {
-  std::string line = "chronormal";
-  if (!command.empty()) line.append(" ").append(command);
-  say_raw(line.append(": ").append(printable(message)).append("\n"));
+void say(std::string_view command, std::string_view message, Tone tone) {
+  std::string who = "chronormal";
+  if (!command.empty()) who.append(" ").append(command);
+  who += ':';
+  say_text((tone == Tone::kError ? alarming(who) : warning(who)).append(" ").append(printable(message)).append("\n"));
 }
 
 }  // namespace chronormal::cli

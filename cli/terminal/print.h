@@ -13,14 +13,23 @@
 
 namespace chronormal::cli {
 
-/// Prints to stdout. Errors: kFailed where not all of it could be written, with the place "<stdout>".
+/// Prints to stdout, with emphasis where that shows colours. Errors: kFailed where not all of it could be written, with
+/// the place "<stdout>".
 [[nodiscard]] Status print(std::string_view text);
+
+/// Prints to stdout where the path is "-"; else writes the file, without emphasis. Errors: of write_output()
+[[nodiscard]] Status print_to(const std::string& path, std::string_view text, bool force);
+
+/// Says a text of several lines on stderr, with emphasis where that shows colours.
+void say_text(std::string_view text);
 
 /// Writes to stderr as it is, as much as it takes. Safe to call from the handler of a signal.
 void say_raw(std::string_view text) noexcept;
 
-/// Says "chronormal COMMAND: message" on stderr, in one line; command may be empty.
-void say(std::string_view command, std::string_view message);
+/// Says "chronormal COMMAND: message" on stderr, in one line; command may be empty. An error is what the exit code tells,
+/// too.
+enum class Tone { kWarning, kError };
+void say(std::string_view command, std::string_view message, Tone tone);
 
 }  // namespace chronormal::cli
 

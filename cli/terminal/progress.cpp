@@ -2,24 +2,17 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
-#include <string_view>
 #include <utility>
 
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/screen.h"
 
 namespace chronormal::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{300};
 constexpr int kWidth = 40;
-
-// One that cannot take a line back.
-bool is_dumb_terminal() {
-  const char* terminal = std::getenv("TERM");
-  return terminal != nullptr && std::string_view(terminal) == "dumb";
-}
 
 }  // namespace
 

@@ -93,7 +93,12 @@ std::string escaped_for_json(std::string_view document) {
 
 std::size_t width_of(std::string_view text) noexcept {
   std::size_t width = 0;
-  for (const char c : text) width += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1U : 0U;
+  bool is_mark = false;
+  for (const char c : text) {
+    is_mark = is_mark || c == '\033';
+    width += !is_mark && (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1U : 0U;
+    is_mark = is_mark && c != 'm';
+  }
   return width;
 }
 

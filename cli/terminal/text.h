@@ -16,7 +16,8 @@ namespace chronormal::cli {
 /// The text of a JSON document, in UTF-8, with the same characters as \uNNNN inside its strings; line ends stay.
 [[nodiscard]] std::string escaped_for_json(std::string_view document);
 
-/// How many columns of a terminal a text takes: one for each character of UTF-8.
+/// How many columns of a terminal a text takes: one for each character of UTF-8, and none for the marks of emphasis
+/// (cli/terminal/screen.h).
 [[nodiscard]] std::size_t width_of(std::string_view text) noexcept;
 
 }  // namespace chronormal::cli

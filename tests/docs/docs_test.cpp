@@ -84,7 +84,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
   command = replaced(command, "./run ", std::string(kProgram) + " ");
-  return run_shell("{ " + command + "\n} 2>&1", folder.string());
+  return run_shell("export COLUMNS=100; { " + command + "\n} 2>&1", folder.string());
 }
 
 // What stands between two texts on a line, "" if they do not.
