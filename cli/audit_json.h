@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "cli/audit_report.h"
 #include "cli/json.h"
+#include "cli/reports/audit_report.h"
 
 namespace chronormal::cli {
 

@@ -1,6 +1,6 @@
 #include "chronormal/analysis/quality.h"
-#include "cli/inspect_report.h"
 #include "cli/json.h"
+#include "cli/reports/inspect_report.h"
 
 namespace chronormal::cli {
 namespace {

@@ -1,7 +1,7 @@
 #include "cli/json.h"
 
-#include "cli/text.h"
-#include "cli/version.h"
+#include "cli/terminal/text.h"
+#include "cli/terminal/version.h"
 
 namespace chronormal::cli {
 

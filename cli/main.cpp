@@ -3,9 +3,9 @@
 #include <exception>
 #include <new>
 
-#include "cli/command.h"
-#include "cli/print.h"
-#include "cli/process.h"
+#include "cli/options/command.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/process.h"
 
 int main(int argument_count, char** arguments) {
   using namespace chronormal::cli;
@@ -18,7 +18,7 @@ int main(int argument_count, char** arguments) {
   } catch (const std::bad_alloc&) {
     say_raw("chronormal: out of memory\n");
   } catch (const std::exception& error) {
-    say("", std::string("internal error: ").append(error.what()));
+    say("", std::string("internal error: ").append(error.what()), Tone::kError);
   }
   return kExitFailed;
 }

@@ -29,11 +29,11 @@ file(GLOB_RECURSE library_sources CONFIGURE_DEPENDS src/core/*.cpp src/simd/*.cp
 set(kernel_sources ${library_sources})
 list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
-file(GLOB cli_sources CONFIGURE_DEPENDS cli/*.cpp)
+file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.cpp)
 set_source_files_properties(src/io/gltf/glb_builder.cpp PROPERTIES COMPILE_DEFINITIONS
                                                                    CHRONORMAL_VERSION="${PROJECT_VERSION}")
 # What the parser of the command line makes of options compiles four times as fast when it is not optimised.
-set_source_files_properties(cli/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
+set_source_files_properties(cli/options/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
 
 # A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
 set(linkable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)

@@ -41,7 +41,7 @@ typedef enum chronormal_status {
   CHRONORMAL_INVALID_INPUT = 3 /* the data are wrong */
 } chronormal_status;
 
-/* "0.1.0", of the library that runs. */
+/* MAJOR.MINOR.PATCH of the library that runs, as in "0.2.0". */
 CHRONORMAL_API const char* chronormal_version(void);
 /* One sentence about the last call on this thread that failed; it stays until the next one that does. "" before that. */
 CHRONORMAL_API const char* chronormal_last_message(void);

@@ -33,7 +33,7 @@ const std::vector<Floor> kFloors = {
     {"analysis", {}},
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow", {"hosts", "shading", "sample", "inspect", "audit", "compare", "bake"}},
-    {"cli", {}},
+    {"cli", {"terminal", "options", "reports", "commands"}},
 };
 
 const fs::path kRoot = chronormal::kSourceFolder;
@@ -59,7 +59,8 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Where a file stands: its floor, and the room there; room 0 is the floor itself, above all of its rooms.
+// Where a file stands: its floor, and the room there; room 0 is the floor itself, above all of its rooms. The program
+// begins in main.cpp, which therefore stands below the rooms of its floor.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;
@@ -90,9 +91,11 @@ std::optional<Place> place_of(const std::string& path) {
   for (std::size_t f = 0; f < kFloors.size(); ++f) {
     const auto& [name, rooms] = kFloors[f];
     if (name != parts[0]) continue;
+    if (name == "cli" && parts[1] == "main.cpp") return Place{f, rooms.size() + 1};
     const std::string room = is_public                                   ? room_of_public_header(name, parts[1])
                              : parts.size() > 2 && parts[1] != "kernels" ? parts[1]
-                                                                         : "";
+                             : fs::path(path).stem().string().ends_with("json") && name == "cli" ? "reports"
+                                                                                                 : "";
     if (room.empty()) return Place{f, 0};
     const auto found = std::find(rooms.begin(), rooms.end(), room);
     if (found == rooms.end()) return std::nullopt;
@@ -167,6 +170,9 @@ TEST(Layers, a_planted_violation_is_found) {
       violations("include/chronormal/normals/normal_groups.h", "#include \"chronormal/normals/playback.h\"\n").size(),
       1u);
   EXPECT_EQ(violations("src/io/json/x.cpp", "#include \"io/gltf/glb.h\"\n").size(), 1u);
+  EXPECT_EQ(violations("cli/terminal/x.cpp", "#include \"cli/options/help.h\"\n").size(), 1u);
+  EXPECT_EQ(violations("cli/reports/x.cpp", "#include \"cli/commands/compare_blend.h\"\n").size(), 1u);
+  EXPECT_TRUE(violations("cli/main.cpp", "#include \"cli/options/command.h\"\n").empty());
   EXPECT_TRUE(violations("src/schemes/x.cpp", "#include \"schemes/arc.h\"\n#include <vector>\n").empty());
   EXPECT_TRUE(violations("src/normals/curves/x.cpp", "#include \"normals/groups/corner_sets.h\"\n").empty());
 }

@@ -33,7 +33,7 @@ class BlendCli : public testing::Test {
     folder_.write("sheet.glb", builder.glb());
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments) const {
-    return run_shell(std::string(kProgram) + " compare " + arguments, folder_.path());
+    return run_shell("COLUMNS=200 " + std::string(kProgram) + " compare " + arguments, folder_.path());
   }
   [[nodiscard]] Json json_of(const std::string& arguments) const {
     const ProcessResult result = run("--json " + arguments);

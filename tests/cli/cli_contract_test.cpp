@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 
@@ -169,6 +172,172 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
     expect_error(run(command), 2, {"chronormal " + command + ": ", command + " --help"});
     expect_error(run(command + " x.obj -o y --no-such-option"), 2, {"--no-such-option", command + " --help"});
   }
+}
+
+// An input that takes an option, for each option that a command lists. What every command needs besides is added.
+const std::map<std::string, std::string> kUses = {
+    {"--access", "a.obj b.obj --access sequential"},
+    {"--active", "--base a.obj b.obj --blend 2 --active 1"},
+    {"--allow-external", "face.glb --allow-external"},
+    {"--animation", "face.glb --animation 0"},
+    {"--base", "--base a.obj b.obj"},
+    {"--blend", "--base a.obj b.obj --blend 2"},
+    {"--crease", "a.obj b.obj --elements corners --crease 30"},
+    {"bake --crease", "a.obj b.obj --crease 30"},
+    {"--csv", "a.obj b.obj --csv"},
+    {"--dense-zeros", "face.glb --dense-zeros"},
+    {"--drivers", "face.glb --drivers drivers.json"},
+    {"--each", "--each --base a.obj b.obj"},
+    {"--elements", "a.obj b.obj --elements vertices"},
+    {"--encode", "face.glb --encode exact"},
+    {"--for", "face.glb --for three"},
+    {"--force", "a.obj b.obj --force"},
+    {"--format", "a.obj b.obj --format npy"},
+    {"--fps", "a.obj b.obj --fps 24"},
+    {"--hard-edges", "a.obj b.obj --elements corners --hard-edges groups"},
+    {"--help", "--help"},
+    {"--host", "face.glb --host three"},
+    {"--json", "a.obj b.obj --json"},
+    {"--length", "a.obj b.obj --length area"},
+    {"--max-bytes", "face.glb --max-bytes 100000"},
+    {"--max-expansion", "a.obj b.obj --max-expansion 5"},
+    {"--no-audit", "face.glb --no-audit"},
+    {"--no-times", "a.obj b.obj --no-times"},
+    {"--no-weld", "a.obj b.obj --no-weld"},
+    {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
+    {"--output", "a.obj b.obj"},
+    {"--quiet", "a.obj b.obj --quiet"},
+    {"--recompute-base", "face.glb --recompute-base"},
+    {"--rule", "a.obj b.obj --rule slerp"},
+    {"--sample", "--sample twist"},
+    {"--samples", "a.obj b.obj --samples 3"},
+    {"--schemes", "a.obj b.obj --schemes linear"},
+    {"--seed", "--base a.obj b.obj --blend 2 --seed 7"},
+    {"--smooth", "face.glb --smooth"},
+    {"--times", "a.obj b.obj --times 0.5"},
+    {"--tolerance", "a.obj b.obj --tolerance 1"},
+    {"--weighting", "a.obj b.obj --weighting angle"},
+    {"--weights", "--base a.obj b.obj --weights 0.5"},
+    {"--world", "face.glb --world"},
+};
+
+// What a command needs besides its input.
+std::string needs_of(const std::string& command, const std::string& use) {
+  if (use == "--help") return "";
+  if (command == "bake") return " -o out.glb";
+  if (command == "convert") return " -o out.npz";
+  if (command != "sample") return " -o out.txt";
+  const bool has_moments = use.find("--times") != std::string::npos || use.find("--weights") != std::string::npos;
+  const bool has_weights = use.find("--base") != std::string::npos ||
+                           (use.find("face.glb") != std::string::npos && use.find("--animation") == std::string::npos);
+  return std::string(" -o out.npy") + (has_moments ? "" : has_weights ? " --weights 0=1" : " --times 0");
+}
+
+TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
+  const std::string frame = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 ";
+  write("a.obj", frame + "0\ns 1\nf 1 2 3\nf 2 4 3\n");
+  write("b.obj", frame + "1\ns 1\nf 1 2 3\nf 2 4 3\n");
+  test::GltfBuilder face = test::quad_document();
+  face.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  write("face.glb", face.glb());
+  std::set<std::string> all;
+  for (const std::string& command : command_names())
+    for (const std::string& name : option_names(command)) all.insert(name);
+  for (const std::string& command : command_names()) {
+    const std::vector<std::string> own = option_names(command);
+    for (const std::string& name : all) {
+      SCOPED_TRACE(command + " " + name);
+      if (std::find(own.begin(), own.end(), name) == own.end()) {
+        expect_error(run(command + " a.obj b.obj -o out " + name), 2, {"there is no option '" + name + "' here"});
+        continue;
+      }
+      const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
+      const auto use = special != kUses.end() ? special : usual;
+      ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
+      const ProcessResult result = run(command + " " + use->second + needs_of(command, use->second));
+      EXPECT_TRUE(result.exit_code == 0 || (name == "--tolerance" && result.exit_code == 4)) << result.err;
+      for (const char* const file : {"out.txt", "out.glb", "out.npz", "out.npy", "drivers.json"})
+        fs::remove(folder_ / file);
+    }
+  }
+}
+
+TEST_F(Cli, options_of_other_commands_are_refused_with_the_place_to_go) {
+  expect_error(run("audit a.glb --each"), 2, {"there is no option '--each' here; it belongs to compare\n"});
+  expect_error(run("bake a.glb --world -o b.glb"), 2, {"'--world' here: bake writes the normals of each mesh in"});
+  expect_error(run("bake --base a.obj b.obj"), 2, {"'--base' here: bake takes keyframes or a glTF file"});
+}
+
+TEST_F(Cli, colours_are_for_terminals) {
+  write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+  write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+  const std::string audit = std::string(kProgram) + " audit a.obj b.obj --tolerance 1";
+  const auto with = [&](const std::string& environment, const std::string& command) {
+    return run_shell(environment + " " + command, folder_.string());
+  };
+  const ProcessResult piped = with("", audit), forced = with("CLICOLOR_FORCE=1", audit);
+  EXPECT_EQ((piped.out + piped.err).find('\033'), std::string::npos);
+  EXPECT_NE(forced.out.find("\033[1mFaults:\033[0m\n"), std::string::npos) << forced.out;
+  EXPECT_NE(forced.out.find("worst \033[1;31m90.00\033[0m degrees"), std::string::npos) << forced.out;
+  EXPECT_TRUE(forced.err.starts_with("\033[1;31mchronormal audit:\033[0m the worst")) << forced.err;
+  EXPECT_EQ(with("CLICOLOR_FORCE=1 NO_COLOR=1", audit).out, piped.out);
+  EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);
+  EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " -o table.txt").out, "");
+  EXPECT_EQ(read("table.txt"), piped.out);
+  // Emphasis takes no room in a table, and names cannot bring their own.
+  std::string plain;
+  bool is_mark = false;
+  for (const char c : forced.out) {
+    is_mark = is_mark || c == '\033';
+    if (!is_mark) plain += c;
+    is_mark = is_mark && c != 'm';
+  }
+  EXPECT_EQ(plain, piped.out);
+  EXPECT_NE(with("CLICOLOR_FORCE=1", std::string(kProgram) + " help audit").out.find("\033[1mOptions:\033[0m\n"),
+            std::string::npos);
+}
+
+TEST_F(Cli, colours_show_on_a_terminal_that_has_them) {
+  if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";
+  write_two_frames();
+  const auto shown = [&](const std::string& environment) {
+    const std::string command = std::string(kProgram) + " inspect a.obj b.obj";
+    return run_shell(environment + " script -qec '" + command + "' /dev/null", folder_.string()).out;
+  };
+  EXPECT_NE(shown("TERM=xterm").find("\033[1ma.obj ... b.obj\033[0m"), std::string::npos);
+  EXPECT_EQ(shown("TERM=dumb").find("\033[1m"), std::string::npos);
+  EXPECT_EQ(shown("TERM=xterm NO_COLOR=1").find("\033[1m"), std::string::npos);
+}
+
+TEST_F(Cli, tables_fit_the_width_of_the_output_and_lose_nothing) {
+  write_two_frames();
+  const auto lines_at = [&](const std::string& columns) {
+    return lines_of(run_shell("COLUMNS=" + columns + " " + kProgram + " compare a.obj b.obj", folder_.string()).out);
+  };
+  for (const std::string columns : {"60", "100"})
+    for (const std::string& line : lines_at(columns)) EXPECT_LE(line.size(), std::stoul(columns)) << line;
+  for (const std::string& line : lines_of(run("compare a.obj b.obj").out)) EXPECT_LE(line.size(), 80U) << line;
+  const auto count = [](const std::vector<std::string>& lines, const std::string& word) {
+    return std::count_if(lines.begin(), lines.end(), [&](const auto& line) { return line.find(word) != line.npos; });
+  };
+  const auto wide = lines_at("200"), narrow = lines_at("60");
+  EXPECT_EQ(count(wide, "circle:timed "), 1);
+  EXPECT_EQ(count(narrow, "circle:timed "), 3) << "each part says again what a row is about";
+  for (const char* const title : {"vs linear", "rms", "worst at", "evaluate"}) EXPECT_EQ(count(narrow, title), 1);
+  EXPECT_EQ(count(narrow, "worst at"), count(narrow, "   t"))
+      << "what has no title of its own stays beside the one before";
+}
+
+TEST_F(Cli, a_name_that_is_too_long_stands_above_its_row) {
+  const std::string name(70, 'n');
+  write(name + ".glb", test::quad_document().glb());
+  write("b.glb", test::quad_document().glb());
+  const ProcessResult narrow = run("audit " + name + ".glb b.glb"),
+                      wide = run_shell("COLUMNS=200 " + std::string(kProgram) + " audit " + name + ".glb b.glb",
+                                       folder_.string());
+  EXPECT_NE(narrow.out.find("\n" + name + ".glb\n  "), std::string::npos) << narrow.out;
+  EXPECT_NE(wide.out.find("\n" + name + ".glb  "), std::string::npos) << wide.out;
+  EXPECT_NE(narrow.out.find("\nb.glb  "), std::string::npos) << narrow.out;
 }
 
 TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {

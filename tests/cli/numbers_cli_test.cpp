@@ -90,11 +90,11 @@ TEST(Numbers, the_measure_finds_words_that_are_no_numbers) {
     EXPECT_FALSE(has_no_number(text)) << text;
 }
 
-// fmt::format would print "nan": in the program only cli/format.h calls it.
+// fmt::format would print "nan": in the program only cli/terminal/format.h calls it.
 TEST(Numbers, are_formatted_in_one_place) {
   std::size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(kSourceFolder) / "cli")) {
-    if (entry.path().filename() == "format.h") continue;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(kSourceFolder) / "cli")) {
+    if (!entry.is_regular_file() || entry.path().filename() == "format.h") continue;
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
     for (const char* const call : {"fmt::format", "fmt::vformat", "std::to_string", "printf"})

@@ -184,6 +184,68 @@ TEST_F(SampleCli, weights_are_for_blend_shapes) {
   expect_error("a.obj --weights 1 -o n.npy", 2, "no targets");
 }
 
+TEST_F(SampleCli, weights_are_given_by_the_names_of_targets) {
+  const auto named = [this](const std::string& weights) { return array_of("named.glb --weights " + weights).elements; };
+  test::GltfBuilder builder = test::quad_document();
+  builder.json["meshes"][0]["extras"]["targetNames"] = {"jawOpen", "mouth, \"left\" = up "};
+  folder_.write("named.glb", builder.glb());
+  EXPECT_EQ(named("jawOpen=0.5"), named("0.5,0"));
+  EXPECT_EQ(named("1=0.25,jawOpen=-2"), named("-2,0.25"));
+  EXPECT_EQ(named("' jawOpen = 2 , \"mouth, \"\"left\"\" = up \"=1'"), named("2,1"));
+  EXPECT_EQ(array_of("--base a.obj b.obj --weights b=0.5").elements,
+            array_of("--base a.obj b.obj --weights 0.5").elements);
+  const auto refused = [this](const std::string& weights, const std::string& why) {
+    expect_error("named.glb -o n.npy --weights " + weights, 2, "--weights: " + why);
+  };
+  refused("jawopen=1", "there is no target 'jawopen'; did you mean jawOpen? The targets are 0 (jawOpen), 1 (mouth");
+  refused("2=1", "there is no target '2'; the targets are 0 (jawOpen)");
+  refused("jawOpen=1,0=2", "target 0 (jawOpen) is given two weights");
+  refused("jawOpen=1,2", "'jawOpen=1,2' mixes numbers alone with NAME=WEIGHT");
+  refused("jawOpen", "'jawOpen' is not a number, and not NAME=WEIGHT either");
+  refused("jawOpen=", "'' is not a number");
+  refused("'\"jawOpen=1'", "the quotes in '\"jawOpen=1' do not end");
+  refused("'\"jawOpen\",1'", "there is no =WEIGHT behind 'jawOpen'");
+  refused("jawOpen=1,", "'' is not a number");
+  expect_error("a.obj b.obj -o n.npy --weights b=1", 2, "only blend shapes have weights");
+}
+
+TEST_F(SampleCli, a_name_that_several_targets_have_is_refused_with_their_numbers) {
+  test::GltfBuilder builder = test::quad_document();
+  builder.json["meshes"][0]["extras"]["targetNames"] = {"smile", "smile"};
+  folder_.write("twice.glb", builder.glb());
+  expect_error("twice.glb -o n.npy --weights smile=1", 2,
+               "targets 0 and 1 all have the name 'smile': say which by its number");
+  EXPECT_EQ(array_of("twice.glb --weights 1=1").elements, array_of("twice.glb --weights 0,1").elements);
+  // A number that is the name of another target is that name.
+  builder.json["meshes"][0]["extras"]["targetNames"] = {"1", "smile"};
+  folder_.write("number.glb", builder.glb());
+  EXPECT_EQ(array_of("number.glb --weights 1=1").elements, array_of("number.glb --weights 1,0").elements);
+}
+
+TEST_F(SampleCli, keys_are_the_times_of_the_keyframes) {
+  const auto times_of = [this](const std::string& arguments) {
+    const ProcessResult result = run(arguments + " --times keys --force -o t.npz");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return test::parse_npz(test::read_whole(folder_ / "t.npz")).at("times").as<double>();
+  };
+  EXPECT_EQ(times_of("a.obj b.obj a.obj --fps 2"), (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(times_of("a.obj"), (std::vector<double>{0}));
+  ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj b.obj --fps 4 -o c.mdd", folder_.path()).exit_code,
+            0);
+  EXPECT_EQ(times_of("a.obj c.mdd"), (std::vector<double>{0, 0.25, 0.5}));
+  // A cubic spline is cut into many pieces, whose ends are no keys; where weights jump, there is one.
+  test::GltfBuilder builder = test::quad_document();
+  const std::vector<float> times = {0.5F, 1, 3};
+  builder.add_track(0, 0, times, std::vector<float>{0, 0, 0, 0, 9, 9, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 9, 9},
+                    "CUBICSPLINE");
+  builder.add_track(1, 0, times, std::vector<float>{0, 0, 1, 0, 0, 1}, "STEP");
+  folder_.write("moving.glb", builder.glb());
+  EXPECT_EQ(times_of("moving.glb --animation 0"), (std::vector<double>{0.5, 1, 3}));
+  EXPECT_EQ(times_of("moving.glb --animation 1"), (std::vector<double>{0.5, 1, 3}));
+  expect_error("moving.glb --times keys -o n.npy", 2, "blend shapes have no times");
+  expect_error("a.obj b.obj --times keys,0.5 -o n.npy", 2, "'keys' is not a number");
+}
+
 TEST_F(SampleCli, a_single_mesh_is_one_pose) {
   EXPECT_EQ(array_of("a.obj").shape, (std::vector<std::size_t>{1, 8, 3}));
   EXPECT_EQ(array_of("a.obj --times 0").elements, array_of("a.obj").elements);

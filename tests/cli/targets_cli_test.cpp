@@ -66,6 +66,13 @@ TEST_F(TargetsCli, star_errs_as_its_segments_do_one_by_one) {
   EXPECT_EQ(json_of("--base base.obj smile.obj")["schemes"][0]["sum_degrees"], sequence);
 }
 
+TEST_F(TargetsCli, tables_say_the_number_and_the_name_of_a_target) {
+  const ProcessResult compared = run("compare --base base.obj targets smile.obj --schemes linear --no-times");
+  EXPECT_NE(compared.out.find("2 (smile)"), std::string::npos) << compared.out;
+  const ProcessResult blended = run("compare --base base.obj targets smile.obj --blend 3 --active 1");
+  EXPECT_NE(blended.out.find("2 (smile) "), std::string::npos) << blended.out;
+}
+
 TEST_F(TargetsCli, each_makes_every_input_a_star_of_its_own) {
   const ProcessResult result =
       run("compare --each --base base.obj targets/ smile.obj --schemes linear --no-times --csv");

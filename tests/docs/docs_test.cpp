@@ -81,10 +81,11 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 // Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
+// The lines of tables may be as long as a page shows them.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
   command = replaced(command, "./run ", std::string(kProgram) + " ");
-  return run_shell("{ " + command + "\n} 2>&1", folder.string());
+  return run_shell("export COLUMNS=128; { " + command + "\n} 2>&1", folder.string());
 }
 
 // What stands between two texts on a line, "" if they do not.

@@ -1,4 +1,4 @@
-# cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -P: configures, builds and runs a foreign project
+# cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a foreign project
 # (CMakeLists.txt beside this) that uses chronormal in one of these ways. For a package the build is installed first, into
 # a folder of its own.
 set(folder ${BUILD}/consume_${FROM})
@@ -13,7 +13,7 @@ function(run)
 endfunction()
 file(MAKE_DIRECTORY ${folder})
 
-set(options -DFROM=${FROM} -DSOURCE=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER})
+set(options -DFROM=${FROM} -DSOURCE=${SOURCE} -DVERSION=${VERSION} -DCMAKE_CXX_COMPILER=${COMPILER})
 set(programs core)
 if(FROM STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)

@@ -108,6 +108,10 @@ class Input {
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
+  /// The times of the keyframes, each once and ascending; of an animation of a document those of the keys of its weights,
+  /// without the cuts of cubic splines. Errors: those of motion().
+  [[nodiscard]] Result<std::vector<double>> key_times();
+
   /// The normals that the input stores, as far as the options keep them; of a document those of its base, in the space
   /// of the meshes. Errors: those of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();

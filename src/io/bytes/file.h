@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
 /// The bytes of a file, as long as the object lives. Regular files are mapped: where another program shortens one
-/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/process.h). Pipes and
+/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/terminal/process.h). Pipes and
 /// terminals are read to their end.
 class FileBytes {
  public:

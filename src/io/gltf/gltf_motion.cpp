@@ -218,7 +218,9 @@ class AnimationReader {
       if (Status status = add_piece(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
     }
     assembly_.motion().connect(MotionKind::kAnimation);
-    return assembly_.finish();
+    Result<GltfMotion> result = assembly_.finish();
+    if (result) result.value().key_times = std::move(keys_);
+    return result;
   }
 
  private:

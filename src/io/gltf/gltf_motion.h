@@ -43,6 +43,8 @@ struct GltfMotion {
   std::vector<GltfPart> parts;
   /// A bound of the distance between cut cubic splines and the true ones, in units of the file; 0 without any.
   double curve_error = 0;
+  /// Of an animation, the times of its keys, ascending: the cuts of cubic splines are none.
+  std::vector<double> key_times = {};
 };
 
 /// Whether a target moves the positions of a primitive with faces.

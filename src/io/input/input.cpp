@@ -3,6 +3,7 @@
 // is, its extension says, or else its content, which is there by then: no file is opened twice.
 #include "chronormal/io/input.h"
 
+#include <algorithm>
 #include <cassert>
 #include <filesystem>
 #include <optional>
@@ -239,6 +240,7 @@ struct Input::State {
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;
+  std::vector<double> key_times;
 
   [[nodiscard]] Status read_motion();
 };
@@ -252,6 +254,7 @@ Status Input::State::read_motion() {
   opened.read.motion = std::move(read.value().motion);
   parts = std::move(read.value().parts);
   curve_error = read.value().curve_error;
+  key_times = std::move(read.value().key_times);
   has_motion = true;
   return Success{};
 }
@@ -288,6 +291,17 @@ Result<const Motion::Keyframe*> Input::keyframe(std::size_t k) {
   if (!read) return read.error();
   assert(k < read.value()->keyframes.size());
   return &read.value()->keyframes[k];
+}
+
+Result<std::vector<double>> Input::key_times() {
+  const Result<const Motion*> read = motion();
+  if (!read) return read.error();
+  if (!state_->key_times.empty()) return state_->key_times;
+  std::vector<double> times;
+  for (const Motion::Keyframe& keyframe : read.value()->keyframes) times.push_back(keyframe.time);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
 }
 
 Result<const StoredNormals*> Input::normals() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chronormal/io/output.h"
+#include "chronormal/io/target_names.h"
 #include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/gltf_builder.h"
@@ -333,6 +334,25 @@ TEST_F(OpenInput, motions_say_what_they_are_and_npz_keeps_it) {
   ASSERT_EQ(same.segments.size(), 2U);
   EXPECT_EQ(same.segments[1].from, 2U);
   EXPECT_FALSE(write_motion(jumps, folder_ / "jumps.mdd", false).ok());
+}
+
+TEST_F(OpenInput, targets_have_every_name_that_a_mesh_gives_them) {
+  test::GltfBuilder builder = test::quad_document();
+  builder.json["meshes"].push_back(builder.json["meshes"][0]);
+  builder.json["meshes"][0]["extras"]["targetNames"] = {"smile", "blink"};
+  builder.json["meshes"][1]["extras"]["targetNames"] = {"smile", "smile"};
+  folder_.write("two.glb", builder.glb());
+  Result<Input> input = open_input(test::files({folder_ / "two.glb"}));
+  ASSERT_TRUE(input.ok()) << input.error().text();
+  const TargetNames names = target_names(input.value()).value();
+  EXPECT_EQ(names, (TargetNames{{"smile"}, {"blink", "smile"}}));
+  EXPECT_EQ(find_target(names, "blink").value(), 1U);
+  EXPECT_EQ(find_target(names, "0").value(), 0U);
+  EXPECT_EQ(find_target(names, "smile").error().message,
+            "targets 0 and 1 all have the name 'smile': say which by its number");
+  EXPECT_EQ(target_label(names, 1), "1 (blink)");
+  Result<Input> sequence = open_input(test::files({folder_ / "walk.npz"}));
+  EXPECT_TRUE(target_names(sequence.value()).value().empty());
 }
 
 TEST_F(OpenInput, keyframes_are_handed_out_by_number) {

@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/hosts.h"
+#include "cli/audit_json.h"
+#include "cli/options/command.h"
+#include "cli/reports/audit_files.h"
+#include "cli/reports/audit_report.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr int kExitBeyond = 4;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string rule;       // empty: what is usual for the input
+  std::string weighting;  // empty: what the stored base normals follow
+  std::string hosts;
+  std::optional<std::size_t> samples;
+  std::optional<double> tolerance;
+  bool no_weld = false;
+  bool json = false;
+};
+
+// A word as a shell reads it back.
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:@%+=";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return printable(quoted + "'");
+}
+
+std::string words_of(const InputOptions& input) {
+  std::string words;
+  constexpr std::size_t kMost = 4;
+  for (std::size_t i = 0; i < input.files.size(); ++i) {
+    if (i == kMost) return words + " ...";
+    if (i > 0) words += ' ';
+    words += shell_word(input.files[i]);
+  }
+  for (const std::string& sample : input.samples) words += "--sample " + sample;
+  return words;
+}
+
+Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  const Result<const StoredNormals*> normals = input.normals();
+  if (!normals) return normals.error();
+  return audit(*motion.value(), *normals.value(), how);
+}
+
+Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
+  InputOptions wanted = options.input;
+  wanted.shading = KeepShading::kAll;
+  Result<Input> opened = open_input(std::move(wanted), progress);
+  if (!opened) return opened.error();
+  Input& input = opened.value();
+  const GltfDocument* const document = input.document();
+  if (document == nullptr && !how.hosts.empty())
+    return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+  Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
+  if (!found) return found.error();
+  const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
+  return Audited{std::move(input), std::move(found).value(), options.tolerance,
+                 can_be_baked ? words_of(options.input) : ""};
+}
+
+Result<AuditOptions> understand(const Options& options, Progress& progress) {
+  AuditOptions how;
+  if (!options.rule.empty()) {
+    const Result<AuditRule> rule = make_audit_rule(options.rule);
+    if (!rule) return misuse("--rule", rule.error().message);
+    how.rule = rule.value();
+  }
+  if (!options.weighting.empty()) {
+    const Result<Weighting> weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    how.weighting = weighting.value();
+  }
+  if (!options.hosts.empty()) {
+    const Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+    if (!hosts) return misuse("--host", hosts.error().message);
+    how.hosts = hosts.value();
+    if (how.rule && *how.rule != AuditRule::kGltf)
+      return misuse("--host", "hosts go with the rule gltf, which they stand for");
+  }
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
+  if (const Status status = check_input(options.input); !status) return status.error();
+  how.samples = options.samples;
+  how.animation = options.input.animation;
+  how.weld = !options.no_weld;
+  how.progress = progress.callback("auditing");
+  return how;
+}
+
+// Why a host does not pass.
+std::string why_beyond(const Audited& audited, const HostAudit& found) {
+  if (found.beyond > 0)
+    return formatted("{}: a mesh has {} more than it takes: {}", found.host.title,
+                     counted(found.beyond, "target", "targets"), found.host.beyond);
+  if (found.error.unlit > 0)
+    return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
+                     counted(found.error.unlit, "pair", "pairs"));
+  return formatted("{}: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", found.host.title,
+                   found.error.worst, *audited.tolerance, worst_label(audited, found));
+}
+
+std::string why_beyond(const Audited& audited) {
+  const MotionError& error = audited.audit.error;
+  if (error.unlit > 0)
+    return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
+                     unlit_label(audited));
+  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
+                   *audited.tolerance, worst_label(audited));
+}
+
+// Says why an input does not pass, where it does not; place is its name, where there are several. Returns whether it
+// passes.
+bool say_what_is_beyond(const Audited& audited, const std::string& place) {
+  if (audited.passed()) return true;
+  const std::vector<HostAudit>& hosts = audited.audit.hosts;
+  if (hosts.empty()) say("audit", place + why_beyond(audited), Tone::kError);
+  for (const HostAudit& found : hosts)
+    if (!audited.passed(found)) say("audit", place + why_beyond(audited, found), Tone::kError);
+  return false;
+}
+
+Result<int> run_one(const Options& options, const AuditOptions& how, Progress& progress) {
+  Result<Audited> audited = audit_input(options, how, progress);
+  progress.clear();
+  if (!audited) return audited.error();
+  const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return say_what_is_beyond(audited.value(), "") ? kExitDone : kExitBeyond;
+}
+
+// Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
+// tolerance.
+int worse_exit(int a, int b) {
+  constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
+                                              static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};
+  return *std::find_if(kWorstFirst.begin(), kWorstFirst.end(), [&](int code) { return code == a || code == b; });
+}
+
+// Judges files one by one. One that cannot be read does not keep the others from being judged.
+Result<int> run_several(const Options& options, const AuditOptions& how, const std::vector<std::string>& names,
+                        Progress& progress) {
+  if (!options.input.animation.empty())
+    return misuse("--animation", "it chooses among the animations of one file: name one file");
+  std::vector<AuditedFile> files;
+  int exit = kExitDone;
+  for (const std::string& name : names) {
+    Options one = options;
+    one.input.files = {name};
+    const Result<Audited> audited = audit_input(one, how, progress);
+    progress.clear();
+    if (audited) {
+      files.emplace_back(audited.value());
+      exit = worse_exit(exit, say_what_is_beyond(audited.value(), name + ": ") ? kExitDone : kExitBeyond);
+      continue;
+    }
+    if (audited.error().code == ErrorCode::kUsage) return audited.error();
+    files.emplace_back(name, audited.error());
+    say("audit", audited.error().text(), Tone::kError);
+    exit = worse_exit(exit, static_cast<int>(audited.error().code));
+  }
+  const std::string text =
+      options.json ? audit_files_json(std::move(files), options.tolerance) : audit_files_text(files);
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return exit;
+}
+
+Result<int> run(const Options& options) {
+  Progress progress(options.common.quiet);
+  const Result<AuditOptions> how = understand(options, progress);
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (!options.input.base.empty() || !options.input.samples.empty()) return run_one(options, how.value(), progress);
+  const Result<std::vector<std::string>> files = find_gltf_files(options.input.files);
+  if (!files) return files.error();
+  const bool is_one = files.value().empty() || files.value() == options.input.files;
+  return is_one && files.value().size() < 2 ? run_one(options, how.value(), progress)
+                                            : run_several(options, how.value(), files.value(), progress);
+}
+
+}  // namespace
+
+Command audit_command() {
+  auto options = std::make_shared<Options>();
+  const std::vector<RefusedOption> refused = {
+      {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
+  return {
+      "audit",
+      "How wrong are the normals that a file makes hosts show",
+      {input_table(options->input, refused),
+       {{"--rule NAME", &options->rule,
+         "what a host makes of stored normals between keyframes: gltf (default for\n"
+         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
+        {"--weighting NAME", &options->weighting,
+         "of the right normals: area, angle, uniform, area-angle, max (default: the one\n"
+         "that the base normals of the file follow, else area)"},
+        {"--host NAME,...", &options->hosts,
+         "judge what these show of a glTF file: three, babylon, playcanvas, godot,\n"
+         "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
+        {"--samples N",
+         &options->samples,
+         "per segment, ends included (default 21; 5 in animations of more than\n"
+         "32 key intervals)",
+         {.check = check_whole(2, kMostAuditSamples)}},
+        {"--tolerance DEG", &options->tolerance,
+         "exit with 4 if the worst error is beyond this; with --host, in any of them"},
+        {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
+        {"--json", &options->json, "one JSON object"}},
+       options->common.table(false)},
+      "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
+      "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
+      "Several glTF files, or a folder of them, are judged one by one: a row each, and the worst exit code.\n"
+      "\nExamples:\n"
+      "  chronormal audit face.glb\n"
+      "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
+      "  chronormal audit models/ intro.glb --tolerance 1\n"
+      "  chronormal audit face.glb --host three,godot,gltfpack\n"
+      "  chronormal audit walk/ --rule slerp --json\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
+      [options] { return run(*options); },
+      refused};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/audit.h"
+#include "cli/options/command.h"
+#include "cli/reports/bake_report.h"
+#include "cli/terminal/print.h"
+
+namespace chronormal::cli {
+namespace {
+
+// An audit looks at every target: files beyond this would wait for a line of the report.
+constexpr std::size_t kMostAudited = std::size_t{64} << 20;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string encode;     // empty: by what drives the weights
+  std::string weighting;  // empty: what the stored base normals follow
+  double crease_angle = 180;
+  bool recompute_base = false, smooth = false, dense_zeros = false;
+  std::optional<std::size_t> most_bytes;
+  std::string hosts = "all";
+  std::optional<double> tolerance;
+  std::optional<std::string> drivers;  // where to write them beside the result
+  bool json = false, no_audit = false;
+};
+
+std::string host_names() {
+  std::string names;
+  for (const Host& host : kHosts) names.append(names.empty() ? "" : ", ").append(host.name);
+  return names;
+}
+
+Result<BakeOptions> understand(const Options& options) {
+  BakeOptions how;
+  if (!options.encode.empty()) {
+    how.encoding = find_bake_encoding(options.encode);
+    if (!how.encoding) return misuse("--encode", "it must be harmless, exact or endpoint");
+  }
+  Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+  if (!hosts) return misuse("--for", hosts.error().message);
+  how.hosts = std::move(hosts).value();
+  if (!options.weighting.empty()) {
+    const Result<Weighting> weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    how.weighting = weighting.value();
+  }
+  if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
+    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
+  if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
+    return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
+  how.crease_angle = options.crease_angle;
+  how.recompute_base = options.recompute_base;
+  how.smooth = options.smooth;
+  how.dense_zeros = options.dense_zeros;
+  how.most_bytes = options.most_bytes;
+  how.tolerance = options.tolerance;
+  if (options.json && is_stream(options.common.output))
+    return misuse("--json", "it goes to the standard output: write the result to a file");
+  if (options.drivers) {
+    if (options.drivers->empty() || *options.drivers == "-") return misuse("--drivers", "it must name a file");
+    if (*options.drivers == options.common.output) return misuse("--drivers", "it must be another file than OUT");
+  }
+  if (const Status status = check_input(options.input); !status) return status.error();
+  return how;
+}
+
+// Where the report goes: beside the result, or out of its way.
+Result<int> report(const Options& options, const std::string& text, const std::string& json) {
+  const bool is_aside = is_stream(options.common.output) && !options.json;
+  if (is_aside && !options.common.quiet) say_text(text);
+  if (is_aside) return kExitDone;
+  const Status printed = print(options.json ? json : text);
+  if (!printed) return printed.error();
+  return kExitDone;
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) say("bake", warning, Tone::kWarning);
+}
+
+void warn_if_worse(const BakeReport& report) {
+  if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit)});
+}
+
+// Audits the input, by audit_before, and the file that was written. The result is empty where neither has anything that an
+// audit can judge. Errors: kFailed where the written file cannot be read.
+template <class AuditBefore>
+Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const Options& options,
+                                                 const AuditBefore& audit_before) {
+  std::optional<BeforeAndAfter> result;
+  if (options.no_audit || is_stream(options.common.output)) return result;
+  AuditOptions audited;
+  audited.weighting = how.weighting;
+  const GltfOptions gltf{.allow_external = options.input.allow_external, .max_expansion = options.input.max_expansion};
+  const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
+  if (!after) return after.error();
+  Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
+  for (const Result<Audit>* audit : {&first, &second})
+    if (!*audit && audit->error().code == ErrorCode::kFailed) return audit->error();
+  if (first && second && !first.value().subjects.empty())
+    result = BeforeAndAfter{std::move(first).value(), std::move(second).value()};
+  return result;
+}
+
+Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
+  const std::string& output = options.common.output;
+  const GltfDocument& document = *input.document();
+  if (options.input.frames_per_second != 1)
+    return misuse("--fps", "the animations of a glTF file have times of their own");
+  if (options.crease_angle != 180 && !options.smooth)
+    return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
+  how.progress = progress.callback("baking");
+  GltfEdit edit(document);
+  const Result<GltfBake> baked = bake(document, how, edit);
+  progress.clear();
+  if (!baked) return baked.error();
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
+#endif
+  BakeReport told{input.name(), output, options.drivers, std::nullopt};
+  std::vector<std::string> warnings = baked.value().warnings;
+  for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
+  // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.
+  if (options.drivers) {
+    if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
+      return written.error();
+  }
+  if (const Status written = edit.write(output, options.common.force); !written) return written.error();
+  warn(warnings);
+  if (baked.value().changed && input.file_size() <= kMostAudited) {
+    auto audited = audit_both(how, options, [&](const AuditOptions& asked) { return audit(document, asked); });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
+  }
+  warn_if_worse(told);
+  return report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
+}
+
+Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
+  const std::string& output = options.common.output;
+  if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
+  const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
+                                   [](const Host& host) { return host.normals == NormalRule::kSum; });
+  if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
+  if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
+  if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
+    return misuse(output, "a sequence is written as .glb");
+  const Motion& motion = *input.motion().value();
+  if (motion.kind == MotionKind::kTargets)
+    return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+  if (motion.segments.size() + 1 != motion.keyframes.size())
+    return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
+  // Hard edges are those that the file shows, where nothing else is asked for.
+  const StoredNormals& stored = *input.normals().value();
+  if (!stored.of_keyframes.empty()) {
+    const std::vector<float>& first = stored.of_keyframes.front();
+    how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+  }
+  how.progress = progress.callback("baking");
+  how.expansion = input.expansion();
+  std::string glb;
+  const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
+  progress.clear();
+  if (!baked) return baked.error();
+  if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
+  warn(baked.value().warnings);
+  BakeReport told{input.name(), output, std::nullopt, std::nullopt};
+  // An audit judges the triangles of a file, whatever polygons they come from.
+  if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
+    auto audited = audit_both(how, options, [&](AuditOptions asked) {
+      asked.rule = AuditRule::kNlerp;
+      return audit(motion, stored, asked);
+    });
+    if (!audited) return audited.error();
+    told.audit = std::move(audited).value();
+  }
+  warn_if_worse(told);
+  const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
+  return report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
+}
+
+Result<int> run(const Options& options) {
+  Progress progress(options.common.quiet);
+  const Result<BakeOptions> how = understand(options);
+  if (!how) return how.error();
+  // This is said before anything is read; for other names it depends on what the input turns out to be.
+  if (!is_stream(options.common.output) && is_motion_file(options.common.output))
+    return misuse(options.common.output, "bake writes glTF: the name must end in .glb, or .gltf for a glTF file");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (options.drivers) {
+    if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
+  }
+  InputOptions wanted = options.input;
+  if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
+  Result<Input> input = open_input(std::move(wanted), progress);
+  if (!input) return input.error();
+  return input.value().document() != nullptr ? run_gltf(options, how.value(), input.value(), progress)
+                                             : run_sequence(options, how.value(), input.value(), progress);
+}
+
+}  // namespace
+
+Command bake_command() {
+  auto options = std::make_shared<Options>();
+  const std::vector<RefusedOption> refused = {
+      {"--base", "bake takes keyframes or a glTF file; put the base and its targets into one glTF file, and bake that"},
+      {"--animation", "bake writes normals for all animations of a glTF file"},
+      {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
+  return {"bake",
+          "Write right normals into a glTF file, or make one of a sequence",
+          {input_table(options->input, refused),
+           {{"--for HOST,...", &options->hosts,
+             "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
+                 ", or all (default)"},
+            {"--encode HOW", &options->encode,
+             "harmless (default): what all of these show alike, with extra targets where\n"
+             "they are worth it; exact: extra targets for all quadratic terms, right\n"
+             "where a host adds up targets as stored; endpoint: the best single delta per target,\n"
+             "by least squares where several are active at once"},
+            {"--weighting NAME", &options->weighting,
+             "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
+             "base normals of each mesh, else area)"},
+            {"--crease DEG", &options->crease_angle,
+             "of sequences, and with --smooth: edges between faces that differ by\n"
+             "more than this are hard (default 180: none)"},
+            {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
+            {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
+            {"--max-bytes N",
+             &options->most_bytes,
+             "fail where more bytes of arrays would be added",
+             {.check = check_whole(0)}},
+            {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
+            {"--tolerance DEG", &options->tolerance,
+             "leave out extra targets that turn no normal by more than this, and cut tracks so\n"
+             "finely (default 0.5; with --encode exact 0.001)"},
+            {"--drivers FILE", &options->drivers,
+             "write what drives extra targets, which stands in the result, to a JSON file too"},
+            {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
+            {"--json", &options->json, "one JSON object"}},
+           options->common.table(true)},
+          "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
+          "targets. OUT may be INPUT, with --force.\n"
+          "\nExamples:\n"
+          "  chronormal bake face.glb -o face.exact.glb\n"
+          "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
+          "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); },
+          refused};
+}
+
+}  // namespace chronormal::cli

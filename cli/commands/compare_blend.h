@@ -1,0 +1,30 @@
+/// The option --blend of `compare`.
+#ifndef CLI_COMMANDS_COMPARE_BLEND_H_
+#define CLI_COMMANDS_COMPARE_BLEND_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "cli/options/command.h"
+#include "cli/reports/blend_report.h"
+
+namespace chronormal::cli {
+
+struct BlendArguments {
+  std::optional<std::size_t> rows;  ///< given: --blend
+  std::optional<std::size_t> active;
+  std::size_t seed = 1;
+
+  [[nodiscard]] std::vector<Option> table();
+};
+
+/// Reads the input and compares. Where elements were asked for, those of a glTF file are by its geometry.
+/// Errors: kUsage for what does not go together; those of reading and of compare_blends().
+[[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
+                                                               const ElementArguments& elements,
+                                                               const BlendArguments& arguments, Progress& progress);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_COMMANDS_COMPARE_BLEND_H_

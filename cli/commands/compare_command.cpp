@@ -1,0 +1,202 @@
+#include <memory>
+#include <optional>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/compare.h"
+#include "cli/commands/compare_blend.h"
+#include "cli/options/command.h"
+#include "cli/reports/compare_report.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr std::size_t kMostSamples = 1000000;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
+  std::optional<std::size_t> samples;
+  ElementArguments elements{"faces"};
+  std::string access;  // empty: random
+  bool each = false;
+  bool json = false;
+  bool csv = false;
+  bool no_times = false;
+  BlendArguments blend;
+
+  [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
+};
+
+std::vector<std::string> split_at_commas(const std::string& list) {
+  std::vector<std::string> parts;
+  for (std::size_t first = 0;;) {
+    const std::size_t comma = list.find(',', first);
+    std::string part = list.substr(first, comma - first);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    parts.push_back(std::move(part));
+    if (comma == std::string::npos) return parts;
+    first = comma + 1;
+  }
+}
+
+std::vector<std::string> scheme_names(const Options& options) {
+  return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
+}
+
+// An option that was given, and has no meaning with --blend.
+std::string option_of_schemes(const Options& options) {
+  if (!options.access.empty()) return "--access";
+  if (options.samples) return "--samples";
+  if (options.schemes) return "--schemes";
+  return options.each ? "--each" : "";
+}
+
+std::string footer() {
+  std::string text = "Schemes:\n";
+  for (const SchemeDescription& scheme : scheme_descriptions())
+    text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
+  return text +
+         "\nExamples:\n"
+         "  chronormal compare frames/\n"
+         "  chronormal compare a.obj b.obj --schemes linear,slerp,circle:timed --json\n"
+         "  chronormal compare --each walk/ run/ --sample twist\n"
+         "  chronormal compare --base face.obj targets/\n"
+         "  chronormal compare face.glb --elements vertices\n"
+         "  chronormal compare face.glb --blend 100\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  const CompareOptions compare_options{scheme_names(options), options.sample_count(),
+                                       options.access == "sequential" ? Access::kSequential : Access::kRandom,
+                                       progress.callback("comparing"), options.elements.options().value()};
+  Result<Comparison> comparison = compare(*motion.value(), compare_options);
+  progress.clear();
+  return comparison;
+}
+
+// One motion at a time is in memory.
+Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress) {
+  std::vector<InputOptions> inputs;
+  if (options.each) {
+    InputOptions one = options.input;
+    one.samples.clear();
+    for (const std::string& file : options.input.files) {
+      one.files = {file};
+      inputs.push_back(one);
+    }
+    one.files.clear();
+    for (const std::string& sample : options.input.samples) {
+      one.samples = {sample};
+      inputs.push_back(one);
+    }
+    if (inputs.empty()) inputs.push_back(options.input);
+  } else {
+    inputs.push_back(options.input);
+  }
+  // Find out about all wrong inputs before the first is read.
+  for (const InputOptions& input : inputs) {
+    if (const Status status = check_input(input); options.each && !status) return status.error();
+  }
+  std::vector<NamedComparison> comparisons;
+  for (const InputOptions& wanted : inputs) {
+    Result<Input> input = open_input(wanted, progress);
+    Result<Comparison> comparison =
+        input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());
+    if (!comparison) {
+      Error error = comparison.error();
+      const bool several = wanted.samples.size() + (wanted.files.empty() ? 0 : 1) > 1;
+      if (options.each && !wanted.files.empty() && wanted.base.empty())
+        error.place = wanted.files.front() + ": " + error.place;
+      if (several) error.message += ", or --each to compare them side by side";
+      return error;
+    }
+    const bool has_own_name = !options.each || wanted.base.empty();  // else the base is that of all
+    comparisons.push_back({has_own_name ? input.value().name() : wanted.files.front(), std::move(comparison).value(),
+                           target_names(input.value()).value()});
+  }
+  return comparisons;
+}
+
+Result<int> run_blend(const Options& options) {
+  if (const std::string option = option_of_schemes(options); !option.empty())
+    return misuse(option, "it is about schemes, and does not go with --blend");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  Progress progress(options.common.quiet);
+  const auto comparison = compare_blend_input(options.input, options.elements, options.blend, progress);
+  if (!comparison) return comparison.error();
+  const std::string text = options.json  ? blend_json(comparison.value())
+                           : options.csv ? blend_csv(comparison.value())
+                                         : blend_table(comparison.value());
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return kExitDone;
+}
+
+Result<int> run(const Options& options) {
+  if (options.blend.rows) return run_blend(options);
+  // Find out about wrong names before anything long begins.
+  for (const std::string& name : scheme_names(options)) {
+    if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
+    if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
+  }
+  if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+
+  Progress progress(options.common.quiet);
+  const auto comparisons = compare_inputs(options, progress);
+  if (!comparisons) return comparisons.error();
+
+  const bool with_times = !options.no_times;
+  std::string text;
+  if (options.json)
+    text = compare_json(comparisons.value(), options.each, with_times);
+  else if (options.csv)
+    text = compare_csv(comparisons.value(), with_times);
+  else if (options.each)
+    text = compare_tables_side_by_side(comparisons.value());
+  else
+    text = compare_table(comparisons.value().front(), with_times);
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return kExitDone;
+}
+
+}  // namespace
+
+Command compare_command() {
+  const auto check_access = [](const std::string& value) {
+    return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
+  };
+  auto options = std::make_shared<Options>();
+  return {"compare",
+          "Hold ways to interpolate normals against the exact ones, on your mesh",
+          {input_table(options->input),
+           {{"--each", &options->each, "every INPUT and --sample is a motion of its own, side by side"},
+            {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
+            {"--samples N",
+             &options->samples,
+             "samples per segment, ends included (default 21)",
+             {.check = check_whole(2, kMostSamples)}}},
+           options->elements.table(),
+           {{"--access KIND",
+             &options->access,
+             "random (default), or sequential: played step by step",
+             {.check = check_access}}},
+           options->blend.table(),
+           {{"--json", &options->json, "one JSON object"},
+            {"--csv", &options->csv, "comma-separated values, a line per scheme", {.excludes = "--json"}},
+            {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
+           options->common.table(false)},
+          footer(),
+          [options] { return run(*options); }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,47 @@
+#include <memory>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "cli/options/command.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+};
+
+Result<int> run(const Options& options) {
+  Progress progress(options.common.quiet);
+  InputOptions wanted = options.input;
+  wanted.allow_mesh = true;
+  Result<Input> input = open_input(std::move(wanted), progress);
+  if (!input) return input.error();
+  const Result<const Motion*> motion = input.value().motion();
+  if (!motion) return motion.error();
+  const Status written =
+      write_motion(*motion.value(), options.common.output, options.common.force, input.value().expansion());
+  if (!written) return written.error();
+  return kExitDone;
+}
+
+}  // namespace
+
+Command convert_command() {
+  auto options = std::make_shared<Options>();
+  return {"convert",
+          "Write a motion, or a built-in morph, in another format",
+          {input_table(options->input), options->common.table(true)},
+          "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
+          "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
+          "\nExamples:\n"
+          "  chronormal convert --sample twist -o twist_%d.obj\n"
+          "  chronormal convert scans/ -o frame_%03d.ply\n"
+          "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
+          "  chronormal convert face.glb --animation Smile -o smile.npz\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          [options] { return run(*options); }};
+}
+
+}  // namespace chronormal::cli

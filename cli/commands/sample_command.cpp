@@ -1,0 +1,191 @@
+#include <memory>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/sample.h"
+#include "cli/options/command.h"
+#include "cli/options/moments.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/table.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  MomentArguments moments;
+  ElementArguments elements = {"vertices"};
+  std::string weighting = "area";
+  std::string length = "unit";
+  std::string hard_edges;  // empty: by the crease angle
+  std::string format;      // empty: by the extension
+};
+
+std::string footer() {
+  std::string text = "Weightings:\n";
+  for (const WeightingInfo& weighting : kWeightings)
+    text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
+  return text +
+         "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
+         "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
+         "for the number. An element without a normal has (0, 0, 0).\n"
+         "\nExamples:\n"
+         "  chronormal sample walk/ --times 0:0.25:12 -o normals.npy\n"
+         "  chronormal sample body.obj walk.pc2 --times 1.5 --elements corners --crease 60 -o shaded.obj\n"
+         "  chronormal sample face.glb --weights jawOpen=0.5,smile=1 -o talking.npz\n"
+         "  chronormal sample face.glb --animation Smile --times keys -o keys.npz\n"
+         "  chronormal sample face.glb --weights 1,0,0 --weights 0.5,0.5,0 --weighting angle -o 'face_%d.ply'\n"
+         "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+// What was asked for, after the words were understood.
+struct Request {
+  SampleOptions sample;
+  AskedMoments asked;
+  SampleOutput output;
+};
+
+Result<SampleOptions> sample_options(const Options& options) {
+  Result<ElementOptions> elements = options.elements.options();
+  if (!elements) return elements.error();
+  const ElementKind kind = elements.value().kind;
+  const auto weighting = make_weighting(options.weighting);
+  if (!weighting) return misuse("--weighting", weighting.error().message);
+  if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
+  const bool by_area = weighting.value() == Weighting::kArea;
+  if (options.length == "area" && !by_area)
+    return misuse("--length", "only --weighting area has a length that means something");
+  if (kind == ElementKind::kFaces && !by_area)
+    return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
+  if (!options.hard_edges.empty()) {
+    if (options.hard_edges != "groups" && options.hard_edges != "normals")
+      return misuse("--hard-edges", "it must be groups or normals");
+    if (kind != ElementKind::kCorners) return misuse("--hard-edges", "only --elements corners can have hard edges");
+    if (options.elements.crease_angle != 180)
+      return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
+    if (!options.input.samples.empty())
+      return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
+  }
+  return SampleOptions{elements.value(), weighting.value(),
+                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
+}
+
+Result<SampleFormat> format_of(const Options& options) {
+  if (!options.format.empty()) {
+    auto format = make_sample_format(options.format);
+    if (!format) return misuse("--format", format.error().message);
+    return format;
+  }
+  if (options.common.output == "-") return SampleFormat::kNpy;
+  if (const auto format = find_sample_format(options.common.output)) return *format;
+  return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
+}
+
+Result<Request> understand(const Options& options) {
+  Result<SampleOptions> sample = sample_options(options);
+  if (!sample) return sample.error();
+  const Result<SampleFormat> format = format_of(options);
+  if (!format) return format.error();
+  Result<AskedMoments> asked = understand(options.moments);
+  if (!asked) return asked.error();
+  Request request{
+      sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}};
+  if (const Status status = check_input(options.input); !status) return status.error();
+  if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
+    return files.error();
+  return request;
+}
+
+// Takes the hard edges from where the input stores them: its smoothing groups, or its normals.
+Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
+  const std::string& file = input.shaded_by();
+  if (file.empty())
+    return misuse("--hard-edges",
+                  input.name() + " stores neither normals nor smoothing groups: give an OBJ or glTF file");
+  if (what == "groups") {
+    if (input.document() != nullptr) return misuse("--hard-edges", "a glTF file has no smoothing groups: give normals");
+    if (input.group_of_face().empty())
+      return invalid_input(file, "the file has no smoothing groups (lines that begin with s)");
+    elements.group_of_face = input.group_of_face();
+    return Success{};
+  }
+  const Result<const StoredNormals*> normals = input.normals();
+  if (!normals) return normals.error();
+  if (normals.value()->of_keyframes.empty())
+    return invalid_input(file, input.document() != nullptr ? "no primitive of the motion has normals"
+                                                           : "the file has no normals (faces of the form v//vn)");
+  const std::vector<float>& first = normals.value()->of_keyframes.front();
+  elements.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+  return Success{};
+}
+
+// Says how much was asked for, where that is much: it is not refused.
+void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
+  constexpr double kMuch = 1e9;
+  const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()
+                               : kind == ElementKind::kCorners ? topology.corner_count()
+                                                               : topology.vertex_count();
+  const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
+  if (bytes >= kMuch)
+    say("sample",
+        formatted("the normals of {} times {} elements are {:.1f} GB", grouped(moments), grouped(elements),
+                  bytes / 1e9),
+        Tone::kWarning);
+}
+
+Result<int> run(const Options& options) {
+  Result<Request> understood = understand(options);
+  if (!understood) return understood.error();
+  Request& request = understood.value();
+  Progress progress(options.common.quiet);
+  InputOptions wanted = options.input;
+  wanted.allow_mesh = true;
+  if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
+  Result<Input> input = open_input(std::move(wanted), progress);
+  if (!input) return input.error();
+  const Result<const Motion*> read = input.value().motion();
+  if (!read) return read.error();
+  const Motion& motion = *read.value();
+  const Result<Moments> moments = moments_of(input.value(), request.asked);
+  if (!moments) return moments.error();
+  if (!options.common.quiet) announce(motion.topology, request.sample.elements.kind, moments.value().count());
+  if (!options.hard_edges.empty()) {
+    const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
+    if (!status) return status.error();
+  }
+  const auto written =
+      write_samples(motion, request.sample, moments.value(), request.output, progress.callback("sampling"));
+  progress.clear();
+  if (!written) return written.error();
+  if (written.value().zeros > 0)
+    say("sample",
+        formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
+                  written.value().normals, options.elements.kind()),
+        Tone::kWarning);
+  return kExitDone;
+}
+
+}  // namespace
+
+Command sample_command() {
+  auto options = std::make_shared<Options>();
+  return {"sample",
+          "Write the normals of a motion at chosen times",
+          {input_table(options->input),
+           options->moments.table(),
+           options->elements.table(),
+           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+            {"--length KIND", &options->length, "unit (default), or area: of weighting area, n itself"},
+            {"--hard-edges KIND", &options->hard_edges,
+             "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
+             "smoothing groups (s) or by its own normals (vn): groups, normals"},
+            {"--format NAME", &options->format, "of OUT: npy (default for -), npz, ply, obj"}},
+           options->common.table(true)},
+          footer(),
+          [options] { return run(*options); }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,67 @@
+/// What all commands of the program share: the options that every one has, exit codes, and where output goes.
+///
+/// One command is one file, NAME_command.cpp, with one function that describes it. The contract that scripts
+/// depend on (stdout, stderr, exit codes) is in docs/cli.md.
+#ifndef CLI_OPTIONS_COMMAND_H_
+#define CLI_OPTIONS_COMMAND_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/input.h"
+#include "chronormal/workflow/sample.h"
+#include "cli/options/options.h"
+#include "cli/terminal/progress.h"
+
+namespace chronormal::cli {
+
+inline constexpr int kExitDone = 0;
+
+/// Where the result goes, and how much is said on the way. Every command has these options.
+struct CommonOptions {
+  std::string output = "-";
+  bool force = false;
+  bool quiet = false;
+
+  [[nodiscard]] std::vector<Option> table(bool output_required);
+};
+
+/// The options that choose what to read, as io/input.h has them, without those that the command refuses. The table
+/// refers to input.
+[[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
+
+/// Opens the input that the options name, with a progress bar.
+[[nodiscard]] Result<Input> open_input(InputOptions options, Progress& progress);
+
+/// The options that choose which normals: --elements, --crease, --no-weld.
+struct ElementArguments {
+  std::string usual;  ///< the kind where none was asked for
+  std::optional<std::string> asked = {};
+  double crease_angle = 180;  ///< degrees
+  bool no_weld = false;
+
+  [[nodiscard]] std::vector<Option> table();
+  [[nodiscard]] std::string kind() const { return asked.value_or(usual); }
+  /// What was asked for. Errors: kUsage for a kind that does not exist, and for options that do not go with it.
+  [[nodiscard]] Result<ElementOptions> options() const;
+};
+
+/// The last part of a path: what a person calls it.
+[[nodiscard]] std::string short_name(std::string path);
+
+/// An error of kUsage.
+[[nodiscard]] Error misuse(std::string place, std::string message);
+
+// The commands.
+[[nodiscard]] Command audit_command();
+[[nodiscard]] Command bake_command();
+[[nodiscard]] Command compare_command();
+[[nodiscard]] Command convert_command();
+[[nodiscard]] Command inspect_command();
+[[nodiscard]] Command sample_command();
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_OPTIONS_COMMAND_H_

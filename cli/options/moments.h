@@ -1,0 +1,57 @@
+/// The moments at which normals are wanted, as the command line gives them: --times and --weights.
+///
+///     --times 0,0.5,1            times in seconds
+///     --times 0:0.25:2,5         a range with its step, and a time
+///     --times keys               the times at which the input has keyframes
+///     --weights 0.5,0,1          a weight for each target
+///     --weights jawOpen=0.5,3=1  weights by the names or numbers of targets; all others are 0
+///
+/// A weight stands behind the last '=', so that names may have one; a name with a comma, or with blanks at its ends,
+/// stands in double quotes, in which "" is a quote.
+#ifndef CLI_OPTIONS_MOMENTS_H_
+#define CLI_OPTIONS_MOMENTS_H_
+
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/input.h"
+#include "chronormal/workflow/sample.h"
+#include "cli/options/options.h"
+
+namespace chronormal::cli {
+
+/// The words of the command line.
+struct MomentArguments {
+  std::string times;                 ///< empty: none
+  std::vector<std::string> weights;  ///< a list for each pose
+
+  [[nodiscard]] std::vector<Option> table();
+};
+
+/// What the words mean, as far as that can be known before the input is read.
+struct AskedMoments {
+  /// Weights of targets in their order, or by name.
+  struct Pose {
+    std::vector<double> numbers;
+    std::vector<std::pair<std::string, double>> named;
+  };
+
+  bool at_keys = false;
+  std::vector<double> times;
+  std::vector<Pose> poses;
+
+  /// How many moments there are; 1 where only the input can tell.
+  [[nodiscard]] std::size_t count() const noexcept;
+};
+
+/// Reads the words. Errors: kUsage, with the option as the place.
+[[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
+
+/// The moments of this input; none for a mesh that does not move. Errors: of Input::motion(); kUsage where the moments
+/// do not go with the motion, and for names that are not there or that several targets have.
+[[nodiscard]] Result<Moments> moments_of(Input& input, const AskedMoments& asked);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_OPTIONS_MOMENTS_H_

@@ -1,0 +1,248 @@
+// Hands the tables of options to the parser, and what the parser has to say to the user.
+
+#include "cli/options/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "cli/options/help.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+#include "cli/terminal/version.h"
+#include "core/nearest.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr int kExitDone = 0, kExitUsage = 2;
+
+CLI::Option* add_target(CLI::App& command, const std::string& names, bool* target, const std::string& help) {
+  return command.add_flag(names, *target, help);
+}
+
+// The parser would take an empty text for none.
+CLI::Option* add_target(CLI::App& command, const std::string& names, std::optional<std::string>* target,
+                        const std::string& help) {
+  return command.add_option_function<std::string>(
+      names, [target](const std::string& value) { *target = value; }, help);
+}
+
+CLI::Option* add_target(CLI::App& command, const std::string& names, std::vector<std::string>* target,
+                        const std::string& help) {
+  CLI::Option* const option = command.add_option(names, *target, help);
+  return names.front() == '-' ? option->take_all()->allow_extra_args(false) : option;
+}
+
+template <class T>
+CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, const std::string& help) {
+  return command.add_option(names, *target, help);
+}
+
+// What is wrong with the value of an option that takes a number. The parser would take an empty text for an option that
+// was not given, and "nan" for a number.
+template <class T>
+std::string fault_of_number(const T*, const std::string& value) {
+  constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
+                           std::is_same_v<T, std::optional<std::string>> || std::is_same_v<T, std::vector<std::string>>;
+  if constexpr (is_text) return "";
+  double number = 0;
+  const bool is_number = CLI::detail::lexical_cast(value, number) && std::isfinite(number);
+  return is_number ? "" : formatted("'{}' is not a number", printable(value));
+}
+
+void add_option(const Option& option, CLI::App& command) {
+  const std::size_t blank = option.spelling.find(' ');
+  const std::string names = option.spelling.substr(0, blank);
+  CLI::Option* const added =
+      std::visit([&](auto* target) { return add_target(command, names, target, option.help); }, option.target);
+  if (!std::holds_alternative<bool*>(option.target))
+    added->type_name(blank == std::string::npos ? "" : option.spelling.substr(blank + 1));
+  const Option::Rules& rules = option.rules;
+  added->required(rules.required);
+  if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
+  if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
+  // A check of the table's own says more of what is wanted than that it is a number.
+  added->check(
+      [target = option.target, check = rules.check](const std::string& value) {
+        const std::string wrong = check ? check(value) : "";
+        if (!wrong.empty()) return wrong;
+        return std::visit([&](const auto* of_type) { return fault_of_number(of_type, value); }, target);
+      },
+      "");
+}
+
+void add_command(const Command& command, CLI::App& program) {
+  CLI::App* const added = program.add_subcommand(command.name, command.summary);
+  for (const std::vector<Option>& table : command.tables)
+    for (const Option& option : table) add_option(option, *added);
+}
+
+void say_where_help_is(std::string_view command) {
+  say_raw(formatted("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
+}
+
+// Says the error, and returns its exit code.
+int report(const std::string& command, const Error& error) {
+  say(command, error.text(), Tone::kError);
+  if (error.code == ErrorCode::kUsage) say_where_help_is(command);
+  return static_cast<int>(error.code);
+}
+
+int print_or_report(const std::string& text) {
+  const Status printed = print(text);
+  return printed ? kExitDone : report("", printed.error());
+}
+
+// "; did you mean NAME?", or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(word, names);
+  return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
+}
+
+// A word that is no command deserves a better answer than the parser's.
+bool is_known(const std::vector<Command>& commands, std::string_view first) {
+  if (first.starts_with('-')) return true;
+  std::vector<std::string> names;
+  std::string list;
+  for (const Command& command : commands) {
+    if (command.name == first) return true;
+    names.push_back(command.name);
+    list += (list.empty() ? "" : ", ") + command.name;
+  }
+  if (first.empty())
+    say("", "name a command: " + list, Tone::kError);
+  else if (const std::string nearest = suggestion(first, names); !nearest.empty())
+    say("", formatted("there is no command '{}'{} There are {}", first, nearest, list), Tone::kError);
+  else
+    say("", formatted("there is no command '{}'; there are {}", first, list), Tone::kError);
+  say_where_help_is("");
+  return false;
+}
+
+bool is_in(const std::vector<std::string>& list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+std::vector<std::string> names_of_options(const Command& command, bool only_with_value = false) {
+  std::vector<std::string> names;
+  for (const std::vector<Option>& table : command.tables) {
+    for (const Option& option : table) {
+      if (only_with_value && !takes_value(option)) continue;
+      const std::vector<std::string> own = names_of(option);
+      names.insert(names.end(), own.begin(), own.end());
+    }
+  }
+  return names;
+}
+
+// What to do in place of an option that the command does not have: its own reason, else the commands that have the
+// option, else the nearest of its options.
+std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
+  for (const RefusedOption& refused : command.refused)
+    if (refused.name == name) return " here: " + refused.reason;
+  std::string others;
+  for (const Command& other : commands)
+    if (is_in(names_of_options(other), name)) others += (others.empty() ? "" : ", ") + other.name;
+  if (!others.empty()) return " here; it belongs to " + others;
+  std::vector<std::string> own = names_of_options(command);
+  own.emplace_back("--help");
+  return suggestion(name, own);
+}
+
+// The first option that the command does not have, which the parser would pass over where a required one is missing. A
+// word after an option that takes a value is that value, whatever it looks like.
+std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
+                                         std::span<char* const> arguments) {
+  std::vector<std::string> names = names_of_options(command);
+  const std::vector<std::string> with_value = names_of_options(command, true);
+  names.insert(names.end(), {"-h", "--help"});
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word == "--") break;
+    if (word.size() < 2 || word.front() != '-') continue;
+    const bool is_long = word.starts_with("--");
+    const std::string_view name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+    if (!is_in(names, name))
+      return Error{ErrorCode::kUsage, "",
+                   formatted("there is no option '{}'{}", name, advice_on(name, command, commands))};
+    if (name == word && is_in(with_value, name)) ++i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Check check_whole(std::size_t least, std::size_t most) {
+  const std::string range = most == static_cast<std::size_t>(-1)
+                                ? formatted("of {} or more", grouped(least))
+                                : formatted("from {} to {}", grouped(least), grouped(most));
+  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
+    std::size_t number = 0;
+    const char* const last = value.data() + value.size();
+    const auto [end, code] = std::from_chars(value.data(), last, number);
+    return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
+  };
+}
+
+Check check_given(std::string message) {
+  return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
+}
+
+int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
+  CLI::App program("", "chronormal");
+  const std::string version = formatted("chronormal {}\n", kVersion);
+  program.set_version_flag("-V,--version", version);
+  program.require_subcommand(1);
+  for (const Command& command : commands) add_command(command, program);
+
+  const std::string_view first = argument_count > 1 ? arguments[1] : "",
+                         second = argument_count > 2 ? arguments[2] : "";
+  if (first == "--manual-page") return print_or_report(manual_page(commands));
+  if (first == "--completions") {
+    const Result<std::string> text = completions(commands, second);
+    return text ? print_or_report(text.value()) : report("", text.error());
+  }
+  const std::string_view asked = first == "help" && !second.empty() ? second : first;
+  if (asked == "help") return print_or_report(help_of_program(commands, columns_of_output()));
+  if (!is_known(commands, asked)) return kExitUsage;
+  const auto command_of = [&](std::string_view name) {
+    return std::find_if(commands.begin(), commands.end(), [&](const Command& command) { return command.name == name; });
+  };
+  if (first == "help") return print_or_report(help_of_command(*command_of(asked), columns_of_output()));
+  if (const auto named = command_of(first); named != commands.end()) {
+    const std::span<char* const> rest(arguments + 2, static_cast<std::size_t>(argument_count) - 2);
+    if (const auto unknown = find_unknown_option(*named, commands, rest)) return report(named->name, *unknown);
+  }
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::CallForVersion&) {
+    return print_or_report(version);
+  } catch (const CLI::Success&) {  // --help
+    const auto parsed = program.get_subcommands();
+    return print_or_report(parsed.empty()
+                               ? help_of_program(commands, columns_of_output())
+                               : help_of_command(*command_of(parsed.front()->get_name()), columns_of_output()));
+  } catch (const CLI::ParseError& error) {
+    const auto parsed = program.get_subcommands();
+    const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
+    say(name, parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what(),
+        Tone::kError);
+    say_where_help_is(name);
+    return kExitUsage;
+  }
+  const auto chosen = std::find_if(commands.begin(), commands.end(),
+                                   [&](const Command& command) { return program.got_subcommand(command.name); });
+  const Result<int> result = chosen->run();
+  return result ? result.value() : report(chosen->name, result.error());
+}
+
+}  // namespace chronormal::cli

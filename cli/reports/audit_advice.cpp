@@ -1,0 +1,181 @@
+#include "cli/reports/audit_advice.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/reports/audit_words.h"
+#include "cli/terminal/format.h"
+
+namespace chronormal::cli {
+namespace {
+
+// What a person can do about the errors that an audit found; the last line of its report says it.
+enum class Remedy {
+  kNone,      // no normal is off
+  kTangents,  // normals are right, and bake writes no tangents
+  kHosts,     // right by the specification, and not in hosts that do otherwise
+  kRule,      // what was judged is not what a glTF file makes hosts show
+  kOriginal,  // what is off was baked before, and is never baked twice
+  kTargets,   // bake takes no targets over a base
+  kBake,
+};
+
+// A normal that is off by more is worth a line: a fault, or what was asked for.
+double limit_of(const Audited& input) { return std::min(kAuditFault, input.tolerance.value_or(kAuditFault)); }
+
+bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
+
+bool was_baked(const Audited& input, const AuditSubject& subject) {
+  return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
+}
+
+// Whether an animation gives a weight to what moves here.
+bool is_driven(const Audited& input, const AuditSubject& subject) {
+  if (subject.kind != AuditSubject::Kind::kTarget) return true;
+  const auto drives = [&](const AuditSubject& other) {
+    return other.mesh == subject.mesh &&
+           std::find(other.driven.begin(), other.driven.end(), *subject.target) != other.driven.end();
+  };
+  return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
+}
+
+// The motions that are off, of meshes that were baked before or of all others.
+std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
+  std::vector<const AuditSubject*> result;
+  for (const AuditSubject& subject : input.audit.subjects)
+    if (is_wrong(subject, limit_of(input)) && was_baked(input, subject) == baked) result.push_back(&subject);
+  return result;
+}
+
+// The hosts in which something is off, by their titles.
+std::string wrong_hosts(const Audited& input) {
+  std::string titles;
+  for (const HostAudit& host : input.audit.hosts) {
+    if (!host.error.is_within(limit_of(input))) titles.append(titles.empty() ? "" : ", ").append(host.host.title);
+  }
+  return titles;
+}
+
+Remedy remedy_of(const Audited& input) {
+  const Audit& audit = input.audit;
+  const bool any_fresh = !wrong_subjects(input, false).empty(), any_baked = !wrong_subjects(input, true).empty();
+  if (!any_fresh && !any_baked) {
+    if (!wrong_hosts(input).empty()) return Remedy::kHosts;
+    const bool any_fault = std::any_of(audit.findings.begin(), audit.findings.end(),
+                                       [](const AuditFinding& finding) { return finding.is_fault(); });
+    return any_fault ? Remedy::kTangents : Remedy::kNone;
+  }
+  if (input.document() != nullptr && audit.rule != AuditRule::kGltf) return Remedy::kRule;
+  if (!any_fresh) return Remedy::kOriginal;
+  return input.bake.empty() ? Remedy::kTargets : Remedy::kBake;
+}
+
+// "angle-weighted", "angle- and max-weighted": of the motions that are off.
+std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
+  std::string text;
+  for (const WeightingInfo& info : kWeightings) {
+    const auto has = [&](const AuditSubject* subject) { return subject->weighting == info.weighting; };
+    if (std::any_of(subjects.begin(), subjects.end(), has))
+      text += (text.empty() ? "" : "- and ") + std::string(info.name);
+  }
+  return text + "-weighted";
+}
+
+// Says what the user will get from `chronormal bake` on this file, as far as the audit can know it beforehand.
+std::string outcome(const Audited& input) {
+  if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
+  const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);
+  const auto driven = static_cast<std::size_t>(std::count_if(
+      wrong.begin(), wrong.end(), [&](const AuditSubject* subject) { return is_driven(input, *subject); }));
+  const bool by_area = std::all_of(wrong.begin(), wrong.end(),
+                                   [](const AuditSubject* subject) { return subject->weighting == Weighting::kArea; });
+  const MotionError& error = input.audit.error;
+  const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
+                                          : formatted("{} degrees", degrees(error.worst));
+  std::string text =
+      formatted("writes what all hosts show alike, nowhere worse than before, and says what is left of {}", now);
+  if (driven == wrong.size() && by_area && error.unlit == 0)
+    text += "; for hosts that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
+  return text;
+}
+
+std::string original_words(const Audited& input) {
+  bool all_single = true, any_driven = false, all_fitted = true, any_harmless = false;
+  const std::vector<const AuditSubject*> wrong = wrong_subjects(input, true);
+  for (const AuditSubject* subject : wrong) {
+    const BakeEncoding encoding = input.document()->meshes()[*subject->mesh].mark->encoding;
+    all_fitted = all_fitted && subject->weighting != Weighting::kArea;
+    all_single = all_single && encoding == BakeEncoding::kEndpoint;
+    any_harmless = any_harmless || encoding == BakeEncoding::kHarmless;
+    any_driven = any_driven || is_driven(input, *subject);
+  }
+  const std::string baked = "what is off was baked before, and bake changes it no more: ";
+  if (any_harmless && any_driven)
+    return baked +
+           "this is what all hosts of that bake show alike; bake the original with --for and those hosts that count, "
+           "or "
+           "with --encode exact where these play targets as glTF says";
+  if (any_harmless)
+    return baked + "what hosts show alike of each target is all that there is where no animation moves them";
+  if (!all_single && all_fitted)
+    return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
+                     weighting_words(wrong));
+  if (!all_single)
+    return baked +
+           "positions, normals or weights were changed after that, or --weighting was another; start again from the "
+           "file before its bake";
+  if (any_driven)
+    return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
+  return baked + "one delta for each target is all that there is where no animation moves them";
+}
+
+}  // namespace
+
+std::string advice(const Audited& input) {
+  if (input.audit.subjects.empty()) return "";
+  switch (remedy_of(input)) {
+    case Remedy::kNone:
+      return formatted("\nnothing to do: no normal is off by more than {:g} {}\n", limit_of(input),
+                       limit_of(input) == 1 ? "degree" : "degrees");
+    case Remedy::kTangents:
+      return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
+             "hosts compute them\n";
+    case Remedy::kHosts:
+      return formatted("\nright where a host adds up targets as stored, which these do not: {}\n", wrong_hosts(input));
+    case Remedy::kRule:
+      return formatted("\nhosts do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
+                       audit_rule_name(input.audit.rule));
+    case Remedy::kOriginal:
+      return '\n' + original_words(input) + '\n';
+    case Remedy::kTargets:
+      return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
+    case Remedy::kBake:
+      return formatted("\nchronormal bake {} -o baked.glb {}\n", input.bake, outcome(input));
+  }
+  return "";
+}
+
+std::string verdict(const Audited& input) {
+  if (input.audit.subjects.empty()) return "nothing moves";
+  if (input.tolerance) return formatted("{} {:g}", input.passed() ? "within" : "beyond", *input.tolerance);
+  switch (remedy_of(input)) {
+    case Remedy::kNone:
+      return "right";
+    case Remedy::kTangents:
+      return "wrong tangents";
+    case Remedy::kHosts:
+      return "wrong in hosts";
+    case Remedy::kRule:
+    case Remedy::kTargets:
+      return "wrong";
+    case Remedy::kOriginal:
+      return "wrong, baked before";
+    case Remedy::kBake:
+      return "wrong: bake it";
+  }
+  return "";
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,153 @@
+// A face has dozens of targets that lack the same thing: one line says it of all of them, and names the worst.
+#include "cli/reports/audit_findings.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "cli/reports/audit_words.h"
+#include "cli/reports/inspect_trouble.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/table.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Kind = AuditFinding::Kind;
+
+// Findings of one cause in one mesh.
+struct Group {
+  const AuditFinding* worst = nullptr;
+  std::size_t targets = 0, animations = 0;
+  std::size_t count = 0;  // of all of them together
+
+  [[nodiscard]] std::size_t size() const noexcept { return targets + animations; }
+};
+
+// The groups of faults, the worst first, or of notes, in the order of the file.
+std::vector<Group> groups_of(const Audit& audit, bool faults) {
+  std::vector<Group> groups;
+  for (const AuditFinding& finding : audit.findings) {
+    if (finding.is_fault() != faults) continue;
+    const auto is_same = [&](const Group& g) {
+      return g.worst->kind == finding.kind && g.worst->mesh == finding.mesh && g.worst->host == finding.host;
+    };
+    auto group = std::find_if(groups.begin(), groups.end(), is_same);
+    if (group == groups.end()) group = groups.insert(groups.end(), Group{&finding});
+    if (finding.degrees > group->worst->degrees) group->worst = &finding;
+    group->targets += finding.target ? 1U : 0U;
+    group->animations += finding.target ? 0U : 1U;
+    group->count += finding.count;
+  }
+  if (faults)
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const Group& a, const Group& b) { return a.worst->degrees > b.worst->degrees; });
+  return groups;
+}
+
+std::string of_mesh(const Audited& input, const AuditFinding& finding) {
+  return finding.mesh ? mesh_label(*input.document(), *finding.mesh) : "";
+}
+
+std::string one_subject(const Audited& input, const AuditFinding& found) {
+  const std::string mesh = of_mesh(input, found);
+  if (found.target) return target_words(input, found.mesh, *found.target) + (found.mesh ? " of " + mesh : "");
+  if (found.animation) return animation_words(input, *found.animation) + ", " + node_words(input, *found.node);
+  return found.mesh ? mesh : "sequence";
+}
+
+// "57 targets of Head", "2 targets and 1 animation of Head".
+std::string subject_of(const Audited& input, const Group& group) {
+  if (group.size() == 1) return one_subject(input, *group.worst);
+  std::string text;
+  if (group.targets > 0) text = counted(group.targets, "target", "targets");
+  if (group.animations > 0)
+    text += (text.empty() ? "" : " and ") + counted(group.animations, "animation", "animations");
+  return text + (group.worst->mesh ? " of " + of_mesh(input, *group.worst) : "");
+}
+
+// The worst error that a target of the mesh has alone.
+double worst_alone(const Audit& audit, const AuditFinding& found) {
+  double worst = 0;
+  for (const AuditSubject& subject : audit.subjects)
+    if (subject.kind == AuditSubject::Kind::kTarget && subject.mesh == found.mesh)
+      worst = std::max(worst, subject.error.worst);
+  return worst;
+}
+
+std::string group_words(const Audited& input, const Group& group) {
+  const AuditFinding& found = *group.worst;
+  const bool is_one = group.size() == 1;
+  const std::string who = subject_of(input, group), worst = degrees(found.degrees);
+  switch (found.kind) {
+    case Kind::kUnlit:
+      return formatted("{}: {} cannot be lit: what is shown is zero, infinite or no number", who, pairs(group.count));
+    case Kind::kMissingNormals:
+      return formatted("{} {} positions and no normals{}: {}", who, is_one ? "moves" : "move",
+                       is_one ? " (" + counted(found.count, "primitive", "primitives") + ")" : "",
+                       found.is_fault() ? "off by up to " + worst + " degrees" : "none has to turn");
+    case Kind::kWrongAtKeys:
+      return formatted("{}: {} contradict the geometry at {}, by up to {} degrees", who,
+                       input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals",
+                       found.target ? "weight 1" : "keyframes", worst);
+    case Kind::kWrongBetween:
+      return formatted("{}: right at {}, and off by up to {} degrees on the way", who,
+                       found.target ? "weights 0 and 1" : "keyframes", worst);
+    case Kind::kWrongTogether: {
+      const double alone = worst_alone(input.audit, found);
+      return alone > kAuditFault
+                 ? formatted("{}: targets together are off by up to {} degrees, alone by up to {}", who, worst,
+                             degrees(alone))
+                 : formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+    }
+    case Kind::kStaleTangents:
+      return formatted("{}: {} up to {} degrees from perpendicular to the right normal", who,
+                       counted(group.count, "tangent is", "tangents are"), worst);
+    case Kind::kFlat:
+      return formatted("{}: {} no normals, and {} shown flat, which is right", who,
+                       counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
+    case Kind::kSkinned:
+      return formatted("{}: {} a skin, which turns shown and right normals alike", who,
+                       counted(found.count, "node has", "nodes have"));
+    case Kind::kBaked:
+      return formatted("{}: baked by chronormal, with {}", who, counted(found.count, "extra target", "extra targets"));
+    case Kind::kEmptied:
+      return formatted("{}: {} of an earlier bake lost normals to a program that made its own: bake it again", who,
+                       counted(found.count, "extra target", "extra targets"));
+    case Kind::kSequenceTargets:
+      return formatted("{}: {} baked keyframes: only animations were judged", who,
+                       counted(found.count, "target is one of its", "targets are"));
+    case Kind::kBeyondHost:
+      return formatted("{}: {} more than {} takes: {}", who, counted(found.count, "target", "targets"),
+                       found.host->title, found.host->beyond);
+  }
+  return "";
+}
+
+std::string lines_of(const Audited& input, bool faults) {
+  const std::vector<Group> groups = groups_of(input.audit, faults);
+  std::string text;
+  for (std::size_t g = 0; g < std::min(groups.size(), kMostAuditRows); ++g) {
+    const AuditFinding& worst = *groups[g].worst;
+    text += "  " + group_words(input, groups[g]);
+    if (worst.worst_at) {
+      const std::string whose = groups[g].size() > 1 ? "worst: " + one_subject(input, worst) + ", " : "";
+      text += " (" + whose + vertex_words(input, *worst.worst_at) + ")";
+    }
+    text += '\n';
+  }
+  if (groups.size() > kMostAuditRows)
+    text += formatted("  ... and {} more{} (--json has all)\n", grouped(groups.size() - kMostAuditRows),
+                      faults ? ", none of them worse" : "");
+  if (text.empty()) return text;
+  return (faults ? "\nFaults:\n" : "\nNotes:\n") + text;
+}
+
+}  // namespace
+
+std::size_t count_fault_lines(const Audit& audit) { return groups_of(audit, true).size(); }
+
+std::string fault_lines(const Audited& input) { return lines_of(input, true); }
+
+std::string note_lines(const Audited& input) { return lines_of(input, false); }
+
+}  // namespace chronormal::cli

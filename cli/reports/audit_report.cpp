@@ -1,0 +1,210 @@
+#include "cli/reports/audit_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/reports/audit_advice.h"
+#include "cli/reports/audit_findings.h"
+#include "cli/reports/audit_words.h"
+#include "cli/reports/inspect_trouble.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Align = Table::Align;
+
+constexpr std::size_t kLongestBar = 40;
+constexpr double kSeen = 0.005;                     // degrees: what two decimals show
+constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the pairs
+constexpr double kDisplaced = 1e-5;                 // a share of the size that is worth a word
+
+std::string tolerance_words(const Audited& input) {
+  const std::vector<HostAudit>& hosts = input.audit.hosts;
+  if (hosts.empty()) return formatted("{} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  const auto within = std::count_if(hosts.begin(), hosts.end(), [&](const HostAudit& h) { return input.passed(h); });
+  return formatted("within {} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
+}
+
+// Which normals are right, where these are others than usual.
+std::string weighting_words(const Audited& input) {
+  const Audit& audit = input.audit;
+  if (audit.weighting == Weighting::kArea) return "";
+  if (!audit.weighting) return "  the right normals are weighted as the base normals of each mesh are: see below\n";
+  const bool is_detected = !audit.offsets.empty() && audit.offsets.front().is_detected;
+  return formatted("  the right normals are {}-weighted, as {}\n", weighting_name(*audit.weighting),
+                   is_detected ? "the base normals of the file are" : "--weighting says");
+}
+
+std::string headline(const Audited& input) {
+  const Audit& audit = input.audit;
+  std::string text = heading(printable(input.name())) + ": ";
+  if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
+  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", judged_degrees(audit.error.worst),
+                    degrees(audit.error.mean()), degrees(audit.error.percentile(kMost)),
+                    degrees(audit.error.percentile(kNearlyAll)));
+  if (input.tolerance) text += ", " + tolerance_words(input);
+  text += '\n';
+  if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
+  const char* source =
+      audit.stored ? "the stored normals" : "normals that a host computes at keyframes, where none are stored";
+  if (audit.rule == AuditRule::kFlat) source = "the faces";
+  text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
+                    pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
+  text += weighting_words(input);
+  if (audit.still > 0)
+    text += formatted("  {} nothing that could be judged\n",
+                      counted(audit.still, "target or track moves", "targets or tracks move"));
+  if (audit.error.no_normal > 0)
+    text += formatted("  {} without a right direction: the normal of the geometry all but vanishes there\n",
+                      pairs(audit.error.no_normal));
+  if (audit.error.unlit > 0)
+    text += formatted("  {} cannot be lit, which counts as 180 degrees: the first is at {}\n", pairs(audit.error.unlit),
+                      unlit_label(input));
+  return text;
+}
+
+std::string subject_table(const Audited& input) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  std::vector<double> errors;
+  for (const AuditSubject& subject : subjects) errors.push_back(subject.error.worst);
+  Table table;
+  table.add_column("motion", "", Align::kLeft);
+  table.add_column("worst", "degrees", Align::kRight);
+  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("99 %", "degrees", Align::kRight);
+  table.add_column("99.9 %", "degrees", Align::kRight);
+  table.add_column("at keys", "degrees", Align::kRight);
+  table.add_column("worst at", "vertex", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  table.add_column("vertices", "that move", Align::kRight);
+  table.add_column("samples", "", Align::kRight);
+  for (const std::size_t s : indices_of_largest(errors, kMostAuditRows)) {
+    const AuditSubject& subject = subjects[s];
+    const bool some = subject.error.worst > 0;
+    table.add_row({subject_words(input, subject), judged_degrees(subject.error.worst), degrees(subject.error.mean()),
+                   degrees(subject.error.percentile(kMost)), degrees(subject.error.percentile(kNearlyAll)),
+                   degrees(subject.at_keys.worst), some ? formatted("{}", subject.error.worst_at.vertex) : "-",
+                   some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
+                   subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
+                                        : formatted("{}", subject.samples)});
+  }
+  std::string text = table.text();
+  if (subjects.size() > kMostAuditRows)
+    text +=
+        formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostAuditRows));
+  return text;
+}
+
+// Prints a row of errors for each host. The first row is a host that follows the specification; the tables that come
+// after this one are about that host alone.
+std::string host_table(const Audited& input) {
+  const Audit& audit = input.audit;
+  if (audit.hosts.empty()) return "";
+  Table table;
+  table.add_column("host", "", Align::kLeft);
+  for (const char* const title : {"mean", "99 %", "99.9 %", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  table.add_column("unlit", "pairs", Align::kRight);
+  table.add_column("displaced", "% of size", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
+                           const std::string& note) {
+    table.add_row({std::string(title), degrees(error.mean()), degrees(error.percentile(kMost)),
+                   degrees(error.percentile(kNearlyAll)), judged_degrees(error.worst), grouped(error.unlit), displaced,
+                   note});
+  };
+  add_row("(specification)", audit.error, "-", "");
+  for (const HostAudit& found : audit.hosts) {
+    std::string note = found.beyond > 0 ? "too many targets" : "";
+    if (note.empty() && !input.passed(found)) note = "beyond the tolerance";
+    add_row(found.host.title, found.error,
+            found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
+  }
+  return '\n' + table.text();
+}
+
+std::string bin_words(std::size_t bin) {
+  if (bin == 0) return formatted("below {:g}", kAuditBinEdges.front());
+  if (bin == kAuditBinEdges.size()) return formatted("{:g} and more", kAuditBinEdges.back());
+  return formatted("{:g} to {:g}", kAuditBinEdges[bin - 1], kAuditBinEdges[bin]);
+}
+
+std::string histogram(const MotionError& error) {
+  Table table;
+  table.add_column("error", "degrees", Align::kRight);
+  table.add_column("pairs", "", Align::kRight);
+  table.add_column("share", "%", Align::kRight);
+  table.add_column("", "", Align::kLeft);
+  const std::size_t most = *std::max_element(error.histogram.begin(), error.histogram.end());
+  for (std::size_t bin = 0; bin < kAuditBins; ++bin) {
+    const double count = static_cast<double>(error.histogram[bin]);
+    const auto bar =
+        most > 0 ? static_cast<std::size_t>(std::lround(kLongestBar * count / static_cast<double>(most))) : 0;
+    const double share = error.judged > 0 ? 100 * count / static_cast<double>(error.judged) : 0;
+    table.add_row({bin_words(bin), grouped(error.histogram[bin]), formatted("{:.1f}", share),
+                   std::string(error.histogram[bin] > 0 ? std::max<std::size_t>(bar, 1) : 0, '#')});
+  }
+  return table.text();
+}
+
+std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
+  const std::string mesh = offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0";
+  const std::string_view weighting = weighting_name(offset.weighting);
+  std::string text = formatted("  {}: mean {}, worst {} degrees from {}-weighted normals", mesh, degrees(offset.mean()),
+                               degrees(offset.worst), weighting);
+  if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
+  if (offset.is_detected && offset.weighting != Weighting::kArea)
+    text += formatted(", which they follow; by area the mean would be {}", degrees(offset.area_mean));
+  else if (!offset.is_detected && offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
+    text += formatted("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
+                      degrees(offset.closest_mean), degrees(offset.closest_worst));
+  return text + '\n';
+}
+
+std::string offset_lines(const Audited& input) {
+  std::string text;
+  std::size_t rows = 0, more = 0;
+  for (const AuthoredOffset& offset : input.audit.offsets) {
+    if (offset.vertices == 0) continue;
+    if (rows++ < kMostAuditRows)
+      text += offset_line(input, offset);
+    else
+      ++more;
+  }
+  if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
+  return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
+}
+
+}  // namespace
+
+std::string worst_label(const Audited& input) {
+  if (!input.audit.worst) return "";
+  const AuditSubject& subject = input.audit.subjects[*input.audit.worst];
+  return place_words(input, subject, subject.error.worst_at);
+}
+
+std::string worst_label(const Audited& input, const HostAudit& host) {
+  return host.worst ? place_words(input, input.audit.subjects[*host.worst], host.error.worst_at) : "";
+}
+
+std::string unlit_label(const Audited& input) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  const auto first =
+      std::find_if(subjects.begin(), subjects.end(), [](const AuditSubject& s) { return s.error.unlit > 0; });
+  return first == subjects.end() ? "" : place_words(input, *first, first->error.unlit_at);
+}
+
+std::string audit_text(const Audited& input) {
+  std::string text = headline(input);
+  if (!input.audit.subjects.empty())
+    text += host_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
+  return with_headings(text + offset_lines(input) + fault_lines(input) + note_lines(input) + advice(input));
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,46 @@
+/// The result of `audit` of one input, for people.
+#ifndef CLI_REPORTS_AUDIT_REPORT_H_
+#define CLI_REPORTS_AUDIT_REPORT_H_
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "chronormal/io/input.h"
+#include "chronormal/workflow/audit.h"
+
+namespace chronormal::cli {
+
+/// One input and what was found in it.
+struct Audited {
+  Input opened;
+  Audit audit;
+  std::optional<double> tolerance;  ///< degrees; nothing: none was asked for
+  std::string bake;                 ///< the inputs as words of a command line; empty: bake takes none such
+
+  [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
+  /// The glTF file, or nullptr.
+  [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
+  [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
+  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was.
+  [[nodiscard]] bool passed() const {
+    if (audit.hosts.empty()) return !tolerance || audit.error.is_within(*tolerance);
+    return std::all_of(audit.hosts.begin(), audit.hosts.end(), [this](const HostAudit& host) { return passed(host); });
+  }
+};
+
+/// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.
+[[nodiscard]] std::string audit_text(const Audited& input);
+
+/// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
+[[nodiscard]] std::string worst_label(const Audited& input);
+
+/// The same of one host.
+[[nodiscard]] std::string worst_label(const Audited& input, const HostAudit& host);
+
+/// The same for the first pair that cannot be lit.
+[[nodiscard]] std::string unlit_label(const Audited& input);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_AUDIT_REPORT_H_

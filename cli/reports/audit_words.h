@@ -1,0 +1,42 @@
+/// How the texts of `audit` name what they speak of, and write its figures.
+#ifndef CLI_REPORTS_AUDIT_WORDS_H_
+#define CLI_REPORTS_AUDIT_WORDS_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "cli/reports/audit_report.h"
+
+namespace chronormal::cli {
+
+/// Tables and lists have so many rows; --json has all.
+inline constexpr std::size_t kMostAuditRows = 16;
+
+/// Two decimals, or the power of ten of what would be none of it.
+[[nodiscard]] std::string degrees(double value);
+
+/// The same, with emphasis where it is a fault.
+[[nodiscard]] std::string judged_degrees(double value);
+
+/// "1 pair", "12 pairs": of a vertex and a sample.
+[[nodiscard]] std::string pairs(std::size_t count);
+
+/// "vertex 17 of Head, primitive 1", "node 3 (eye)", "target 0 (smile)", "animation 1 (talk)".
+[[nodiscard]] std::string vertex_words(const Audited& input, const AuditPlace& place);
+[[nodiscard]] std::string node_words(const Audited& input, std::size_t node);
+[[nodiscard]] std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target);
+[[nodiscard]] std::string animation_words(const Audited& input, std::size_t animation);
+
+/// "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence".
+[[nodiscard]] std::string subject_words(const Audited& input, const AuditSubject& subject);
+
+/// "weight 0.55", "1.25 s".
+[[nodiscard]] std::string moment_words(const AuditSubject& subject, double at);
+
+/// A vertex of a motion at a moment.
+[[nodiscard]] std::string place_words(const Audited& input, const AuditSubject& subject, const AuditPlace& place);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_AUDIT_WORDS_H_

@@ -1,0 +1,316 @@
+#include "cli/reports/bake_report.h"
+
+#include <algorithm>
+#include <array>
+
+#include "chronormal/normals/weighting.h"
+#include "cli/json.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr std::size_t kLongestName = 32;
+
+std::string headline(const BakeReport& report) {
+  return formatted("{} -> {}\n", heading(printable(report.input)), heading(printable(report.output)));
+}
+
+std::string mesh_name(const BakedMesh& mesh) {
+  return mesh.name.empty() ? formatted("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
+}
+
+// How far the deltas are from what they stand for, as the bake computes it: of its targets, and of what its animations
+// were brought into. It is no audit, which looks at all that is shown.
+double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
+
+// The worst error of a mesh before and after, or how far its deltas are from what they stand for.
+std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& report) {
+  if (!report.audit) return {mesh.elements == 0 ? "" : four_decimals(fit_error(mesh))};
+  const MotionError before = error_of_mesh(report.audit->before, mesh.mesh),
+                    after = error_of_mesh(report.audit->after, mesh.mesh);
+  return {four_decimals(before.worst), four_decimals(after.worst)};
+}
+
+void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
+  std::vector<std::string> cells = {mesh_name(mesh)};
+  if (mesh.already_baked)
+    cells.insert(cells.end(), {"baked before", "", "", ""});
+  else if (mesh.elements == 0)
+    cells.insert(cells.end(), {"stays flat", "", "", ""});
+  else
+    cells.insert(cells.end(), {std::string(name_of(mesh.encoding)), grouped(mesh.elements), grouped(mesh.extras.size()),
+                               grouped(mesh.bytes)});
+  for (std::string& cell : error_cells(mesh, report)) cells.push_back(std::move(cell));
+  table.add_row(std::move(cells));
+}
+
+std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
+
+// "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and what cannot be lit.
+std::string change_words(const BeforeAndAfter& audit) {
+  const MotionError &before = audit.before.error, &after = audit.after.error;
+  std::string text =
+      formatted("worst {}, mean {} degrees", change(before.worst, after.worst), change(before.mean(), after.mean()));
+  if (before.unlit + after.unlit > 0)
+    text += formatted(", {} -> {} that cannot be lit", grouped(before.unlit), counted(after.unlit, "pair", "pairs"));
+  return text;
+}
+
+// Which meshes were baked for normals that are not weighted by area.
+std::string weighting_lines(const GltfBake& bake) {
+  std::string text;
+  for (const WeightingInfo& info : kWeightings) {
+    std::string names;
+    std::size_t count = 0;
+    constexpr std::size_t kMostNamed = 4;
+    for (const BakedMesh& mesh : bake.meshes) {
+      if (mesh.already_baked || mesh.elements == 0 || mesh.weighting != info.weighting) continue;
+      if (++count <= kMostNamed) names.append(count > 1 ? ", " : "").append(mesh_name(mesh));
+    }
+    if (count == 0 || info.weighting == Weighting::kArea) continue;
+    if (count > kMostNamed) names += formatted(" and {} more", count - kMostNamed);
+    text +=
+        formatted("{}: for {}-weighted normals, which are fitted (by area they would be exact)\n", names, info.name);
+  }
+  return text;
+}
+
+void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
+  const double sum = all.mean * static_cast<double>(all.judged) + of_mesh.mean * static_cast<double>(of_mesh.judged);
+  all.judged += of_mesh.judged;
+  all.mean = all.judged > 0 ? sum / static_cast<double>(all.judged) : 0;
+  all.most = std::max(all.most, of_mesh.most);
+  all.worst = std::max(all.worst, of_mesh.worst);
+}
+
+// Prints a row for each named host: the errors that it shows before and after, over all meshes, in the animations of the
+// file and for each target alone.
+std::string hosts_text(const GltfBake& bake) {
+  Table table;
+  table.add_column("host", "", Table::Align::kLeft);
+  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  table.add_column("worst", "", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  bool any = false;
+  for (const Host& host : kHosts) {
+    HostChange::Errors all;
+    for (const BakedMesh& mesh : bake.meshes) {
+      for (const HostChange& change : mesh.hosts) {
+        if (change.host != host.name) continue;
+        add_errors(change.poses[0].before, all.before);
+        add_errors(change.poses[0].after, all.after);
+      }
+    }
+    if (all.before.judged == 0) continue;
+    any = true;
+    table.add_row({std::string(host.title), four_decimals(all.before.mean), four_decimals(all.after.mean),
+                   four_decimals(all.before.most), four_decimals(all.after.most), four_decimals(all.before.worst),
+                   four_decimals(all.after.worst)});
+  }
+  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() + "\n" : "";
+}
+
+// Says how many normals keep their old deltas and how many corrections bake left out, and why.
+std::string left_text(const GltfBake& bake) {
+  std::size_t kept = 0, left_out = 0;
+  for (const BakedMesh& mesh : bake.meshes) {
+    kept += mesh.kept;
+    left_out += mesh.left_out;
+  }
+  std::string text;
+  if (kept > 0)
+    text += counted(
+        kept, "normal keeps the deltas that it had: no others are as near, and nowhere worse, in all of these hosts\n",
+        "normals keep the deltas that they had: no others are as near, and nowhere worse, in all of these hosts\n");
+  if (left_out > 0)
+    text += counted(left_out, "correction that would gain least is left out: one of these hosts has no room for more\n",
+                    "corrections that would gain least are left out: one of these hosts has no room for more\n");
+  return text;
+}
+
+std::string lines_after(const BakeReport& report) {
+  std::string text;
+  if (report.drivers_file)
+    text += formatted("what drives the extra targets is in {} too\n", printable(*report.drivers_file));
+  if (report.audit) text += formatted("by audit: {}\n", change_words(*report.audit));
+  return text;
+}
+
+Json common_json(const BakeReport& report) {
+  Json json = json_of_command("bake");
+  json["input"] = {{"name", report.input}};
+  json["output"] = report.output;
+  return json;
+}
+
+Json audit_json(const MotionError& before, const MotionError& after) {
+  return {{"worst_degrees_before", before.worst}, {"worst_degrees_after", after.worst},
+          {"mean_degrees_before", before.mean()}, {"mean_degrees_after", after.mean()},
+          {"unlit_before", before.unlit},         {"unlit_after", after.unlit},
+          {"worse", is_worse(after, before)}};
+}
+
+// JSON keys for the kinds of poses that the errors of a host are measured at: the animations and single targets of the
+// file, random poses, and cross-fades between two animations.
+constexpr std::array<const char*, 3> kPoses = {"file", "random", "cross_fades"};
+
+Json shown_json(const ShownErrors& errors) {
+  return {{"mean_degrees", errors.mean}, {"most_degrees", errors.most}, {"worst_degrees", errors.worst}};
+}
+
+Json hosts_json(const BakedMesh& mesh) {
+  Json hosts = Json::array();
+  for (const HostChange& change : mesh.hosts) {
+    Json host = {{"host", change.host}};
+    for (std::size_t k = 0; k < kPoses.size(); ++k) {
+      const auto& [before, after] = change.poses[k];
+      if (before.judged == 0) continue;
+      host[kPoses[k]] = {{"judged", before.judged}, {"before", shown_json(before)}, {"after", shown_json(after)}};
+    }
+    hosts.push_back(std::move(host));
+  }
+  return hosts;
+}
+
+Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
+  Json extras = Json::array();
+  for (const GltfExtraTarget& extra : mesh.extras) {
+    Json linear = Json::array(), quadratic = Json::array();
+    for (const auto& term : extra.linear) linear.push_back(Json::array({term.i, term.a}));
+    for (const auto& term : extra.quadratic) quadratic.push_back(Json::array({term.i, term.j, term.q}));
+    extras.push_back({{"target", extra.target}, {"linear", std::move(linear)}, {"quadratic", std::move(quadratic)}});
+  }
+  return {{"mesh", mesh.mesh},
+          {"name", mesh.name},
+          {"encoding", name_of(mesh.encoding)},
+          {"weighting", mesh.already_baked ? Json() : Json(weighting_name(mesh.weighting))},
+          {"already_baked", mesh.already_baked},
+          {"different_normals", mesh.elements},
+          {"extra_targets", std::move(extras)},
+          {"bytes", mesh.bytes},
+          {"undriven_targets", mesh.undriven},
+          {"flat_primitives", mesh.left_flat},
+          {"vertices_without_base", mesh.without_base},
+          {"vertices_without_stored_normal", mesh.without_stored},
+          {"rescaled_normals", mesh.rescaled},
+          {"stilled_targets", mesh.stilled},
+          {"fitted_normals", mesh.fitted_elements},
+          {"kept_normals", mesh.kept},
+          {"left_out_targets", mesh.left_out},
+          {"hosts", hosts_json(mesh)},
+          {"target_fit_degrees", mesh.largest_error},
+          {"track_fit_degrees", mesh.resampling_error},
+          {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
+                                              error_of_mesh(report.audit->after, mesh.mesh))
+                                 : Json()}};
+}
+
+void add_audit(const BakeReport& report, Json& json) {
+  if (!report.audit) return;
+  json["audit"] = audit_json(report.audit->before.error, report.audit->after.error);
+}
+
+}  // namespace
+
+std::string worse_text(const BeforeAndAfter& audit) {
+  return "the result is worse than the input: by audit " + change_words(audit);
+}
+
+std::string bake_text(const GltfBake& bake, const BakeReport& report) {
+  std::string text = headline(report);
+  if (!bake.changed) {
+    bool any_baked = false;
+    for (const BakedMesh& mesh : bake.meshes) any_baked |= mesh.already_baked;
+    if (any_baked) {
+      return text +
+             "nothing to bake: it was baked before; the output is as the input. To bake it in another way, start from "
+             "the original\n";
+    }
+    return text + (bake.meshes.empty()
+                       ? "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n"
+                       : "nothing to bake: no other normals would be nearer; the output is as the input\n");
+  }
+  Table table;
+  table.add_column("mesh", "", Table::Align::kLeft);
+  table.add_column("encoding", "", Table::Align::kLeft);
+  table.add_column("normals", "", Table::Align::kRight);
+  table.add_column("extra targets", "", Table::Align::kRight);
+  table.add_column("deltas", "bytes", Table::Align::kRight);
+  if (report.audit) {
+    table.add_column("before", "degrees", Table::Align::kRight);
+    table.add_column("after", "at worst", Table::Align::kRight);
+  } else {
+    table.add_column("fit", "degrees", Table::Align::kRight);
+  }
+  for (const BakedMesh& mesh : bake.meshes) add_row(mesh, report, table);
+  text.append("\n").append(table.text()).append("\n");
+  text += formatted("{} and {} were added", counted(bake.added_targets, "target", "targets"),
+                    counted(bake.added_bytes, "byte of arrays", "bytes of arrays"));
+  if (bake.converted_tracks > 0)
+    text += formatted("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
+                                          "weight tracks are cubic splines"));
+  text += '\n';
+  text += weighting_lines(bake);
+  std::size_t fitted = 0;
+  for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
+  if (fitted > 0)
+    text += counted(fitted, "normal that several targets move at once has deltas",
+                    "normals that several targets move at once have deltas") +
+            " fitted to the weights of the file\n";
+  return text + left_text(bake) + hosts_text(bake) + lines_after(report);
+}
+
+std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
+  std::string text = headline(report);
+  text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
+                    counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
+                    counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
+  if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
+    text += "exact at every instant\n";
+  else
+    text +=
+        formatted("{}: at most {} degrees from the right normals, {}\n",
+                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
+                  encoding == BakeEncoding::kHarmless ? "at 40 instants of each segment" : "as far as can be proven");
+  return text + lines_after(report);
+}
+
+std::string bake_json(const GltfBake& bake, const BakeReport& report) {
+  Json json = common_json(report);
+  json["changed"] = bake.changed;
+  Json meshes = Json::array();
+  for (const BakedMesh& mesh : bake.meshes) meshes.push_back(mesh_json(mesh, report));
+  json["meshes"] = std::move(meshes);
+  json["added_targets"] = bake.added_targets;
+  json["added_bytes"] = bake.added_bytes;
+  json["converted_tracks"] = bake.converted_tracks;
+  json["pointers"] = bake.pointers;
+  json["warnings"] = bake.warnings;
+  json["drivers"] = or_null(report.drivers_file);
+  add_audit(report, json);
+  return json_text(json);
+}
+
+std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
+  Json json = common_json(report);
+  json["encoding"] = name_of(encoding);
+  json["keyframes"] = bake.keyframes;
+  json["vertices"] = bake.vertices;
+  json["targets"] = bake.targets;
+  json["extra_targets"] = bake.extra_targets;
+  json["bytes"] = bake.bytes;
+  json["bound_degrees"] = bake.largest_error;
+  json["without_normals"] = bake.without_normals;
+  json["warnings"] = bake.warnings;
+  add_audit(report, json);
+  return json_text(json);
+}
+
+}  // namespace chronormal::cli

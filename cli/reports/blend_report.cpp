@@ -1,0 +1,209 @@
+#include "cli/reports/blend_report.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "cli/json.h"
+#include "cli/reports/compare_report.h"
+#include "cli/reports/inspect_trouble.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Align = Table::Align;
+
+constexpr std::size_t kShownTargets = 3, kShownName = 24;
+
+double degrees(double radians) { return radians * kDegreesPerRadian; }
+
+bool is_several_primitives(const BlendSubject& subject) {
+  for (const BlendErrors& errors : subject.errors)
+    for (const BlendError& error : errors.deltas)
+      if (error.worst_primitive.value_or(0) > 0) return true;
+  return false;
+}
+
+std::string headline(const NamedBlendComparison& input, const BlendSubject& subject) {
+  std::string text = heading(printable(input.name));
+  if (subject.mesh) {
+    text += formatted(", mesh {}", *subject.mesh);
+    if (!subject.name.empty()) text += formatted(" '{}'", printable(subject.name, kShownName));
+  }
+  text += formatted(": {}, {}, {}\n", counted(subject.vertices, "vertex", "vertices"),
+                    counted(subject.faces, "face", "faces"), counted(subject.targets.size(), "target", "targets"));
+  const std::size_t rows = subject.errors.empty() ? 0 : subject.errors.front().rows;
+  text += subject.mesh ? counted(subject.outputs, "vertex with a normal", "vertices with normals")
+                       : counted(subject.outputs, "different normal", "different normals")
+                             .append(subject.kind == ElementKind::kFaces
+                                         ? ""
+                                         : " of " + std::string(element_kind_name(subject.kind)));
+  if (input.animation.empty())
+    text += formatted(", {} for each number of active targets\n",
+                      counted(rows, "random weight vector", "random weight vectors"));
+  else
+    text += formatted(", {} of animation {}\n", counted(rows, "weight vector", "weight vectors"),
+                      printable(input.animation, kShownName));
+  return text;
+}
+
+std::string target_name(const BlendSubject& subject, std::size_t target) {
+  const std::string& name = subject.targets[target];
+  return name.empty() ? formatted("{}", target) : name;
+}
+
+// The heaviest ones first.
+std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
+  std::vector<BlendError::Weight> weights = error.worst_weights;
+  if (weights.empty()) return "-";
+  std::stable_sort(weights.begin(), weights.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.weight) > std::abs(b.weight); });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(weights.size(), kShownTargets); ++i) {
+    if (i > 0) text += ", ";
+    const std::string& name = subject.targets[weights[i].target];
+    text += formatted("{}{} {:.2f}", weights[i].target, name.empty() ? "" : " (" + printable(name, kShownName) + ")",
+                      weights[i].weight);
+  }
+  if (weights.size() > kShownTargets) text += formatted(" and {} more", weights.size() - kShownTargets);
+  return text;
+}
+
+std::string table_of(const BlendSubject& subject) {
+  Table table;
+  table.add_column("active", "targets", Align::kRight);
+  table.add_column("deltas", "", Align::kLeft);
+  for (const char* const title : {"mean", "rms", "max"}) table.add_column(title, "degrees", Align::kRight);
+  const bool several = is_several_primitives(subject);
+  if (several) table.add_column("worst at", "primitive", Align::kRight);
+  table.add_column(several ? "" : "worst at", one_element(subject.kind), Align::kRight);
+  table.add_column("", "targets", Align::kLeft);
+  for (const BlendErrors& errors : subject.errors) {
+    for (const BlendError& error : errors.deltas) {
+      const Quality& q = error.quality;
+      std::vector<std::string> cells = {&error == &errors.deltas.front() ? grouped(errors.active) : "",
+                                        std::string(name_of(error.deltas)), four_decimals(degrees(q.mean())),
+                                        four_decimals(degrees(q.rms())), four_decimals(degrees(q.max))};
+      if (several) cells.push_back(q.max > 0 ? grouped(error.worst_primitive.value_or(0)) : "-");
+      cells.push_back(q.max > 0 ? grouped(error.worst_output) : "-");
+      cells.push_back(targets_cell(subject, error));
+      table.add_row(std::move(cells));
+    }
+  }
+  return table.text();
+}
+
+// What was left out, a line each.
+std::string notes(const BlendSubject& subject) {
+  std::string text;
+  for (const BlendErrors& errors : subject.errors) {
+    for (const BlendError& error : errors.deltas) {
+      const std::string pairs = formatted(", {} active: ", grouped(errors.active));
+      if (error.quality.missing > 0)
+        text += formatted("{}{}{} without a direction count as 180 degrees\n", name_of(error.deltas), pairs,
+                          counted(error.quality.missing, "normal", "normals"));
+      if (error.quality.degenerate > 0 && error.deltas == BlendDeltas::kExact)
+        text += formatted("degenerate{}{} left out: the geometry has none\n", pairs,
+                          counted(error.quality.degenerate, "normal", "normals"));
+    }
+  }
+  return text;
+}
+
+std::string notes(const BlendComparison& comparison) {
+  std::string text;
+  if (comparison.still > 0)
+    text += formatted("{} left out: no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
+  if (comparison.flat > 0)
+    text += formatted("{} left out: without stored normals (flat in hosts; --elements vertices makes smooth ones)\n",
+                      counted(comparison.flat, "mesh", "meshes"));
+  return text;
+}
+
+Json error_json(const BlendSubject& subject, const BlendError& error) {
+  const Quality& q = error.quality;
+  Json weights = Json::array();
+  for (const BlendError::Weight& w : error.worst_weights)
+    weights.push_back({{"target", w.target}, {"name", subject.targets[w.target]}, {"weight", w.weight}});
+  Json at = {{"row", q.max_at.segment}};
+  if (error.worst_primitive) at["primitive"] = *error.worst_primitive;
+  at[one_element(subject.kind)] = error.worst_output;
+  at["weights"] = std::move(weights);
+  return {{"deltas", name_of(error.deltas)},
+          {"mean_degrees", degrees(q.mean())},
+          {"rms_degrees", degrees(q.rms())},
+          {"max_degrees", degrees(q.max)},
+          {"max_at", q.max > 0 ? std::move(at) : Json()},
+          {"normals", q.count},
+          {"degenerate", q.degenerate},
+          {"missing", q.missing}};
+}
+
+}  // namespace
+
+std::string blend_table(const NamedBlendComparison& input) {
+  std::string text;
+  for (const BlendSubject& subject : input.comparison.subjects) {
+    if (!text.empty()) text += '\n';
+    const std::string remarks = notes(subject);
+    text += headline(input, subject) + '\n' + table_of(subject) + (remarks.empty() ? "" : "\n" + remarks);
+  }
+  const std::string remarks = notes(input.comparison);
+  return text + (text.empty() || remarks.empty() ? "" : "\n") + remarks;
+}
+
+std::string blend_json(const NamedBlendComparison& input) {
+  Json json = json_of_command("compare");
+  json["input"] = input.name;
+  json["weights"] = input.animation.empty() ? "random" : "animation";
+  if (!input.animation.empty()) json["animation"] = input.animation;
+  json["meshes"] = Json::array();
+  for (const BlendSubject& subject : input.comparison.subjects) {
+    Json mesh = Json::object();
+    if (subject.mesh) mesh = {{"mesh", *subject.mesh}, {"name", subject.name}};
+    mesh["vertices"] = subject.vertices;
+    mesh["faces"] = subject.faces;
+    mesh["targets"] = subject.targets.size();
+    mesh["elements"] = element_kind_name(subject.kind);
+    mesh["normals"] = subject.outputs;
+    mesh["errors"] = Json::array();
+    for (const BlendErrors& errors : subject.errors) {
+      Json one = {{"active", errors.active}, {"rows", errors.rows}, {"deltas", Json::array()}};
+      for (const BlendError& error : errors.deltas) one["deltas"].push_back(error_json(subject, error));
+      mesh["errors"].push_back(std::move(one));
+    }
+    json["meshes"].push_back(std::move(mesh));
+  }
+  json["flat_meshes"] = input.comparison.flat;
+  json["still_meshes"] = input.comparison.still;
+  return json_text(json);
+}
+
+std::string blend_csv(const NamedBlendComparison& input) {
+  std::string text =
+      "input,mesh,vertices,faces,targets,elements,active,rows,deltas,mean_degrees,rms_degrees,max_degrees,"
+      "max_row,max_primitive,max_output,max_targets,normals,degenerate,missing\n";
+  for (const BlendSubject& subject : input.comparison.subjects) {
+    for (const BlendErrors& errors : subject.errors) {
+      for (const BlendError& error : errors.deltas) {
+        const Quality& q = error.quality;
+        std::string targets;
+        for (const BlendError::Weight& w : error.worst_weights)
+          targets += formatted("{}{}:{}", targets.empty() ? "" : " ", target_name(subject, w.target), w.weight);
+        text += formatted(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name),
+            subject.mesh ? formatted("{}", *subject.mesh) : "", subject.vertices, subject.faces, subject.targets.size(),
+            element_kind_name(subject.kind), errors.active, errors.rows, name_of(error.deltas), degrees(q.mean()),
+            degrees(q.rms()), degrees(q.max), q.max > 0 ? formatted("{}", q.max_at.segment) : "",
+            error.worst_primitive ? formatted("{}", *error.worst_primitive) : "",
+            q.max > 0 ? formatted("{}", error.worst_output) : "", csv_field(targets), q.count, q.degenerate, q.missing);
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace chronormal::cli

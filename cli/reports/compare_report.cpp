@@ -1,0 +1,242 @@
+#include "cli/reports/compare_report.h"
+
+#include "cli/json.h"
+#include "cli/options/command.h"
+#include "cli/reports/inspect_trouble.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Align = Table::Align;
+
+double degrees(double radians) { return radians * kDegreesPerRadian; }
+
+bool is_of_targets(const Comparison& comparison) { return comparison.motion == MotionKind::kTargets; }
+
+std::string headline(const NamedComparison& input) {
+  const Comparison& c = input.comparison;
+  return formatted(
+             "{}: {}, {}, {} x {} samples\n", heading(printable(input.name)), counted(c.vertices, "vertex", "vertices"),
+             counted(c.faces, "face", "faces"),
+             counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
+             c.samples) +
+         (c.kind == ElementKind::kFaces
+              ? std::string()
+              : formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
+                          element_kind_name(c.kind)));
+}
+
+Json input_json(const NamedComparison& input) {
+  const Comparison& c = input.comparison;
+  Json json = {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
+  if (c.kind != ElementKind::kFaces) json["different_normals"] = c.elements;
+  return json;
+}
+
+const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
+
+Json scheme_json(const SchemeComparison& row, bool with_times) {
+  const Quality& q = row.quality;
+  Json json = {{"scheme", row.scheme},
+               {"sum_degrees", degrees(q.sum)},
+               {"relative_to_linear", or_null(row.relative_to_linear)},
+               {"mean_degrees", degrees(q.mean())},
+               {"rms_degrees", degrees(q.rms())},
+               {"max_degrees", degrees(q.max)},
+               {"max_at", {{"segment", q.max_at.segment}, {"element", q.max_at.element}, {"t", q.max_at.t}}},
+               {"degenerate", q.degenerate},
+               {"missing", q.missing},
+               {"fallbacks", row.fallbacks},
+               {"flagged", row.flagged}};
+  if (with_times) {
+    json["prepare_ns"] = row.prepare_ns;
+    json["evaluate_ns"] = row.evaluate_ns;
+  }
+  json["bytes"] = row.bytes;
+  json["access"] = access_name(row);
+  json["operations"] = {{"add", row.operations.add},
+                        {"multiply", row.operations.multiply},
+                        {"divide", row.operations.divide},
+                        {"sqrt", row.operations.sqrt},
+                        {"trigonometric", row.operations.trigonometric}};
+  return json;
+}
+
+Json schemes_json(const NamedComparison& input, bool with_times) {
+  Json schemes = Json::array();
+  for (const SchemeComparison& row : input.comparison.schemes) schemes.push_back(scheme_json(row, with_times));
+  return schemes;
+}
+
+std::string sample_pairs(std::size_t count, const std::string& word) {
+  return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
+}
+
+// What a table does not show, a line each: shares that were treated otherwise, and what was left out.
+std::string notes(const Comparison& comparison, const std::string& prefix) {
+  const std::size_t pairs = comparison.elements * comparison.segments;
+  const std::string word = one_element(comparison.kind);
+  const std::string of = comparison.segments > 1
+                             ? "(" + word + (is_of_targets(comparison) ? ", target) pairs" : ", segment) pairs")
+                         : pairs == 1 ? word
+                                      : std::string(element_kind_name(comparison.kind));
+  const auto share = [pairs, &of](std::size_t count) {
+    return formatted("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
+                     100 * static_cast<double>(count) / static_cast<double>(pairs));
+  };
+  std::string text, played;
+  std::size_t degenerate = 0;
+  for (const SchemeComparison& row : comparison.schemes) {
+    if (row.sequential) played += (played.empty() ? "" : ", ") + row.scheme;
+    degenerate = std::max(degenerate, row.quality.degenerate);
+    const auto add = [&](std::size_t count, const std::string& what) {
+      if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
+    };
+    add(row.flagged, share(row.flagged) + " evaluated in double");
+    add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
+    add(row.quality.missing, sample_pairs(row.quality.missing, word) + " without a normal of the scheme left out");
+  }
+  if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
+  if (degenerate > 0)
+    text += formatted("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
+  return text;
+}
+
+std::string segment_cell(const NamedComparison& input, std::size_t segment) {
+  constexpr std::size_t kLongest = 24;
+  return segment < input.targets.size() ? printable(target_label(input.targets, segment), kLongest) : grouped(segment);
+}
+
+std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
+
+}  // namespace
+
+std::string one_element(ElementKind kind) {
+  if (kind == ElementKind::kVertices) return "vertex";
+  return kind == ElementKind::kCorners ? "corner" : "face";
+}
+
+std::string csv_field(const std::string& field) {
+  const std::string text = printable(field);
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string compare_table(const NamedComparison& input, bool with_times) {
+  Table table;
+  table.add_column("scheme", "", Align::kLeft);
+  table.add_column("sum", "degrees", Align::kRight);
+  table.add_column("vs linear", "ratio", Align::kRight);
+  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("rms", "degrees", Align::kRight);
+  table.add_column("max", "degrees", Align::kRight);
+  const bool several_segments = input.comparison.segments > 1;
+  if (several_segments && is_of_targets(input.comparison))
+    table.add_column("worst at", "target", Align::kLeft);
+  else if (several_segments)
+    table.add_column("worst at", "segment", Align::kRight);
+  const std::string element = one_element(input.comparison.kind);
+  table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
+  table.add_column("", is_of_targets(input.comparison) ? "weight" : "t", Align::kRight);
+  table.add_column("memory", "B/" + element, Align::kRight);
+  if (with_times) {
+    table.add_column("prepare", "ns/" + element, Align::kRight);
+    table.add_column("evaluate", "ns/" + element, Align::kRight);
+  }
+
+  for (const SchemeComparison& row : input.comparison.schemes) {
+    const Quality& q = row.quality;
+    std::vector<std::string> cells = {row.scheme,
+                                      grouped_sum(degrees(q.sum)),
+                                      ratio_cell(row.relative_to_linear),
+                                      four_decimals(degrees(q.mean())),
+                                      four_decimals(degrees(q.rms())),
+                                      four_decimals(degrees(q.max))};
+    if (several_segments) cells.push_back(q.max > 0 ? segment_cell(input, q.max_at.segment) : "-");
+    cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
+    cells.push_back(q.max > 0 ? formatted("{:.2f}", q.max_at.t) : "-");
+    cells.push_back(formatted("{:.0f}", row.bytes));
+    if (with_times) {
+      cells.push_back(formatted("{:.0f}", row.prepare_ns));
+      cells.push_back(formatted("{:.1f}", row.evaluate_ns));
+    }
+    table.add_row(std::move(cells));
+  }
+  const std::string remarks = notes(input.comparison, "");
+  return headline(input) + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
+}
+
+std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs) {
+  std::string text;
+  for (const NamedComparison& input : inputs) text += headline(input);
+  Table table;
+  table.add_column("scheme", "", Align::kLeft);
+  for (const NamedComparison& input : inputs) {
+    table.add_column(printable(short_name(input.name)), "sum, degrees", Align::kRight);
+    table.add_column("", "vs linear", Align::kRight);
+  }
+  const std::size_t rows = inputs.front().comparison.schemes.size();
+  for (std::size_t r = 0; r < rows; ++r) {
+    std::vector<std::string> cells = {inputs.front().comparison.schemes[r].scheme};
+    for (const NamedComparison& input : inputs) {
+      const SchemeComparison& row = input.comparison.schemes[r];
+      cells.push_back(grouped_sum(degrees(row.quality.sum)));
+      cells.push_back(ratio_cell(row.relative_to_linear));
+    }
+    table.add_row(std::move(cells));
+  }
+  std::string remarks;
+  for (const NamedComparison& input : inputs)
+    remarks += notes(input.comparison, printable(short_name(input.name)) + ": ");
+  return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
+}
+
+std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
+  Json json = json_of_command("compare");
+  if (!several) json["input"] = input_json(inputs.front());
+  json["elements"] = element_kind_name(inputs.front().comparison.kind);
+  json["samples"] = inputs.front().comparison.samples;
+  if (several) {
+    json["inputs"] = Json::array();
+    for (const NamedComparison& input : inputs)
+      json["inputs"].push_back({{"input", input_json(input)}, {"schemes", schemes_json(input, with_times)}});
+  } else {
+    json["schemes"] = schemes_json(inputs.front(), with_times);
+  }
+  return json_text(json);
+}
+
+std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {
+  std::string text =
+      "input,vertices,faces,segments,elements,samples,scheme,sum_degrees,relative_to_linear,mean_degrees,rms_degrees,"
+      "max_degrees,max_segment,max_element,max_t,degenerate,missing,fallbacks,flagged,";
+  if (with_times) text += "prepare_ns,evaluate_ns,";
+  text += "bytes,access,add,multiply,divide,sqrt,trigonometric\n";
+  for (const NamedComparison& input : inputs) {
+    const Comparison& c = input.comparison;
+    for (const SchemeComparison& row : c.schemes) {
+      const Quality& q = row.quality;
+      text += formatted("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name), c.vertices,
+                        c.faces, c.segments, element_kind_name(c.kind), c.samples, csv_field(row.scheme),
+                        degrees(q.sum), row.relative_to_linear ? formatted("{}", *row.relative_to_linear) : "",
+                        degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
+                        q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
+      if (with_times) text += formatted("{},{},", row.prepare_ns, row.evaluate_ns);
+      const OperationCounts& o = row.operations;
+      text += formatted("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
+                        o.trigonometric);
+    }
+  }
+  return text;
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,66 @@
+/// Text with numbers in it: the one place of the program that makes digits of them.
+///
+/// What is computed may be infinite or no number at all, where a file has weights of 3e38 or no pair was judged. No
+/// reader of a table, of CSV or of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has
+/// no word for it either, and cli/json.h writes null.) fmt::format would print it, so nothing else in cli/ calls that.
+#ifndef CLI_TERMINAL_FORMAT_H_
+#define CLI_TERMINAL_FORMAT_H_
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace chronormal::cli {
+
+/// A number on its way into a text.
+struct Number {
+  double value = 0;
+};
+
+/// What stands for an argument of formatted(): itself, but for a Number in place of a floating-point one.
+template <class T>
+[[nodiscard]] const T& as_argument(const T& value) noexcept {
+  return value;
+}
+template <std::floating_point T>
+[[nodiscard]] Number as_argument(const T& value) noexcept {
+  return {static_cast<double>(value)};
+}
+template <class T>
+using Argument = decltype(as_argument(std::declval<const T&>()));
+
+/// fmt::format(), but for numbers that are not finite, which come out as "-".
+template <class... Args>
+[[nodiscard]] std::string formatted(fmt::format_string<Argument<Args>...> text, const Args&... args) {
+  return fmt::format(text, as_argument(args)...);
+}
+
+}  // namespace chronormal::cli
+
+template <>
+struct fmt::formatter<chronormal::cli::Number> {
+  template <class Context>
+  constexpr auto parse(Context& context) {
+    if (std::is_constant_evaluated()) return fmt::formatter<double>().parse(context);  // which checks the text
+    const auto end = std::find(context.begin(), context.end(), '}');
+    form_ = {context.begin(), end};
+    return end;
+  }
+
+  template <class Context>
+  auto format(const chronormal::cli::Number& number, Context& context) const {
+    const std::string form = std::isfinite(number.value) ? "{:" + std::string(form_) + '}' : "-";
+    return fmt::vformat_to(context.out(), form, fmt::make_format_args(number.value));
+  }
+
+ private:
+  std::string_view form_;  // of the text: ".2f"
+};
+
+#endif  // CLI_TERMINAL_FORMAT_H_

@@ -1,0 +1,94 @@
+#include "cli/terminal/process.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <exception>
+
+#include "chronormal/io/output.h"
+#include "cli/terminal/print.h"
+
+namespace chronormal::cli {
+namespace {
+
+constexpr int kExitFailed = 1;
+
+struct Ending {
+  int signal;
+  const char* message;
+};
+
+constexpr Ending kEndings[] = {
+    {SIGHUP, "chronormal: ended, since its terminal is gone (SIGHUP)\n"},
+    {SIGINT, "chronormal: interrupted (SIGINT)\n"},
+    {SIGQUIT, "chronormal: ended (SIGQUIT)\n"},
+    {SIGTERM, "chronormal: ended (SIGTERM)\n"},
+    {SIGXCPU, "chronormal: ended, since it took more time than allowed (SIGXCPU)\n"},
+};
+
+volatile std::sig_atomic_t stderr_is_terminal = 0;
+
+// A progress bar may stand in the line.
+void say_ending(const char* message) {
+  if (stderr_is_terminal != 0) say_raw("\r\033[K");
+  say_raw(message);
+}
+
+extern "C" void end_by_signal(int signal) {
+  remove_temporaries();
+  for (const Ending& ending : kEndings) {
+    if (ending.signal == signal) say_ending(ending.message);
+  }
+  // The default action is there again (SA_RESETHAND), and comes when the handler returns.
+  (void)std::raise(signal);
+}
+
+extern "C" void end_by_lost_input(int /*signal*/) {
+  remove_temporaries();
+  say_ending("chronormal: an input became shorter while it was read, or can not be read any more\n");
+  ::_exit(kExitFailed);
+}
+
+void end_by_exception() {
+  remove_temporaries();
+  say_ending("chronormal: out of memory, or an internal error\n");
+  ::_exit(kExitFailed);
+}
+
+void install(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // of SIG_IGN nothing
+  (void)::sigfillset(&action.sa_mask);
+  (void)::sigaction(signal, &action, nullptr);
+}
+
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// The lowest numbers are given first. Each is open in the direction that it is not used in.
+void open_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+}  // namespace
+
+void prepare_process() noexcept {
+  open_standard_streams();
+  stderr_is_terminal = ::isatty(STDERR_FILENO);
+  for (const Ending& ending : kEndings) {
+    if (!is_ignored(ending.signal)) install(ending.signal, end_by_signal);
+  }
+  install(SIGBUS, end_by_lost_input);
+  install(SIGXFSZ, SIG_IGN);
+  std::set_terminate(end_by_exception);
+}
+
+}  // namespace chronormal::cli

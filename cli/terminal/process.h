@@ -1,0 +1,21 @@
+/// How the program lives and ends: its standard streams, and the signals that it gets.
+///
+///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   temporary files are removed, a line is said, and the signal ends the
+///                                                 program (128 + n to a shell); those that are ignored stay ignored
+///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
+///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
+///     an exception where none may be              removes temporary files, and exit code 1
+///
+/// SIGPIPE ends the program as it ends every other one: no temporary file is there while it writes to a pipe.
+#ifndef CLI_TERMINAL_PROCESS_H_
+#define CLI_TERMINAL_PROCESS_H_
+
+namespace chronormal::cli {
+
+/// Opens what is closed of stdin, stdout and stderr, so that no file takes their place and gets what is meant for them:
+/// reading and writing there stays an error. Installs the handlers. To be called first of all.
+void prepare_process() noexcept;
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_TERMINAL_PROCESS_H_

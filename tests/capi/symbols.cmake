@@ -1,0 +1,18 @@
+# cmake -DNM=... -DLIBRARY=... -DLIST=symbols.txt -P: the functions that the shared library exports are those of the list,
+# no more and no less. Programs that are built stand on each of them (docs/stability.md).
+execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE output RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${NM} cannot read ${LIBRARY}")
+endif()
+string(REGEX MATCHALL "[^\n]+ T " lines "${output}")
+set(exported "")
+foreach(line ${lines})
+  string(REGEX REPLACE "(@.*)? T $" "" name "${line}")
+  list(APPEND exported ${name})
+endforeach()
+file(STRINGS ${LIST} listed)
+list(SORT exported)
+list(SORT listed)
+if(NOT exported STREQUAL listed)
+  message(FATAL_ERROR "exported: ${exported}\nlisted in ${LIST}: ${listed}")
+endif()
