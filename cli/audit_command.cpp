@@ -9,8 +9,8 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/json.h"
 #include "cli/audit_files.h"
-#include "cli/audit_json.h"
 #include "cli/audit_report.h"
 #include "cli/command.h"
 #include "cli/format.h"
@@ -147,10 +147,11 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   Result<Audited> audited = audit_input(options, how, progress);
   progress.clear();
   if (!audited) return audited.error();
-  const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
+  const Audited& found = audited.value();
+  const std::string text = options.json ? audit_json(found.name(), found.audit, found.tolerance) : audit_text(found);
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
-  return say_what_is_beyond(audited.value(), "") ? kExitDone : kExitBeyond;
+  return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
 // Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the

@@ -6,8 +6,8 @@
 
 #include "cli/audit_words.h"
 #include "cli/format.h"
-#include "cli/inspect_trouble.h"
 #include "cli/table.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

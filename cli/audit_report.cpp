@@ -10,9 +10,9 @@
 #include "cli/audit_findings.h"
 #include "cli/audit_words.h"
 #include "cli/format.h"
-#include "cli/inspect_trouble.h"
 #include "cli/table.h"
 #include "cli/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

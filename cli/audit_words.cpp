@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "cli/format.h"
-#include "cli/inspect_trouble.h"
 #include "cli/table.h"
 #include "cli/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

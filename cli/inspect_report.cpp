@@ -9,6 +9,7 @@
 #include "cli/format.h"
 #include "cli/table.h"
 #include "cli/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

@@ -44,6 +44,7 @@
 #include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion; deltas of targets against the truth
 #include "chronormal/workflow/hosts.h"    // programs that show glTF files, and what they make of stored normals
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
+#include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

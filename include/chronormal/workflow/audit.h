@@ -24,6 +24,7 @@
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_H_
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -202,6 +203,13 @@ struct Audit {
   std::vector<HostAudit> hosts;      ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
+
+  /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
+  [[nodiscard]] bool is_within(double degrees) const noexcept {
+    if (hosts.empty()) return error.is_within(degrees);
+    return std::all_of(hosts.begin(), hosts.end(),
+                       [degrees](const HostAudit& host) { return host.is_within(degrees); });
+  }
 };
 
 /// The errors of the subjects of one mesh, added up; none where it has no subject.
