@@ -31,6 +31,7 @@ struct Options {
   std::string hosts;
   std::optional<std::size_t> samples;
   std::optional<double> tolerance;
+  std::optional<std::string> errors;  // where to write every single one
   bool no_weld = false;
   bool json = false;
 };
@@ -104,6 +105,11 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   if (options.input.world)
     return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
   if (const Status status = check_input(options.input); !status) return status.error();
+  if (options.errors) {
+    if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
+      return output.error();
+  }
+  how.keep_errors = options.errors.has_value();
   how.samples = options.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
@@ -148,6 +154,10 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   progress.clear();
   if (!audited) return audited.error();
   const Audited& found = audited.value();
+  if (options.errors) {
+    const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
+    if (!written) return written.error();
+  }
   const std::string text = options.json ? audit_json(found.name(), found.audit, found.tolerance) : audit_text(found);
   if (const Status written = write_output(options.common.output, text, options.common.force); !written)
     return written.error();
@@ -167,6 +177,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
                         Progress& progress) {
   if (!options.input.animation.empty())
     return misuse("--animation", "it chooses among the animations of one file: name one file");
+  if (options.errors) return misuse("--errors", "it holds the errors of one input: name one file");
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {
@@ -228,6 +239,9 @@ Command audit_command() {
          {.check = check_whole(2, kMostAuditSamples)}},
         {"--tolerance DEG", &options->tolerance,
          "exit with 4 if the worst error is beyond this; with --host, in any of them"},
+        {"--errors FILE", &options->errors,
+         "write the error of every vertex at every sample: .npz for programs, or .ply\n"
+         "with the worst of each vertex as its quality, for MeshLab and Blender"},
         {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
         {"--json", &options->json, "one JSON object"}},
        options->common.table(false)},

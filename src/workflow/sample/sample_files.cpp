@@ -109,7 +109,7 @@ class Arrays {
 std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
   if (format == SampleFormat::kPly) {
-    PlyNormals properties;
+    PlyProperties properties;
     (kind == ElementKind::kFaces ? properties.of_faces : properties.of_vertices) = packed(normals);
     return write_ply(topology, packed(pose.positions), properties, PlyEncoding::kBinaryLittleEndian);
   }
