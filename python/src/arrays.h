@@ -5,6 +5,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <memory>
 #include <optional>
@@ -18,9 +19,12 @@ namespace chronormal::python {
 
 namespace py = pybind11;
 
-// C-contiguous. Arguments of float32 and uint32 are marked noconvert(): pybind11 refuses any other array.
+// A C-contiguous array. pybind11 makes one of what has another layout or a narrower type; python/chronormal does so before.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
+// The same, of any type of number.
+template <class T>
+using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
 // Raises what stands for an error: OSError for files, ValueError for what the caller gave.
 [[noreturn]] inline void raise(const Error& error) {
@@ -37,8 +41,13 @@ T value_or_raise(Result<T> result) {
   return std::move(result).value();
 }
 
-inline void require(bool condition, const std::string& place, const std::string& message) {
-  if (!condition) raise(Error{ErrorCode::kUsage, place, message});
+[[noreturn]] inline void refuse(const std::string& place, const std::string& message) {
+  raise(Error{ErrorCode::kUsage, place, message});
+}
+
+// Refuses what does not hold; nothing is made of the words where it does, as a call may take less than a microsecond.
+inline void require(bool condition, const char* place, const char* message) {
+  if (!condition) refuse(place, message);
 }
 
 inline std::string shape_text(const py::array& array) {
@@ -48,8 +57,10 @@ inline std::string shape_text(const py::array& array) {
 }
 
 // (n, 3) float32.
-inline VectorView<const float> vectors_of(const Array<float>& array, const std::string& place) {
-  require(array.ndim() == 2 && array.shape(1) == 3, place, "the shape is " + shape_text(array) + " and must be (n, 3)");
+template <int kFlags>
+VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    refuse(place, "the shape is " + shape_text(array) + " and must be (n, 3)");
   return VectorView<const float>::packed(array.data(), static_cast<std::size_t>(array.shape(0)));
 }
 

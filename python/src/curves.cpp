@@ -45,14 +45,14 @@ struct Numbers {
     many = Array<double>::ensure(given);
     if (!*many) {
       PyErr_Clear();
-      require(false, place, "it must be a number, or numbers in a row");
+      refuse(place, "it must be a number, or numbers in a row");
     }
     if (many->ndim() == 0) {
       is_one = true;
       one = *many->data();
       return;
     }
-    require(many->ndim() == 1, place, "the shape is " + shape_text(*many) + " and must be (T,)");
+    if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
   }
 
   [[nodiscard]] std::size_t count() const { return is_one ? 1 : static_cast<std::size_t>(many->size()); }
@@ -84,7 +84,7 @@ class Curves {
     curves_.emplace(make(std::move(topology), first, last, options));
   }
 
-  void next(const Array<float>& from, const Array<float>& to) {
+  void next(const AnyArray<float>& from, const AnyArray<float>& to) {
     const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
     Status status = Success{};
     {
@@ -103,24 +103,24 @@ class Curves {
     return result;
   }
 
-  py::array errors(const py::object& t, const Array<float>& normals, int threads) {
+  py::array errors(const py::object& t, const AnyArray<float>& normals, int threads) {
     const Numbers times(t, "t");
     const ChosenThreads chosen(threads);
     const auto n = static_cast<py::ssize_t>(size()), rows = static_cast<py::ssize_t>(times.count());
     const bool fits = times.is_one ? normals.ndim() == 2 && normals.shape(0) == n && normals.shape(1) == 3
                                    : normals.ndim() == 3 && normals.shape(0) == rows && normals.shape(1) == n &&
                                          normals.shape(2) == 3;
-    require(fits, "normals",
-            "the shape is " + shape_text(normals) + " and must be (" +
-                (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) + ", 3)");
+    if (!(fits))
+      refuse("normals", "the shape is " + shape_text(normals) + " and must be (" +
+                            (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) + ", 3)");
     const std::size_t count = times.count() * size();
     std::vector<float> exact(3 * count), degrees(count);
     write(times, chosen.threads(), exact.data());
     {
       const float* const shown = normals.data();
       const py::gil_scoped_release released;
-      write_errors(VectorView<const float>::packed(exact.data(), count),
-                   VectorView<const float>::packed(shown, count), degrees.data());
+      write_errors(VectorView<const float>::packed(exact.data(), count), VectorView<const float>::packed(shown, count),
+                   degrees.data());
     }
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
   }
@@ -135,10 +135,9 @@ class Curves {
     std::array<char, 32> tolerance{};
     (void)std::snprintf(tolerance.data(), tolerance.size(), "%.3g", curves_->options().tolerance);
     const ElementKind kind = curves_->options().elements.kind;
-    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " +
-           std::to_string(curves_->curves().size()) + " of them different, weighting " +
-           std::string(weighting_name(curves_->options().weighting)) + ", tolerance " + tolerance.data() + ", " +
-           std::to_string(bytes()) + " bytes>";
+    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves_->curves().size()) +
+           " of them different, weighting " + std::string(weighting_name(curves_->options().weighting)) +
+           ", tolerance " + tolerance.data() + ", " + std::to_string(bytes()) + " bytes>";
   }
 
  private:
@@ -176,8 +175,9 @@ class Blend {
       const std::string place = "deltas[" + std::to_string(k) + "]";
       const std::size_t count = vectors_of(deltas, place).count;
       if (vertices.size() == 0 && count > 0) {
-        require(count == view.count, place,
-                "there are " + std::to_string(count) + " deltas for " + std::to_string(view.count) + " vertices");
+        if (!(count == view.count))
+          refuse(place,
+                 "there are " + std::to_string(count) + " deltas for " + std::to_string(view.count) + " vertices");
         set.targets.push_back(BlendTarget::from_dense({deltas.data(), 3 * count}));
         continue;
       }
@@ -195,9 +195,9 @@ class Blend {
   py::array unit_normals(const Array<double>& weights, const py::object& out, int threads) {
     const auto k = static_cast<py::ssize_t>(targets_);
     const bool is_one = weights.ndim() == 1;
-    require((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k, "weights",
-            "the shape is " + shape_text(weights) + " and must be (" + std::to_string(k) + ",) or (T, " +
-                std::to_string(k) + ")");
+    if (!((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k))
+      refuse("weights", "the shape is " + shape_text(weights) + " and must be (" + std::to_string(k) + ",) or (T, " +
+                            std::to_string(k) + ")");
     const ChosenThreads chosen(threads);
     const std::size_t rows = is_one ? 1 : static_cast<std::size_t>(weights.shape(0)), count = size();
     py::array result = result_array(out, is_one ? std::nullopt : std::optional(rows), count);
@@ -206,8 +206,8 @@ class Blend {
     const py::gil_scoped_release released;
     const std::lock_guard lock(mutex_);
     for (std::size_t r = 0; r < rows; ++r) {
-      blend_->unit_normals({values + r * targets_, targets_},
-                           VectorView<float>::packed(data + 3 * count * r, count), chosen.threads());
+      blend_->unit_normals({values + r * targets_, targets_}, VectorView<float>::packed(data + 3 * count * r, count),
+                           chosen.threads());
     }
     return result;
   }
@@ -216,9 +216,9 @@ class Blend {
   [[nodiscard]] std::size_t targets() const { return targets_; }
   [[nodiscard]] std::size_t bytes() const { return blend_->normals().bytes(); }
   [[nodiscard]] std::string text() const {
-    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " +
-           std::to_string(blend_->normals().size()) + " of them different, " + std::to_string(targets_) +
-           (targets_ == 1 ? " target, " : " targets, ") + std::to_string(bytes()) + " bytes>";
+    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend_->normals().size()) +
+           " of them different, " + std::to_string(targets_) + (targets_ == 1 ? " target, " : " targets, ") +
+           std::to_string(bytes()) + " bytes>";
   }
 
  private:
@@ -238,21 +238,25 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 }
 
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size) {
+  constexpr const char* kWanted = "it must be a C-contiguous array of float32";
   const auto n = static_cast<py::ssize_t>(size);
   if (out.is_none()) {
     if (rows) return py::array_t<float>({static_cast<py::ssize_t>(*rows), n, py::ssize_t{3}});
     return py::array_t<float>({n, py::ssize_t{3}});
   }
-  require(py::isinstance<Array<float>>(out), "out", "it must be a C-contiguous array of float32");
+  require(py::isinstance<py::array>(out), "out", kWanted);
   auto array = py::reinterpret_borrow<py::array>(out);
-  require((array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0, "out", "its memory is not aligned");
+  const py::dtype type = array.dtype();
+  constexpr int kWhole = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
+  require(
+      type.num() == py::detail::npy_api::NPY_FLOAT_ && type.byteorder() == '=' && (array.flags() & kWhole) == kWhole,
+      "out", kWanted);
   const bool fits = rows ? array.ndim() == 3 && array.shape(0) == static_cast<py::ssize_t>(*rows) &&
                                array.shape(1) == n && array.shape(2) == 3
                          : array.ndim() == 2 && array.shape(0) == n && array.shape(1) == 3;
   if (!fits) {
-    require(false, "out",
-            "the shape is " + shape_text(array) + " and must be (" + (rows ? std::to_string(*rows) + ", " : "") +
-                std::to_string(n) + ", 3)");
+    refuse("out", "the shape is " + shape_text(array) + " and must be (" + (rows ? std::to_string(*rows) + ", " : "") +
+                      std::to_string(n) + ", 3)");
   }
   require(array.writeable(), "out", "it is read-only");
   return array;
@@ -289,8 +293,8 @@ NaN      where the exact normal or the given one has no direction)")
 
 Made by chronormal.blend(). len() is the number of normals n: faces, vertices or corners.)")
       .def(py::init<const Array<float>&, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>&,
-                    const Array<std::uint32_t>&, const Array<std::uint32_t>&, const std::string&,
-                    std::optional<double>, bool>())
+                    const Array<std::uint32_t>&, const Array<std::uint32_t>&, const std::string&, std::optional<double>,
+                    bool>())
       .def("unit_normals", &Blend::unit_normals, py::arg("weights"), py::arg("out") = py::none(),
            py::arg("threads") = 1,
            R"(Return the unit normals at some weights, (0, 0, 0) where there is none.

@@ -31,7 +31,7 @@ TEST(ResultJson, is_the_text_that_the_program_prints) {
   const Motion& motion = *input.motion().value();
   const Audit found = audit(motion, *input.normals().value(), {}).value();
   EXPECT_EQ(audit_json(input.name(), found, std::nullopt), printed("audit"));
-  const Comparison comparison = compare(motion, {.schemes = {"linear"}}).value();
+  const Comparison comparison = compare(motion, {.schemes = {"linear"}, .progress = {}}).value();
   EXPECT_EQ(compare_json({{input.name(), comparison}}, false, false), printed("compare --schemes linear --no-times"));
   EXPECT_EQ(inspect_json(inspect_input(twist(), "").value()), printed("inspect"));
 }
