@@ -106,6 +106,7 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
     return misuse("--world", "every mesh is judged in its own space; nodes turn shown and right normals alike");
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.errors) {
+    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }

@@ -155,6 +155,7 @@ Result<int> run(const Options& options) {
 
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
+    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }

@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,6 +98,20 @@ class ChosenThreads {
   Threads threads_;
   std::optional<ThreadLimit> limit_;
 };
+
+// Memory of zeros for objects of Python. `Curves.__new__(Curves)` makes one without calling its constructor, and what pybind11
+// then hands to a method is this memory: members that mean "not made" where they are zero can be asked.
+struct ZeroedObject {
+  static void* operator new(std::size_t size) {
+    void* const memory = ::operator new(size);
+    std::memset(memory, 0, size);
+    return memory;
+  }
+  static void* operator new(std::size_t, void* place) noexcept { return place; }
+  static void operator delete(void* memory) noexcept { ::operator delete(memory); }
+};
+
+inline void require_made(bool is_made) { require(is_made, "self", "it was never made: its __init__() has not run"); }
 
 void add_curves(py::module_& module);
 void add_files(py::module_& module);

@@ -66,7 +66,7 @@ struct Numbers {
   std::optional<Array<double>> many;  // an empty array would have to be made
 };
 
-class Curves {
+class Curves : public ZeroedObject {
  public:
   Curves(const Array<float>& from, const Array<float>& to, const Array<std::uint32_t>& offsets,
          const Array<std::uint32_t>& corners, const std::string& elements, std::optional<double> crease,
@@ -85,6 +85,7 @@ class Curves {
   }
 
   void next(const AnyArray<float>& from, const AnyArray<float>& to) {
+    require_made(curves_.has_value());
     const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
     Status status = Success{};
     {
@@ -125,18 +126,18 @@ class Curves {
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
   }
 
-  [[nodiscard]] std::size_t size() const { return curves_->size(); }
-  [[nodiscard]] std::size_t bytes() const { return curves_->curves().bytes(); }
-  [[nodiscard]] double fit_bound() const { return curves_->fit_bound(); }
+  [[nodiscard]] std::size_t size() const { return curves().size(); }
+  [[nodiscard]] std::size_t bytes() const { return curves().curves().bytes(); }
+  [[nodiscard]] double fit_bound() const { return curves().fit_bound(); }
   [[nodiscard]] std::string elements() const {
-    return std::string(element_kind_name(curves_->options().elements.kind));
+    return std::string(element_kind_name(curves().options().elements.kind));
   }
   [[nodiscard]] std::string text() const {
     std::array<char, 32> tolerance{};
-    (void)std::snprintf(tolerance.data(), tolerance.size(), "%.3g", curves_->options().tolerance);
-    const ElementKind kind = curves_->options().elements.kind;
-    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves_->curves().size()) +
-           " of them different, weighting " + std::string(weighting_name(curves_->options().weighting)) +
+    (void)std::snprintf(tolerance.data(), tolerance.size(), "%.3g", curves().options().tolerance);
+    const ElementKind kind = curves().options().elements.kind;
+    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves().curves().size()) +
+           " of them different, weighting " + std::string(weighting_name(curves().options().weighting)) +
            ", tolerance " + tolerance.data() + ", " + std::to_string(bytes()) + " bytes>";
   }
 
@@ -158,11 +159,16 @@ class Curves {
       curves_->unit_normals(values[k], VectorView<float>::packed(result + 3 * count * k, count), threads);
   }
 
+  [[nodiscard]] const ElementCurves& curves() const {
+    require_made(curves_.has_value());
+    return *curves_;
+  }
+
   std::optional<ElementCurves> curves_;
   std::mutex mutex_;  // evaluations share scratch, and Python's threads run without the GIL meanwhile
 };
 
-class Blend {
+class Blend : public ZeroedObject {
  public:
   Blend(const Array<float>& base, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>& targets,
         const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners, const std::string& elements,
@@ -193,6 +199,7 @@ class Blend {
   }
 
   py::array unit_normals(const Array<double>& weights, const py::object& out, int threads) {
+    require_made(blend_.has_value());
     const auto k = static_cast<py::ssize_t>(targets_);
     const bool is_one = weights.ndim() == 1;
     if (!((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k))
@@ -212,16 +219,21 @@ class Blend {
     return result;
   }
 
-  [[nodiscard]] std::size_t size() const { return blend_->size(); }
+  [[nodiscard]] std::size_t size() const { return blend().size(); }
   [[nodiscard]] std::size_t targets() const { return targets_; }
-  [[nodiscard]] std::size_t bytes() const { return blend_->normals().bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return blend().normals().bytes(); }
   [[nodiscard]] std::string text() const {
-    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend_->normals().size()) +
+    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend().normals().size()) +
            " of them different, " + std::to_string(targets_) + (targets_ == 1 ? " target, " : " targets, ") +
            std::to_string(bytes()) + " bytes>";
   }
 
  private:
+  [[nodiscard]] const ElementBlend& blend() const {
+    require_made(blend_.has_value());
+    return *blend_;
+  }
+
   std::size_t targets_;
   ElementKind kind_ = ElementKind::kVertices;
   std::optional<ElementBlend> blend_;

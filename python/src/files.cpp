@@ -190,7 +190,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
 }
 
 // A motion that was read, its arrays, and its normals at chosen moments.
-class ReadMotion {
+class ReadMotion : public ZeroedObject {
  public:
   explicit ReadMotion(const py::dict& source) : opened_(open(source, true, KeepShading::kNone)) {
     motion_ = without_gil([&] { return opened_.input.motion(); });
@@ -198,19 +198,20 @@ class ReadMotion {
 
   // Makes the array of all keyframes once.
   py::array positions() {
+    require_made(motion_ != nullptr);
     if (!positions_) {
       std::vector<float> all;
-      for (const Motion::Keyframe& keyframe : motion_->keyframes)
+      for (const Motion::Keyframe& keyframe : motion().keyframes)
         all.insert(all.end(), keyframe.positions.begin(), keyframe.positions.end());
       positions_ = array_of(std::move(all),
-                            {py::ssize_t(motion_->keyframes.size()), py::ssize_t(motion_->topology.vertex_count()), 3});
+                            {py::ssize_t(motion().keyframes.size()), py::ssize_t(motion().topology.vertex_count()), 3});
     }
     return *positions_;
   }
 
   // (F, k) where all faces have as many corners, or else (offsets, corners).
   [[nodiscard]] py::object faces() const {
-    const Topology& topology = motion_->topology;
+    const Topology& topology = motion().topology;
     std::vector<std::uint32_t> corners(topology.corners().begin(), topology.corners().end()), offsets = {0};
     const std::size_t width = topology.face_count() > 0 ? topology.face(0).size() : 3;
     bool is_even = true;
@@ -226,24 +227,24 @@ class ReadMotion {
 
   [[nodiscard]] py::array times() const {
     std::vector<double> times;
-    for (const Motion::Keyframe& keyframe : motion_->keyframes) times.push_back(keyframe.time);
-    return array_of(std::move(times), {py::ssize_t(motion_->keyframes.size())});
+    for (const Motion::Keyframe& keyframe : motion().keyframes) times.push_back(keyframe.time);
+    return array_of(std::move(times), {py::ssize_t(motion().keyframes.size())});
   }
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> names;
-    for (const Motion::Keyframe& keyframe : motion_->keyframes) names.push_back(keyframe.name);
+    for (const Motion::Keyframe& keyframe : motion().keyframes) names.push_back(keyframe.name);
     return names;
   }
   [[nodiscard]] py::array segments() const {
     std::vector<std::int64_t> keys;
-    for (const auto& [from, to] : motion_->segments) {
+    for (const auto& [from, to] : motion().segments) {
       keys.push_back(static_cast<std::int64_t>(from));
       keys.push_back(static_cast<std::int64_t>(to));
     }
-    return array_of(std::move(keys), {py::ssize_t(motion_->segments.size()), 2});
+    return array_of(std::move(keys), {py::ssize_t(motion().segments.size()), 2});
   }
   [[nodiscard]] std::string kind() const {
-    return motion_->segments.empty() ? "mesh" : std::string(motion_kind_name(motion_->kind));
+    return motion().segments.empty() ? "mesh" : std::string(motion_kind_name(motion().kind));
   }
 
   py::array unit_normals(const std::optional<Array<double>>& times, const std::optional<Array<double>>& weights,
@@ -254,7 +255,7 @@ class ReadMotion {
     options.elements.weld = weld;
     options.weighting = value_or_raise(make_weighting(weighting));
     require(!times || !weights, "weights", "a motion has times or weights, and not both");
-    require(times || weights || motion_->segments.empty(), "times", "say at which times, or at which weights");
+    require(times || weights || motion().segments.empty(), "times", "say at which times, or at which weights");
     std::vector<double> at;
     std::size_t rows = 1, width = 0;
     if (times) {
@@ -269,12 +270,12 @@ class ReadMotion {
     }
     std::size_t count = 0;
     std::vector<float> all = without_gil([&]() -> Result<std::vector<float>> {
-      Result<NormalSampler> sampler = NormalSampler::make(*motion_, options);
+      Result<NormalSampler> sampler = NormalSampler::make(motion(), options);
       if (!sampler) return sampler.error();
       count = sampler.value().output_count();
       std::vector<double> in_a_row;
       if (times) {
-        Result<std::vector<double>> counted = times_in_a_row(*motion_, at);
+        Result<std::vector<double>> counted = times_in_a_row(motion(), at);
         if (!counted) return counted.error();
         in_a_row = std::move(counted).value();
       }
@@ -293,13 +294,19 @@ class ReadMotion {
   }
 
   [[nodiscard]] std::string text() const {
+    require_made(motion_ != nullptr);
     return "<chronormal.Motion " + opened_.input.name() + ": " + kind() + ", " +
-           std::to_string(motion_->keyframes.size()) + " keyframes of " +
-           std::to_string(motion_->topology.vertex_count()) + " vertices, " +
-           std::to_string(motion_->topology.face_count()) + " faces>";
+           std::to_string(motion().keyframes.size()) + " keyframes of " +
+           std::to_string(motion().topology.vertex_count()) + " vertices, " +
+           std::to_string(motion().topology.face_count()) + " faces>";
   }
 
  private:
+  [[nodiscard]] const Motion& motion() const {
+    require_made(motion_ != nullptr);
+    return *motion_;
+  }
+
   Opened opened_;
   const Motion* motion_ = nullptr;  // of the input
   std::optional<py::array> positions_;

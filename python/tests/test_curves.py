@@ -250,6 +250,16 @@ class ErrorsTest(unittest.TestCase):
             except (ValueError, TypeError, OverflowError):
                 pass
         self.assertGreater(taken, 30)
+        for kind in (cn.Curves, cn.Blend, cn.Motion):
+            unmade = kind.__new__(kind)
+            for name in dir(kind):
+                if name.startswith("_") and name not in ("__len__", "__repr__"):
+                    continue
+                with self.assertRaises((ValueError, TypeError)):
+                    member = getattr(kind, name)
+                    member.__get__(unmade) if isinstance(member, property) else member(unmade)
+            with self.assertRaisesRegex(ValueError, "self: it was never made"):
+                unmade.unit_normals([0.5])
         for t in (np.nan, np.inf, -np.inf, 1e300, -5.0):
             self.assertEqual(curves.unit_normals(t).shape, (12, 3))
             self.assertEqual(blend.unit_normals([t]).shape, (12, 3))
