@@ -127,9 +127,7 @@ struct chronormal_curves {
 };
 
 struct chronormal_blend {
-  BlendNormals normals;
-  std::vector<std::uint32_t> element_of_output;  // empty where outputs are elements
-  std::vector<float> scratch;                    // (elements, 3), where they are not
+  ElementBlend blend;
   std::size_t targets;
   Threads threads;
 };
@@ -251,60 +249,23 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
               ? BlendTarget::from_dense(values)
               : BlendTarget{"", {target.vertices, target.vertices + target.count}, std::move(values)});
     }
-    if (const Status status = validate(set); !status) return fail(status.error());
-
-    const Threads threads = chosen.value().threads;
-    if (chosen.value().elements.kind == ElementKind::kFaces) {
-      *result = new chronormal_blend{BlendNormals::of_faces(std::move(set)), {}, {}, target_count, threads};
-      return CHRONORMAL_DONE;
-    }
-    Motion still;  // who shares a normal is decided in the base, as the targets move vertices at one point alike or not
-    still.topology = set.topology;
-    still.keyframes = {{set.base, 0, "base"}};
-    for (const BlendTarget& target : set.targets) {
-      std::vector<float> moved = set.base;
-      for (std::size_t n = 0; n < target.vertices.size(); ++n)
-        for (std::size_t c = 0; c < 3; ++c) moved[3 * target.vertices[n] + c] += target.deltas[3 * n + c];
-      still.keyframes.push_back({std::move(moved), 1, ""});
-    }
-    still.connect_as_targets();
-    Result<NormalGroups> groups = make_groups(still, chosen.value().elements);
-    if (!groups) return fail(groups.error());
-    const auto outputs = groups.value().element_of_output();
-    auto blend =
-        std::make_unique<chronormal_blend>(chronormal_blend{BlendNormals::of_groups(std::move(set), groups.value()),
-                                                            {outputs.begin(), outputs.end()},
-                                                            {},
-                                                            target_count,
-                                                            threads});
-    blend->scratch.resize(3 * blend->normals.size());
-    *result = blend.release();
+    Result<ElementBlend> blend = ElementBlend::make(std::move(set), chosen.value().elements);
+    if (!blend) return fail(blend.error());
+    *result = new chronormal_blend{std::move(blend).value(), target_count, chosen.value().threads};
     return CHRONORMAL_DONE;
   });
 }
 
-size_t chronormal_blend_size(const chronormal_blend* blend) {
-  if (blend == nullptr) return 0;
-  return blend->element_of_output.empty() ? blend->normals.size() : blend->element_of_output.size();
-}
+size_t chronormal_blend_size(const chronormal_blend* blend) { return blend != nullptr ? blend->blend.size() : 0; }
 
 chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                 chronormal_result normals, size_t* zeros) {
   if (blend == nullptr) return misuse("blend", "the pointer is NULL");
   if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL");
   return guarded([&] {
-    const std::size_t size = chronormal_blend_size(blend);
-    const auto view = view_of(normals, size);
+    const auto view = view_of(normals, blend->blend.size());
     if (!view) return fail(view.error());
-    const std::span<const double> given(weights, blend->targets);
-    const bool shares = !blend->element_of_output.empty();
-    const auto elements = VectorView<float>::packed(blend->scratch.data(), shares ? blend->normals.size() : 0);
-    blend->normals.unit_normals(given, shares ? elements : view.value(), blend->threads);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      if (shares) view.value().set(i, elements[blend->element_of_output[i]]);
-      if (view.value()[i] == Vec3f{}) ++count;
-    }
+    const std::size_t count = blend->blend.unit_normals({weights, blend->targets}, view.value(), blend->threads);
     if (zeros != nullptr) *zeros = count;
     return CHRONORMAL_DONE;
   });

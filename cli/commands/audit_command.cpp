@@ -9,7 +9,7 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
-#include "cli/audit_json.h"
+#include "chronormal/workflow/json.h"
 #include "cli/options/command.h"
 #include "cli/reports/audit_files.h"
 #include "cli/reports/audit_report.h"
@@ -31,6 +31,7 @@ struct Options {
   std::string hosts;
   std::optional<std::size_t> samples;
   std::optional<double> tolerance;
+  std::optional<std::string> errors;  // where to write every single one
   bool no_weld = false;
   bool json = false;
 };
@@ -102,6 +103,12 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
+  if (options.errors) {
+    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
+    if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
+      return output.error();
+  }
+  how.keep_errors = options.errors.has_value();
   how.samples = options.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
@@ -145,10 +152,15 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   Result<Audited> audited = audit_input(options, how, progress);
   progress.clear();
   if (!audited) return audited.error();
-  const std::string text = options.json ? audit_json(audited.value()) : audit_text(audited.value());
+  const Audited& found = audited.value();
+  if (options.errors) {
+    const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
+    if (!written) return written.error();
+  }
+  const std::string text = options.json ? audit_json(found.name(), found.audit, found.tolerance) : audit_text(found);
   if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
-  return say_what_is_beyond(audited.value(), "") ? kExitDone : kExitBeyond;
+  return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
 // Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
@@ -164,6 +176,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
                         Progress& progress) {
   if (!options.input.animation.empty())
     return misuse("--animation", "it chooses among the animations of one file: name one file");
+  if (options.errors) return misuse("--errors", "it holds the errors of one input: name one file");
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {
@@ -227,6 +240,9 @@ Command audit_command() {
          {.check = check_whole(2, kMostAuditSamples)}},
         {"--tolerance DEG", &options->tolerance,
          "exit with 4 if the worst error is beyond this; with --host, in any of them"},
+        {"--errors FILE", &options->errors,
+         "write the error of every vertex at every sample: .npz for programs, or .ply\n"
+         "with the worst of each vertex as its quality, for MeshLab and Blender"},
         {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
         {"--json", &options->json, "one JSON object"}},
        options->common.table(false)},

@@ -26,6 +26,7 @@ struct Options {
   bool json = false;
   bool csv = false;
   bool no_times = false;
+  std::optional<std::string> errors;  // where to write every single one
   BlendArguments blend;
 
   [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
@@ -53,6 +54,7 @@ std::string option_of_schemes(const Options& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
+  if (options.errors) return "--errors";
   return options.each ? "--each" : "";
 }
 
@@ -74,9 +76,12 @@ std::string footer() {
 Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
   const Result<const Motion*> motion = input.motion();
   if (!motion) return motion.error();
-  const CompareOptions compare_options{scheme_names(options), options.sample_count(),
+  const CompareOptions compare_options{scheme_names(options),
+                                       options.sample_count(),
                                        options.access == "sequential" ? Access::kSequential : Access::kRandom,
-                                       progress.callback("comparing"), options.elements.options().value()};
+                                       progress.callback("comparing"),
+                                       options.elements.options().value(),
+                                       options.errors.has_value()};
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
   return comparison;
@@ -150,10 +155,22 @@ Result<int> run(const Options& options) {
   if (const auto elements = options.elements.options(); !elements) return elements.error();
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
+  if (options.errors) {
+    if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
+    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
+    if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
+      return output.error();
+  }
+
   Progress progress(options.common.quiet);
   const auto comparisons = compare_inputs(options, progress);
   if (!comparisons) return comparisons.error();
 
+  if (options.errors) {
+    const Status written =
+        write_errors(comparisons.value().front().comparison.errors, *options.errors, options.common.force);
+    if (!written) return written.error();
+  }
   const bool with_times = !options.no_times;
   std::string text;
   if (options.json)
@@ -191,7 +208,10 @@ Command compare_command() {
              "random (default), or sequential: played step by step",
              {.check = check_access}}},
            options->blend.table(),
-           {{"--json", &options->json, "one JSON object"},
+           {{"--errors FILE", &options->errors,
+             "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+             "scheme with the worst of each as its quality, for MeshLab and Blender"},
+            {"--json", &options->json, "one JSON object"},
             {"--csv", &options->csv, "comma-separated values, a line per scheme", {.excludes = "--json"}},
             {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
            options->common.table(false)},

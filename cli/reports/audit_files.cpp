@@ -35,7 +35,7 @@ AuditedFile::AuditedFile(const Audited& audited)
       error(audited.audit.error),
       faults(count_fault_lines(audited.audit)),
       verdict(cli::verdict(audited)),
-      json(audit_object(audited)) {}
+      json(audit_object(audited.name(), audited.audit, audited.tolerance)) {}
 
 AuditedFile::AuditedFile(std::string file, const Error& why)
     : name(std::move(file)), verdict("not judged"), json({{"input", {{"name", name}}}, {"error", why.text()}}) {}

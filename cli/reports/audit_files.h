@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "cli/audit_json.h"
 #include "cli/reports/audit_report.h"
+#include "workflow/json/audit_json.h"
 
 namespace chronormal::cli {
 

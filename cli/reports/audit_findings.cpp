@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/reports/audit_words.h"
-#include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/table.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

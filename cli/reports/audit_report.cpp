@@ -9,11 +9,11 @@
 #include "cli/reports/audit_advice.h"
 #include "cli/reports/audit_findings.h"
 #include "cli/reports/audit_words.h"
-#include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

@@ -2,7 +2,6 @@
 #ifndef CLI_REPORTS_AUDIT_REPORT_H_
 #define CLI_REPORTS_AUDIT_REPORT_H_
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -23,10 +22,7 @@ struct Audited {
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
   /// Whether the tolerance is kept: in every host that was named, or by the rule where none was.
-  [[nodiscard]] bool passed() const {
-    if (audit.hosts.empty()) return !tolerance || audit.error.is_within(*tolerance);
-    return std::all_of(audit.hosts.begin(), audit.hosts.end(), [this](const HostAudit& host) { return passed(host); });
-  }
+  [[nodiscard]] bool passed() const { return !tolerance || audit.is_within(*tolerance); }
 };
 
 /// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

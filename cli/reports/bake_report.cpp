@@ -4,7 +4,6 @@
 #include <array>
 
 #include "chronormal/normals/weighting.h"
-#include "cli/json.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -143,80 +142,6 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
-Json common_json(const BakeReport& report) {
-  Json json = json_of_command("bake");
-  json["input"] = {{"name", report.input}};
-  json["output"] = report.output;
-  return json;
-}
-
-Json audit_json(const MotionError& before, const MotionError& after) {
-  return {{"worst_degrees_before", before.worst}, {"worst_degrees_after", after.worst},
-          {"mean_degrees_before", before.mean()}, {"mean_degrees_after", after.mean()},
-          {"unlit_before", before.unlit},         {"unlit_after", after.unlit},
-          {"worse", is_worse(after, before)}};
-}
-
-// JSON keys for the kinds of poses that the errors of a host are measured at: the animations and single targets of the
-// file, random poses, and cross-fades between two animations.
-constexpr std::array<const char*, 3> kPoses = {"file", "random", "cross_fades"};
-
-Json shown_json(const ShownErrors& errors) {
-  return {{"mean_degrees", errors.mean}, {"most_degrees", errors.most}, {"worst_degrees", errors.worst}};
-}
-
-Json hosts_json(const BakedMesh& mesh) {
-  Json hosts = Json::array();
-  for (const HostChange& change : mesh.hosts) {
-    Json host = {{"host", change.host}};
-    for (std::size_t k = 0; k < kPoses.size(); ++k) {
-      const auto& [before, after] = change.poses[k];
-      if (before.judged == 0) continue;
-      host[kPoses[k]] = {{"judged", before.judged}, {"before", shown_json(before)}, {"after", shown_json(after)}};
-    }
-    hosts.push_back(std::move(host));
-  }
-  return hosts;
-}
-
-Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
-  Json extras = Json::array();
-  for (const GltfExtraTarget& extra : mesh.extras) {
-    Json linear = Json::array(), quadratic = Json::array();
-    for (const auto& term : extra.linear) linear.push_back(Json::array({term.i, term.a}));
-    for (const auto& term : extra.quadratic) quadratic.push_back(Json::array({term.i, term.j, term.q}));
-    extras.push_back({{"target", extra.target}, {"linear", std::move(linear)}, {"quadratic", std::move(quadratic)}});
-  }
-  return {{"mesh", mesh.mesh},
-          {"name", mesh.name},
-          {"encoding", name_of(mesh.encoding)},
-          {"weighting", mesh.already_baked ? Json() : Json(weighting_name(mesh.weighting))},
-          {"already_baked", mesh.already_baked},
-          {"different_normals", mesh.elements},
-          {"extra_targets", std::move(extras)},
-          {"bytes", mesh.bytes},
-          {"undriven_targets", mesh.undriven},
-          {"flat_primitives", mesh.left_flat},
-          {"vertices_without_base", mesh.without_base},
-          {"vertices_without_stored_normal", mesh.without_stored},
-          {"rescaled_normals", mesh.rescaled},
-          {"stilled_targets", mesh.stilled},
-          {"fitted_normals", mesh.fitted_elements},
-          {"kept_normals", mesh.kept},
-          {"left_out_targets", mesh.left_out},
-          {"hosts", hosts_json(mesh)},
-          {"target_fit_degrees", mesh.largest_error},
-          {"track_fit_degrees", mesh.resampling_error},
-          {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
-                                              error_of_mesh(report.audit->after, mesh.mesh))
-                                 : Json()}};
-}
-
-void add_audit(const BakeReport& report, Json& json) {
-  if (!report.audit) return;
-  json["audit"] = audit_json(report.audit->before.error, report.audit->after.error);
-}
-
 }  // namespace
 
 std::string worse_text(const BeforeAndAfter& audit) {
@@ -280,37 +205,6 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
                   encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
                   encoding == BakeEncoding::kHarmless ? "at 40 instants of each segment" : "as far as can be proven");
   return text + lines_after(report);
-}
-
-std::string bake_json(const GltfBake& bake, const BakeReport& report) {
-  Json json = common_json(report);
-  json["changed"] = bake.changed;
-  Json meshes = Json::array();
-  for (const BakedMesh& mesh : bake.meshes) meshes.push_back(mesh_json(mesh, report));
-  json["meshes"] = std::move(meshes);
-  json["added_targets"] = bake.added_targets;
-  json["added_bytes"] = bake.added_bytes;
-  json["converted_tracks"] = bake.converted_tracks;
-  json["pointers"] = bake.pointers;
-  json["warnings"] = bake.warnings;
-  json["drivers"] = or_null(report.drivers_file);
-  add_audit(report, json);
-  return json_text(json);
-}
-
-std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
-  Json json = common_json(report);
-  json["encoding"] = name_of(encoding);
-  json["keyframes"] = bake.keyframes;
-  json["vertices"] = bake.vertices;
-  json["targets"] = bake.targets;
-  json["extra_targets"] = bake.extra_targets;
-  json["bytes"] = bake.bytes;
-  json["bound_degrees"] = bake.largest_error;
-  json["without_normals"] = bake.without_normals;
-  json["warnings"] = bake.warnings;
-  add_audit(report, json);
-  return json_text(json);
 }
 
 }  // namespace chronormal::cli

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "cli/json.h"
 #include "cli/reports/compare_report.h"
-#include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -79,7 +77,7 @@ std::string table_of(const BlendSubject& subject) {
   for (const char* const title : {"mean", "rms", "max"}) table.add_column(title, "degrees", Align::kRight);
   const bool several = is_several_primitives(subject);
   if (several) table.add_column("worst at", "primitive", Align::kRight);
-  table.add_column(several ? "" : "worst at", one_element(subject.kind), Align::kRight);
+  table.add_column(several ? "" : "worst at", std::string(one_element(subject.kind)), Align::kRight);
   table.add_column("", "targets", Align::kLeft);
   for (const BlendErrors& errors : subject.errors) {
     for (const BlendError& error : errors.deltas) {
@@ -123,25 +121,6 @@ std::string notes(const BlendComparison& comparison) {
   return text;
 }
 
-Json error_json(const BlendSubject& subject, const BlendError& error) {
-  const Quality& q = error.quality;
-  Json weights = Json::array();
-  for (const BlendError::Weight& w : error.worst_weights)
-    weights.push_back({{"target", w.target}, {"name", subject.targets[w.target]}, {"weight", w.weight}});
-  Json at = {{"row", q.max_at.segment}};
-  if (error.worst_primitive) at["primitive"] = *error.worst_primitive;
-  at[one_element(subject.kind)] = error.worst_output;
-  at["weights"] = std::move(weights);
-  return {{"deltas", name_of(error.deltas)},
-          {"mean_degrees", degrees(q.mean())},
-          {"rms_degrees", degrees(q.rms())},
-          {"max_degrees", degrees(q.max)},
-          {"max_at", q.max > 0 ? std::move(at) : Json()},
-          {"normals", q.count},
-          {"degenerate", q.degenerate},
-          {"missing", q.missing}};
-}
-
 }  // namespace
 
 std::string blend_table(const NamedBlendComparison& input) {
@@ -153,33 +132,6 @@ std::string blend_table(const NamedBlendComparison& input) {
   }
   const std::string remarks = notes(input.comparison);
   return text + (text.empty() || remarks.empty() ? "" : "\n") + remarks;
-}
-
-std::string blend_json(const NamedBlendComparison& input) {
-  Json json = json_of_command("compare");
-  json["input"] = input.name;
-  json["weights"] = input.animation.empty() ? "random" : "animation";
-  if (!input.animation.empty()) json["animation"] = input.animation;
-  json["meshes"] = Json::array();
-  for (const BlendSubject& subject : input.comparison.subjects) {
-    Json mesh = Json::object();
-    if (subject.mesh) mesh = {{"mesh", *subject.mesh}, {"name", subject.name}};
-    mesh["vertices"] = subject.vertices;
-    mesh["faces"] = subject.faces;
-    mesh["targets"] = subject.targets.size();
-    mesh["elements"] = element_kind_name(subject.kind);
-    mesh["normals"] = subject.outputs;
-    mesh["errors"] = Json::array();
-    for (const BlendErrors& errors : subject.errors) {
-      Json one = {{"active", errors.active}, {"rows", errors.rows}, {"deltas", Json::array()}};
-      for (const BlendError& error : errors.deltas) one["deltas"].push_back(error_json(subject, error));
-      mesh["errors"].push_back(std::move(one));
-    }
-    json["meshes"].push_back(std::move(mesh));
-  }
-  json["flat_meshes"] = input.comparison.flat;
-  json["still_meshes"] = input.comparison.still;
-  return json_text(json);
 }
 
 std::string blend_csv(const NamedBlendComparison& input) {

@@ -1,8 +1,6 @@
 #include "cli/reports/compare_report.h"
 
-#include "cli/json.h"
 #include "cli/options/command.h"
-#include "cli/reports/inspect_trouble.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -30,47 +28,7 @@ std::string headline(const NamedComparison& input) {
                           element_kind_name(c.kind)));
 }
 
-Json input_json(const NamedComparison& input) {
-  const Comparison& c = input.comparison;
-  Json json = {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
-  if (c.kind != ElementKind::kFaces) json["different_normals"] = c.elements;
-  return json;
-}
-
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
-
-Json scheme_json(const SchemeComparison& row, bool with_times) {
-  const Quality& q = row.quality;
-  Json json = {{"scheme", row.scheme},
-               {"sum_degrees", degrees(q.sum)},
-               {"relative_to_linear", or_null(row.relative_to_linear)},
-               {"mean_degrees", degrees(q.mean())},
-               {"rms_degrees", degrees(q.rms())},
-               {"max_degrees", degrees(q.max)},
-               {"max_at", {{"segment", q.max_at.segment}, {"element", q.max_at.element}, {"t", q.max_at.t}}},
-               {"degenerate", q.degenerate},
-               {"missing", q.missing},
-               {"fallbacks", row.fallbacks},
-               {"flagged", row.flagged}};
-  if (with_times) {
-    json["prepare_ns"] = row.prepare_ns;
-    json["evaluate_ns"] = row.evaluate_ns;
-  }
-  json["bytes"] = row.bytes;
-  json["access"] = access_name(row);
-  json["operations"] = {{"add", row.operations.add},
-                        {"multiply", row.operations.multiply},
-                        {"divide", row.operations.divide},
-                        {"sqrt", row.operations.sqrt},
-                        {"trigonometric", row.operations.trigonometric}};
-  return json;
-}
-
-Json schemes_json(const NamedComparison& input, bool with_times) {
-  Json schemes = Json::array();
-  for (const SchemeComparison& row : input.comparison.schemes) schemes.push_back(scheme_json(row, with_times));
-  return schemes;
-}
 
 std::string sample_pairs(std::size_t count, const std::string& word) {
   return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
@@ -79,7 +37,7 @@ std::string sample_pairs(std::size_t count, const std::string& word) {
 // What a table does not show, a line each: shares that were treated otherwise, and what was left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
-  const std::string word = one_element(comparison.kind);
+  const std::string word(one_element(comparison.kind));
   const std::string of = comparison.segments > 1
                              ? "(" + word + (is_of_targets(comparison) ? ", target) pairs" : ", segment) pairs")
                          : pairs == 1 ? word
@@ -115,11 +73,6 @@ std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four
 
 }  // namespace
 
-std::string one_element(ElementKind kind) {
-  if (kind == ElementKind::kVertices) return "vertex";
-  return kind == ElementKind::kCorners ? "corner" : "face";
-}
-
 std::string csv_field(const std::string& field) {
   const std::string text = printable(field);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -144,7 +97,7 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
     table.add_column("worst at", "target", Align::kLeft);
   else if (several_segments)
     table.add_column("worst at", "segment", Align::kRight);
-  const std::string element = one_element(input.comparison.kind);
+  const std::string element(one_element(input.comparison.kind));
   table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
   table.add_column("", is_of_targets(input.comparison) ? "weight" : "t", Align::kRight);
   table.add_column("memory", "B/" + element, Align::kRight);
@@ -198,21 +151,6 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   for (const NamedComparison& input : inputs)
     remarks += notes(input.comparison, printable(short_name(input.name)) + ": ");
   return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
-}
-
-std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times) {
-  Json json = json_of_command("compare");
-  if (!several) json["input"] = input_json(inputs.front());
-  json["elements"] = element_kind_name(inputs.front().comparison.kind);
-  json["samples"] = inputs.front().comparison.samples;
-  if (several) {
-    json["inputs"] = Json::array();
-    for (const NamedComparison& input : inputs)
-      json["inputs"].push_back({{"input", input_json(input)}, {"schemes", schemes_json(input, with_times)}});
-  } else {
-    json["schemes"] = schemes_json(inputs.front(), with_times);
-  }
-  return json_text(json);
 }
 
 std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {

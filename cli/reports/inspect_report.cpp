@@ -10,6 +10,7 @@
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
+#include "workflow/inspect/trouble.h"
 
 namespace chronormal::cli {
 namespace {

@@ -110,19 +110,6 @@ std::string Table::text(std::size_t columns) const {
   return text;
 }
 
-std::string grouped(std::size_t value) {
-  std::string digits = formatted("{}", value);
-  for (std::size_t i = digits.size(); i > 3;) {
-    i -= 3;
-    digits.insert(i, 1, ',');
-  }
-  return digits;
-}
-
-std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return formatted("{} {}", grouped(count), count == 1 ? singular : plural);
-}
-
 std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

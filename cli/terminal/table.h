@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "cli/terminal/screen.h"
+#include "core/text.h"
 
 namespace chronormal::cli {
 
@@ -50,12 +51,6 @@ class Table {
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
-
-/// 1234567 as "1,234,567".
-[[nodiscard]] std::string grouped(std::size_t value);
-
-/// "1 face", "1,234 faces".
-[[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
 /// The indices of so many of the largest values, ascending; of equal ones the first count. All where there are no more.
 [[nodiscard]] std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most);

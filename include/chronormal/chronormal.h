@@ -15,6 +15,7 @@
 
 #include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
+#include "chronormal/normals/element_blend.h"    // the normals of blend shapes for every face, vertex or corner
 #include "chronormal/normals/element_curves.h"   // the normals of a segment for every face, vertex or corner
 #include "chronormal/normals/elements.h"         // faces, vertices, corners, and who shares a normal
 #include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
@@ -43,8 +44,10 @@
 #include "chronormal/workflow/audit.h"    // what a host shows against what it should
 #include "chronormal/workflow/bake.h"     // right normals written into glTF files
 #include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion; deltas of targets against the truth
+#include "chronormal/workflow/errors.h"   // every error of an audit or a comparison, as arrays and files
 #include "chronormal/workflow/hosts.h"    // programs that show glTF files, and what they make of stored normals
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
+#include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

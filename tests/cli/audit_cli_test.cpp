@@ -489,6 +489,21 @@ TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
   expect_words(text_of("uniform.glb --weighting max"), {"the right normals are max-weighted, as --weighting says\n"});
 }
 
+TEST_F(AuditCli, every_error_goes_into_a_file_beside_the_report) {
+  EXPECT_EQ(text_of("hinge.glb --errors e.npz"), text_of("hinge.glb"));
+  EXPECT_TRUE(test::read_whole(folder_ / "e.npz").starts_with("PK"));
+  EXPECT_EQ(text_of("hinge.glb --errors e.ply --json"), text_of("hinge.glb --json"));
+  EXPECT_TRUE(test::read_whole(folder_ / "e.ply").starts_with("ply\n"));
+  EXPECT_EQ(run("hinge.glb --errors e.npz --force").exit_code, 0);
+  const std::size_t entries = folder_.entry_count();
+  expect_error("hinge.glb --errors e.npz", 1, "e.npz: ");
+  expect_error("hinge.glb --errors e.txt", 2, ".npz or .ply");
+  expect_error("hinge.glb hinge.glb --errors f.npz", 2, "--errors: it holds the errors of one input");
+  expect_error("hinge.glb --errors f.npz -o f.npz", 2, "--errors: it must be another file than OUT");
+  expect_error("a.obj a.obj --errors f.npz", 3, "nothing was judged");
+  EXPECT_EQ(folder_.entry_count(), entries) << "what fails leaves nothing";
+}
+
 TEST_F(AuditCli, errors_say_what_is_wrong) {
   expect_error("", 2, "nothing to read");
   expect_error("missing.glb", 1, "missing.glb");

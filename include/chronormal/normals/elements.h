@@ -20,6 +20,9 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 /// faces, vertices, corners
 [[nodiscard]] std::string_view element_kind_name(ElementKind kind) noexcept;
 
+/// face, vertex, corner
+[[nodiscard]] std::string_view one_element(ElementKind kind) noexcept;
+
 /// Finds a kind by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 

@@ -24,6 +24,7 @@
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_H_
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -38,6 +39,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
 
 namespace chronormal {
@@ -79,6 +81,7 @@ struct AuditOptions {
   std::optional<Weighting> weighting = {};
   std::vector<Host> hosts = {};  ///< glTF, by the rule gltf: these are judged too
   bool weld = true;              ///< sequences: vertices at one point in all keyframes are one
+  bool keep_errors = false;      ///< every single one, in Audit::errors
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -203,6 +206,16 @@ struct Audit {
   std::vector<HostAudit> hosts;      ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
+  /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
+  /// same keys have rows once, as the first of their subjects.
+  std::vector<ErrorTable> errors;
+
+  /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
+  [[nodiscard]] bool is_within(double degrees) const noexcept {
+    if (hosts.empty()) return error.is_within(degrees);
+    return std::all_of(hosts.begin(), hosts.end(),
+                       [degrees](const HostAudit& host) { return host.is_within(degrees); });
+  }
 };
 
 /// The errors of the subjects of one mesh, added up; none where it has no subject.
@@ -216,7 +229,8 @@ struct Audit {
 /// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, hosts with another rule than gltf, and fewer than 2 samples.
+/// animation that is not there, hosts with another rule than gltf, fewer than 2 samples, and errors to keep that take more
+/// than kMostErrorBytes.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject

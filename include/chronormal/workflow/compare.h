@@ -31,6 +31,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/schemes/scheme.h"
+#include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
 
 namespace chronormal {
@@ -51,6 +52,7 @@ struct CompareOptions {
   /// Told how much of the work is done, from the calling thread; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
   ElementOptions elements = {};  ///< of which normals
+  bool keep_errors = false;      ///< every single one, in Comparison::errors
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -78,11 +80,13 @@ struct Comparison {
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
   MotionKind motion = MotionKind::kSequence;  ///< what the segments are
+  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
-/// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, or a wrong crease angle.
+/// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, or a wrong crease angle,
+///            and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

@@ -10,13 +10,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "chronormal/analysis/surface.h"
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
+#include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
@@ -122,6 +125,36 @@ struct GltfInspection {
 /// motion must be one of this document, and of these parts.
 [[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
                                                       std::span<const GltfPart> parts);
+
+/// What is known of a glTF file beside its motion.
+struct InspectedGltf {
+  const GltfDocument* document = nullptr;  ///< of the input
+  GltfInspection inspection;
+  std::span<const GltfPart> parts;       ///< of the input: where vertices and faces came from
+  double curve_error = 0;                ///< as Input has it
+  std::size_t split = 0;                 ///< of count_split_normals()
+  std::optional<std::size_t> animation;  ///< the one that is looked at; nothing: the targets, or what stands still
+};
+
+/// One input, and what is known of it.
+struct Inspected {
+  Input opened;
+  std::optional<Inspection> inspection;  ///< nothing for a glTF file without faces
+  std::vector<std::string> keyframe_names;
+  std::vector<Motion::SegmentKeys> segments;
+  MotionKind kind = MotionKind::kSequence;
+  std::optional<InspectedGltf> gltf;
+
+  [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
+  /// Whether it has morph targets: segment k goes from keyframe 0 to target k, from weight 0 to 1.
+  [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
+};
+
+/// Inspects an input of any kind, opened with allow_mesh; animation is that of its options. progress is as for inspect().
+/// Errors: those of Input::motion() and GltfDocument.
+[[nodiscard]] Result<Inspected> inspect_input(
+    Input input, const std::string& animation,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 }  // namespace chronormal
 

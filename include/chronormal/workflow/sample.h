@@ -115,6 +115,10 @@ class NormalSampler {
   std::size_t segment_ = 0;                        // which
 };
 
+/// For each of some times, how many from it on lie in the same segment without a break: the evaluations that
+/// NormalSampler::at_time() wants to know of. Errors: of find_instant()
+[[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
+
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 
 /// Finds a format by its name. Errors: kUsage, with all names.

@@ -245,6 +245,11 @@ NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const doub
   for (const double value : values) binary::append(bytes_, value, kOrder);
 }
 
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values)
+    : bytes_(npy::write_header("<i8", shape)) {
+  for (const std::int64_t value : values) binary::append(bytes_, value, kOrder);
+}
+
 void NpyBytes::append(std::span<const float> values) {
   for (const float value : values) binary::append(bytes_, value, kOrder);
 }

@@ -61,6 +61,7 @@ class NpyBytes {
   explicit NpyBytes(const std::vector<std::uint64_t>& shape);
   /// A whole array.
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
+  NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values);
 
   void append(std::span<const float> values);
 

@@ -348,15 +348,19 @@ Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
 }
 
 std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {
-  return write_ply(topology, positions, {}, encoding);
+  return write_ply(topology, positions, PlyProperties{}, encoding);
 }
 
-std::string write_ply(const Topology& topology, VectorView<const float> positions, const PlyNormals& normals,
+std::string write_ply(const Topology& topology, VectorView<const float> positions, const PlyProperties& properties,
                       PlyEncoding encoding) {
-  const bool has_vertex_normals = normals.of_vertices.count > 0, has_face_normals = normals.of_faces.count > 0;
+  const bool has_vertex_normals = properties.of_vertices.count > 0, has_face_normals = properties.of_faces.count > 0;
   assert(positions.count == topology.vertex_count());
-  assert(!has_vertex_normals || normals.of_vertices.count == topology.vertex_count());
-  assert(!has_face_normals || normals.of_faces.count == topology.face_count());
+  assert(!has_vertex_normals || properties.of_vertices.count == topology.vertex_count());
+  assert(!has_face_normals || properties.of_faces.count == topology.face_count());
+  const bool has_vertex_quality = !properties.quality_of_vertices.empty(),
+             has_face_quality = !properties.quality_of_faces.empty();
+  assert(!has_vertex_quality || properties.quality_of_vertices.size() == topology.vertex_count());
+  assert(!has_face_quality || properties.quality_of_faces.size() == topology.face_count());
   std::size_t most_corners = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     most_corners = std::max(most_corners, topology.face(f).size());
@@ -366,20 +370,23 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
                                     : encoding == PlyEncoding::kBinaryLittleEndian ? "binary_little_endian"
                                                                                    : "binary_big_endian";
   const char* const normal_properties = "\nproperty float nx\nproperty float ny\nproperty float nz";
+  const char* const quality_property = "\nproperty float quality";
 
-  std::string bytes = std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " +
-                      std::to_string(positions.count) + "\nproperty float x\nproperty float y\nproperty float z" +
-                      (has_vertex_normals ? normal_properties : "") + "\nelement face " +
-                      std::to_string(topology.face_count()) + "\nproperty list " + (is_short ? "uchar " : "uint ") +
-                      index_type + " vertex_indices" + (has_face_normals ? normal_properties : "") + "\nend_header\n";
+  std::string bytes =
+      std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " + std::to_string(positions.count) +
+      "\nproperty float x\nproperty float y\nproperty float z" + (has_vertex_normals ? normal_properties : "") +
+      (has_vertex_quality ? quality_property : "") + "\nelement face " + std::to_string(topology.face_count()) +
+      "\nproperty list " + (is_short ? "uchar " : "uint ") + index_type + " vertex_indices" +
+      (has_face_normals ? normal_properties : "") + (has_face_quality ? quality_property : "") + "\nend_header\n";
   if (encoding != PlyEncoding::kAscii)
-    bytes.reserve(bytes.size() + 12 * (positions.count + normals.of_vertices.count + normals.of_faces.count) +
+    bytes.reserve(bytes.size() + 12 * (positions.count + properties.of_vertices.count + properties.of_faces.count) +
                   4 * (topology.corner_count() + topology.face_count()));
 
   RowWriter row(bytes, encoding);
   for (std::size_t v = 0; v < positions.count; ++v) {
     row.add(positions[v]);
-    if (has_vertex_normals) row.add(normals.of_vertices[v]);
+    if (has_vertex_normals) row.add(properties.of_vertices[v]);
+    if (has_vertex_quality) row.add(properties.quality_of_vertices[v]);
     row.end_row();
   }
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -390,7 +397,8 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
       row.add(static_cast<std::uint32_t>(face.size()));
     }
     for (const std::uint32_t vertex : face) row.add(vertex);
-    if (has_face_normals) row.add(normals.of_faces[f]);
+    if (has_face_normals) row.add(properties.of_faces[f]);
+    if (has_face_quality) row.add(properties.quality_of_faces[f]);
     row.end_row();
   }
   return bytes;

@@ -24,6 +24,7 @@
 #ifndef CHRONORMAL_IO_MESH_PLY_H_
 #define CHRONORMAL_IO_MESH_PLY_H_
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -51,15 +52,17 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// digits that read back as the same float32. positions must have as many elements as the topology has vertices.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding);
 
-/// Normals for a file, as properties float nx, ny, nz; none where there are none.
-struct PlyNormals {
-  VectorView<const float> of_vertices;  ///< one for each vertex, after x, y, z
-  VectorView<const float> of_faces;     ///< one for each face, after its indices
+/// What a file has beside positions and faces, each where it is not empty: normals, as properties float nx, ny, nz, and
+/// after them a number that programs can show in colours, as a property float quality.
+struct PlyProperties {
+  VectorView<const float> of_vertices;                           ///< one for each vertex, after x, y, z
+  VectorView<const float> of_faces;                              ///< one for each face, after its indices
+  std::span<const float> quality_of_vertices, quality_of_faces;  ///< one for each
 };
 
-/// The same with normals.
+/// The same with these.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
-                                    const PlyNormals& normals, PlyEncoding encoding);
+                                    const PlyProperties& properties, PlyEncoding encoding);
 
 }  // namespace chronormal::inline internal
 

@@ -8,10 +8,13 @@ namespace chronormal {
 namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"faces", "vertices", "corners"};
+constexpr std::array<std::string_view, 3> kSingular = {"face", "vertex", "corner"};
 
 }  // namespace
 
 std::string_view element_kind_name(ElementKind kind) noexcept { return kNames[static_cast<std::size_t>(kind)]; }
+
+std::string_view one_element(ElementKind kind) noexcept { return kSingular[static_cast<std::size_t>(kind)]; }
 
 Result<ElementKind> make_element_kind(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {

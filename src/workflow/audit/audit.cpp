@@ -7,6 +7,7 @@
 
 #include "chronormal/normals/weighting.h"
 #include "workflow/audit/measure.h"
+#include "workflow/errors/error_rows.h"
 
 namespace chronormal {
 namespace {
@@ -140,6 +141,15 @@ AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<
   result.closest_mean = closest->mean();
   result.closest_worst = closest->worst;
   return result;
+}
+
+void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
+                 bool is_weight, double at) {
+  const std::span<float> row = add_row(*kept.table, kept.subject, is_weight, at);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    float& worst = row[outputs[i].vertex];
+    worst = std::fmax(worst, degrees[i]);  // a number, where one of them is NaN
+  }
 }
 
 std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "chronormal/workflow/audit.h"
@@ -11,6 +12,7 @@
 #include "workflow/audit/gltf_findings.h"
 #include "workflow/audit/host_errors.h"
 #include "workflow/audit/measure.h"
+#include "workflow/errors/error_rows.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
@@ -26,6 +28,7 @@ struct MeshAudit {
   Weighting weighting;  // of the right normals
   AuditRule rule;
   std::function<void()> progress;
+  ErrorTable* errors;  // nullptr: none are kept
 };
 
 // Tracks by animation and index.
@@ -73,9 +76,10 @@ struct Measured {
   std::vector<HostError> of_hosts;
 };
 
-// Measures a subject; nothing where there is nothing to judge.
+// Measures a subject that will be the one of this index; nothing where there is nothing to judge.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const std::vector<bool>& involved,
-                                     const SubjectWeights& weights, const Moment& moment, AuditSubject subject) {
+                                     const SubjectWeights& weights, const Moment& moment, AuditSubject subject,
+                                     std::size_t index) {
   if (part.outputs().empty()) {
     for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
     return std::nullopt;
@@ -86,7 +90,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
                                std::span<const double> largest) {
     hosts.add_sample(source, segment, t, placed, largest);
   };
-  measure(source, part, mesh.rule, mesh.progress, subject, judge_hosts);
+  measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index}, judge_hosts);
   return Measured{std::move(subject), hosts.take()};
 }
 
@@ -135,7 +139,8 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   }
   const auto moment = [](std::size_t, double t) { return t; };
   const JudgedPart part = part_of(mesh, involved);
-  std::optional<Measured> measured = measure_part(mesh, part, involved, weights, moment, std::move(subject));
+  std::optional<Measured> measured =
+      measure_part(mesh, part, involved, weights, moment, std::move(subject), result.subjects.size());
   if (!measured) {
     ++result.still;
     return;
@@ -148,7 +153,8 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
 
 // Audits the weights between two keys of a track, and what of the mesh they move. Nothing for a track that moves
 // nothing.
-Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index) {
+Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index,
+                                            std::size_t subject_index) {
   const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
   Result<GltfKeys> keys = mesh.document.keys(animation, index);
   if (!keys) return keys.error();
@@ -190,7 +196,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
       by_host.at(moment(segment, t), moves && t == 1, of_targets);
     });
   }
-  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, std::move(subject));
+  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, std::move(subject), subject_index);
 }
 
 // Audits all tracks of a mesh; those with the same keys are measured once, and are subjects each.
@@ -201,7 +207,7 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
     const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
     const auto [known, is_new] = of_curves.try_emplace({animation, track.same_keys_as});
     if (is_new) {
-      Result<std::optional<Measured>> measured = audit_track(mesh, animation, index);
+      Result<std::optional<Measured>> measured = audit_track(mesh, animation, index, result.subjects.size());
       if (!measured) return measured.error();
       known->second = std::move(measured).value();
     } else {
@@ -232,6 +238,30 @@ std::size_t count_segments(const GltfDocument& document, std::optional<std::size
       total += std::max<std::size_t>(1, document.animations()[a].tracks[t].key_count - 1);
   }
   return total;
+}
+
+// The samples of all subjects of a mesh, at most.
+std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
+                       const AuditOptions& options) {
+  std::size_t rows = only_tracks ? 0 : document.meshes()[mesh].target_count * samples_per_segment(options, 1);
+  for (const auto& [a, t] : tracks) {
+    const std::size_t keys = document.animations()[a].tracks[t].key_count,
+                      segments = std::max<std::size_t>(keys, 2) - 1;
+    rows += segments * samples_per_segment(options, segments);
+  }
+  return rows;
+}
+
+// The table of a mesh, still without rows.
+ErrorTable table_of(const GltfShading& shading) {
+  ErrorTable table{"mesh" + std::to_string(shading.mesh), ElementKind::kVertices, shading.set.topology,
+                   shading.set.base};
+  for (std::size_t v = 0; v < shading.set.topology.vertex_count(); ++v) {
+    const AuditPlace place = place_of(shading, v);
+    table.primitives.push_back(static_cast<std::int64_t>(*place.primitive));
+    table.vertices.push_back(static_cast<std::int64_t>(place.vertex));
+  }
+  return table;
 }
 
 bool has_targets(const GltfMesh& mesh) {
@@ -276,7 +306,15 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
       if (most > 0 && targets > most) host.beyond = std::max(host.beyond, targets - most);
     }
 
-    const MeshAudit mesh{document, options, shading, weighting, result.rule, progress};
+    ErrorTable table;
+    if (options.keep_errors) {
+      table = table_of(shading);
+      if (const Status status = reserve_rows(table, count_rows(document, m, tracks, only.has_value(), options));
+          !status)
+        return status.error();
+    }
+    const MeshAudit mesh{
+        document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
     const std::size_t first = result.subjects.size();
     for (std::size_t k = 0; k < document.meshes()[m].target_count && are_targets_judged; ++k)
@@ -286,6 +324,7 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
       worst_target = std::max(worst_target, result.subjects[s].error.worst);
     if (Status status = audit_tracks(mesh, tracks, are_targets_judged, worst_target, result); !status)
       return status.error();
+    if (table.rows() > 0) result.errors.push_back(std::move(table));
   }
   finish(result);
   return result;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -85,10 +86,12 @@ template <class Source>
   return largest;
 }
 
-/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows.
+/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each, where
+/// it is not empty, gets that of the i-th in degrees, NaN where none is judged.
 template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat,
-                                   std::span<const double> largest, std::size_t segment, double t, const Shown& shown) {
+                                   std::span<const double> largest, std::size_t segment, double t, const Shown& shown,
+                                   std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const auto judge = [&](std::size_t i, MotionError& errors) {
     const JudgedOutput& output = outputs[i];
@@ -97,27 +100,43 @@ template <class Source, class Shown>
     const double least = kVanished * largest[output.element];
     const bool has_normal = length(normal) > least;
     // A face without area is not drawn, whatever its normal.
+    const auto keep = [&](double degrees) {
+      if (!each.empty()) each[i] = static_cast<float>(degrees);
+    };
     const bool is_drawn = is_flat ? is_shown != Vec3d{} : placed.normals.sizes[output.element] > least;
     if (!is_finite(is_shown) || (is_drawn && is_shown == Vec3d{})) {
       errors.add_unlit(source.at(segment, t, output));
+      keep(180);
       return;
     }
     if (!has_normal || !is_drawn) {
       ++errors.no_normal;
+      keep(std::numeric_limits<double>::quiet_NaN());
       return;
     }
     const double angle = angle_between(is_shown, source.right(output, normal)) * kDegreesPerRadian;
+    keep(angle);
     errors.add(angle, angle > errors.worst ? source.at(segment, t, output) : AuditPlace());
   };
   return parallel_fold<MotionError>(outputs.size(), kRange, judge,
-                                    [](MotionError& all, const MotionError& each) { all.add(each); });
+                                    [](MotionError& all, const MotionError& one) { all.add(one); });
 }
+
+/// Where single errors are kept, and which subject they are of.
+struct KeptErrors {
+  ErrorTable* table = nullptr;  ///< nullptr: nowhere
+  std::size_t subject = 0;
+};
+
+/// Appends the errors of the outputs at a sample: the worst of each vertex.
+void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
+                 bool is_weight, double at);
 
 /// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
 /// is called after each segment, each_sample(segment, t, placed, largest) after each sample.
 template <class Source, class EachSample>
 void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
-             AuditSubject& subject, const EachSample& each_sample) {
+             AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {
   PlacedPart placed(part);
   const std::vector<double> largest = largest_control_normals(source, subject.segments, placed);
   source.forget();
@@ -126,6 +145,7 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
     return is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
   };
   MotionError error;  // of the last sample
+  std::vector<float> each(kept.table != nullptr ? part.outputs().size() : 0);
   for (std::size_t s = 0; s < subject.segments; ++s) {
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
@@ -136,7 +156,10 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
       const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
-      if (placed.place(source, s, t)) error = error_at(source, placed, is_flat, largest, s, t, shown);
+      if (placed.place(source, s, t)) error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+      if (kept.table != nullptr)
+        keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
+                    source.at(s, t, part.outputs().front()).at);
       subject.error.add(error);
       if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
       each_sample(s, t, placed, largest);

@@ -10,6 +10,7 @@
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
 #include "workflow/audit/measure.h"
+#include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
 
 namespace chronormal {
@@ -228,6 +229,11 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     weighting = result.offsets.back().weighting;
   }
 
+  if (options.keep_errors) {
+    result.errors.push_back({"", ElementKind::kVertices, topology, motion.keyframes[0].positions});
+    const std::size_t rows = motion.segments.size() * options.samples.value_or(kAuditSamples);
+    if (const Status status = reserve_rows(result.errors[0], rows); !status) return status.error();
+  }
   std::size_t done = 0;
   const auto progress = [&] {
     if (options.progress) options.progress(++done, motion.segments.size());
@@ -251,10 +257,12 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
-    measure(source, part, result.rule, progress, subject, [](auto&&...) {});
+    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size()};
+    measure(source, part, result.rule, progress, subject, kept, [](auto&&...) {});
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }
+  if (result.subjects.empty()) result.errors.clear();
   finish(result);
   return result;
 }

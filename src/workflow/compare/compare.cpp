@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "workflow/errors/error_rows.h"
 
 namespace chronormal {
 namespace {
@@ -63,6 +65,10 @@ class Elements {
   explicit Elements(NormalGroups groups) : groups_(std::move(groups)), count_(groups_->size()) {}
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  // The element of each output; empty where they are faces, which are both.
+  [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
+    return groups_ ? groups_->element_of_output() : std::span<const std::uint32_t>();
+  }
   [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
   // What a person calls an element: the face, or the first vertex or corner that shows it.
@@ -105,9 +111,36 @@ class Elements {
   double shared_ns_ = 0;
 };
 
+// NaN where one of the two has no direction, as Quality leaves such pairs out.
+float error_in_degrees(const Vec3d& exact, const Vec3d& shown) {
+  if (exact == Vec3d{} || shown == Vec3d{} || !is_finite(shown)) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(angle_between(unit(exact), shown) * kDegreesPerRadian);
+}
+
+// Makes a table of the errors of one scheme, (rows, elements), that shows each element wherever the mesh does.
+ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOptions& options, const std::string& scheme,
+                    const std::vector<float>& of_elements) {
+  ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
+  const auto outputs = all.element_of_output();
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    const Segment segment = motion.segment(s);
+    const bool is_weight = motion.kind == MotionKind::kTargets;
+    for (std::size_t i = 0; i < options.samples; ++i) {
+      const double t = time_of_sample(i, options.samples);
+      const double at = is_weight ? t : (1 - t) * segment.start_time + t * segment.end_time;
+      const std::span<float> row = add_row(table, s, is_weight, at);
+      const float* const errors = of_elements.data() + (s * options.samples + i) * all.count();
+      for (std::size_t o = 0; o < row.size(); ++o) row[o] = errors[outputs.empty() ? o : outputs[o]];
+    }
+  }
+  return table;
+}
+
 // Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
+// Each scheme that `each` has an array for gets its errors there.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
-                                 const std::vector<std::string>& names, std::size_t samples, Access access) {
+                                 const std::vector<std::string>& names, std::size_t samples, Access access,
+                                 std::span<std::vector<float>> each) {
   std::vector<ControlNormals> control_normals(range.count);
   const auto control_start = Clock::now();
   all.control_normals(segment, range, control_normals);
@@ -149,6 +182,10 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
         schemes[s]->evaluate(t, result);
       evaluate_ns[s] += nanoseconds_since(start);
       tallies[s].quality.add(exact, result, {segment.index, range.first, t});
+      if (s < each.size()) {
+        float* const row = each[s].data() + (segment.index * samples + i) * all.count() + range.first;
+        for (std::size_t e = 0; e < range.count; ++e) row[e] = error_in_degrees(exact[e], to_double(result[e]));
+      }
     }
   }
   for (std::size_t s = 0; s < schemes.size(); ++s)
@@ -205,6 +242,13 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     if (!groups) return groups.error();
     all.emplace(std::move(groups).value());
   }
+  std::vector<std::vector<float>> each;  // of every row, the errors of all elements at all samples
+  if (options.keep_errors) {
+    const std::size_t samples = motion.segments.size() * options.samples;
+    ErrorTable room{names[0], kind, motion.topology, {}};
+    if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
+    each.assign(rows.size(), std::vector<float>(samples * all->count()));
+  }
   std::vector<Tally> totals(names.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
   const std::size_t blocks = blocks_per_segment * motion.segments.size();
@@ -217,7 +261,7 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
       const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
-      wave[i] = compare_block(segment, *all, range, names, options.samples, options.access);
+      wave[i] = compare_block(segment, *all, range, names, options.samples, options.access, each);
     });
     // In order, so that sums do not depend on the threads.
     for (std::size_t i = 0; i < count; ++i) {
@@ -247,6 +291,10 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     row.prepare_ns = median(total.prepare_ns);
     row.evaluate_ns = median(total.evaluate_ns);
     row.bytes = total.bytes / elements;
+    if (s < each.size()) {
+      comparison.errors.push_back(table_of(motion, *all, options, rows.size() > 1 ? row.scheme : "", each[s]));
+      each[s] = {};
+    }
     comparison.schemes.push_back(std::move(row));
   }
   return comparison;

@@ -27,19 +27,6 @@ constexpr std::array<FormatName, 4> kFormats = {{
 
 bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || format == SampleFormat::kNpz; }
 
-// For each time, how many times from it on lie in the same segment without a break.
-Result<std::vector<double>> times_in_a_row(const Motion& motion, const std::vector<double>& times) {
-  std::vector<double> counts(times.size(), 1);
-  std::size_t later = 0;  // the segment of the time after
-  for (std::size_t i = times.size(); i-- > 0;) {
-    const Result<Instant> instant = find_instant(motion, times[i]);
-    if (!instant) return instant.error();
-    if (i + 1 < times.size() && instant.value().segment == later) counts[i] += counts[i + 1];
-    later = instant.value().segment;
-  }
-  return counts;
-}
-
 Result<Pose> pose_of(NormalSampler& sampler, const Moments& moments, const std::vector<double>& in_a_row,
                      std::size_t i) {
   if (!moments.times.empty()) return sampler.at_time(moments.times[i], in_a_row[i]);
@@ -109,7 +96,7 @@ class Arrays {
 std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
   if (format == SampleFormat::kPly) {
-    PlyNormals properties;
+    PlyProperties properties;
     (kind == ElementKind::kFaces ? properties.of_faces : properties.of_vertices) = packed(normals);
     return write_ply(topology, packed(pose.positions), properties, PlyEncoding::kBinaryLittleEndian);
   }
@@ -134,6 +121,18 @@ Result<SampleFormat> make_sample_format(std::string_view name) {
   }
   return Error{ErrorCode::kUsage, "",
                std::string("there is no format '").append(name).append("'; there are ").append(names)};
+}
+
+Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times) {
+  std::vector<double> counts(times.size(), 1);
+  std::size_t later = 0;  // the segment of the time after
+  for (std::size_t i = times.size(); i-- > 0;) {
+    const Result<Instant> instant = find_instant(motion, times[i]);
+    if (!instant) return instant.error();
+    if (i + 1 < times.size() && instant.value().segment == later) counts[i] += counts[i + 1];
+    later = instant.value().segment;
+  }
+  return counts;
 }
 
 std::optional<SampleFormat> find_sample_format(std::string_view path) {

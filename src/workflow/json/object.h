@@ -1,12 +1,12 @@
-/// The results of commands as JSON, for programs: docs/cli.md has the fields.
-#ifndef CLI_JSON_H_
-#define CLI_JSON_H_
+/// What the JSON of all commands shares. Private to workflow and the program.
+#ifndef CHRONORMAL_WORKFLOW_JSON_OBJECT_H_
+#define CHRONORMAL_WORKFLOW_JSON_OBJECT_H_
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-namespace chronormal::cli {
+namespace chronormal::inline internal {
 
 using Json = nlohmann::ordered_json;  // fields stay in the order of the documentation
 
@@ -21,6 +21,6 @@ template <class T>
   return value ? Json(*value) : Json();
 }
 
-}  // namespace chronormal::cli
+}  // namespace chronormal::inline internal
 
-#endif  // CLI_JSON_H_
+#endif  // CHRONORMAL_WORKFLOW_JSON_OBJECT_H_

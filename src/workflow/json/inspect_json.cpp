@@ -1,8 +1,9 @@
 #include "chronormal/analysis/quality.h"
-#include "cli/json.h"
-#include "cli/reports/inspect_report.h"
+#include "chronormal/workflow/json.h"
+#include "workflow/inspect/trouble.h"
+#include "workflow/json/object.h"
 
-namespace chronormal::cli {
+namespace chronormal {
 namespace {
 
 Json found_json(const Found& found, const char* what) {
@@ -177,4 +178,4 @@ std::string inspect_json(const Inspected& input) {
   return json_text(json);
 }
 
-}  // namespace chronormal::cli
+}  // namespace chronormal

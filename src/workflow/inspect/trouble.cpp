@@ -1,12 +1,10 @@
-#include "cli/reports/inspect_trouble.h"
+#include "workflow/inspect/trouble.h"
 
 #include <algorithm>
 
-#include "cli/terminal/format.h"
-#include "cli/terminal/table.h"
-#include "cli/terminal/text.h"
+#include "core/text.h"
 
-namespace chronormal::cli {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kLongestName = 40;
@@ -14,8 +12,10 @@ constexpr std::size_t kLongestName = 40;
 // Exporters compute weights, and miss 0 and 1 by a little.
 constexpr double kRoundedWeight = 1e-3;
 
+std::string numbered(const char* what, std::size_t number) { return what + (' ' + std::to_string(number)); }
+
 std::string with_name(std::string label, const std::string& name) {
-  if (!name.empty() && name != label) label += formatted(" ({})", printable(name, kLongestName));
+  if (!name.empty() && name != label) label += " (" + printable(name, kLongestName) + ")";
   return label;
 }
 
@@ -30,7 +30,7 @@ std::string have(const std::string& counted_things, std::size_t count) {
 
 // ", 30 times in all" where the same faces come more than once.
 std::string in_all(const Places& places) {
-  return places.pairs > places.faces ? formatted(", {} times in all", grouped(places.pairs)) : "";
+  return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times in all" : "";
 }
 
 class Troubles {
@@ -51,7 +51,7 @@ class Troubles {
                    std::string meaning) {
     if (places.pairs == 0) return;
     const std::string when =
-        has_instant ? formatted(" at {} = {:.4f}", input_.has_targets() ? "w" : "t", places.first_t) : "";
+        has_instant ? (input_.has_targets() ? " at w = " : " at t = ") + with_decimals(places.first_t, 4) : "";
     add(std::move(kind), places.faces, faces(places.faces) + what + in_all(places),
         face_label(input_, places.first_face) + " in " + segment_label(input_, places.first_at) + when,
         std::move(meaning));
@@ -115,11 +115,11 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                       "a triangle has no area then; a larger face counts with both corners in a normal per vertex");
   std::string meaning = "a normal per vertex breaks there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
-    meaning = formatted("a normal per vertex breaks there; at {} of them so do the stored normals: hard edges",
-                        grouped(split));
+    meaning =
+        "a normal per vertex breaks there; at " + grouped(split) + " of them so do the stored normals: hard edges";
   troubles.add("doubled_vertex", found.doubled.count,
-               have(vertices(found.doubled.count), found.doubled.count) +
-                   formatted(" the place of another throughout, along {}", edges(surface.seam_edges.count)),
+               have(vertices(found.doubled.count), found.doubled.count) + " the place of another throughout, along " +
+                   edges(surface.seam_edges.count),
                "", std::move(meaning));
   const std::size_t parting = found.doubled_at_start.count - found.doubled.count;
   troubles.add("parting_vertex", parting,
@@ -129,9 +129,9 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
 
 // "Head, primitive 1", and the node where several have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
-  std::string label = formatted("{}, primitive {}", mesh_label(*gltf.document, part.mesh), part.primitive);
+  std::string label = mesh_label(*gltf.document, part.mesh) + numbered(", primitive", part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)
-    label += ", " + with_name(formatted("node {}", *part.node), gltf.document->nodes()[*part.node].name);
+    label += ", " + with_name(numbered("node", *part.node), gltf.document->nodes()[*part.node].name);
   return label;
 }
 
@@ -139,7 +139,7 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
   const InspectedGltf& gltf = *input.gltf;
   const GltfDocument& document = *gltf.document;
   const auto first_label = [&document](const GltfPrimitiveInspection& primitive) {
-    return formatted("{}, primitive {}", mesh_label(document, primitive.mesh), primitive.primitive);
+    return mesh_label(document, primitive.mesh) + numbered(", primitive", primitive.primitive);
   };
   std::string flat_at, left_at, tangents_at, length_at;
   std::size_t flat = 0, left = 0, tangents = 0, lengths = 0;
@@ -176,10 +176,10 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
     lowest = std::min(lowest, track.lowest);
     highest = std::max(highest, track.highest);
   }
-  troubles.add(
-      "weights_beyond", input.has_targets() ? beyond : 0,
-      formatted("{} with weights beyond 0 to 1: {:.4g} to {:.4g}", counted(beyond, "track", "tracks"), lowest, highest),
-      "", "targets go farther than what is looked at here, w from 0 to 1");
+  troubles.add("weights_beyond", input.has_targets() ? beyond : 0,
+               counted(beyond, "track", "tracks") + " with weights beyond 0 to 1: " + with_digits(lowest, 4) + " to " +
+                   with_digits(highest, 4),
+               "", "targets go farther than what is looked at here, w from 0 to 1");
   const std::size_t skinned = gltf.inspection.skinned_nodes;
   troubles.add("skin", skinned, have(counted(skinned, "node", "nodes"), skinned) + " a skin", "",
                "the skeleton is not applied: normals are those before skinning");
@@ -214,32 +214,32 @@ std::vector<Trouble> find_trouble(const Inspected& input) {
 }
 
 std::string keyframe_label(const Inspected& input, std::size_t keyframe) {
-  return with_name(formatted("keyframe {}", keyframe), input.keyframe_names[keyframe]);
+  return with_name(numbered("keyframe", keyframe), input.keyframe_names[keyframe]);
 }
 
 std::string segment_label(const Inspected& input, std::size_t segment) {
-  if (!input.has_targets()) return formatted("segment {}", segment);
-  return with_name(formatted("target {}", segment), input.keyframe_names[input.segments[segment].to]);
+  if (!input.has_targets()) return numbered("segment", segment);
+  return with_name(numbered("target", segment), input.keyframe_names[input.segments[segment].to]);
 }
 
 std::string face_label(const Inspected& input, std::size_t face) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (face >= part.first_face && face - part.first_face < part.face_count)
-        return formatted("face {} of {}", face - part.first_face, part_label(*input.gltf, part));
+        return numbered("face", face - part.first_face) + " of " + part_label(*input.gltf, part);
     }
   }
-  return formatted("face {}", face);
+  return numbered("face", face);
 }
 
 std::string vertex_label(const Inspected& input, std::size_t vertex) {
   if (input.gltf) {
     for (const GltfPart& part : input.gltf->parts) {
       if (vertex >= part.first_vertex && vertex - part.first_vertex < part.vertex_count)
-        return formatted("vertex {} of {}", vertex - part.first_vertex, part_label(*input.gltf, part));
+        return numbered("vertex", vertex - part.first_vertex) + " of " + part_label(*input.gltf, part);
     }
   }
-  return formatted("vertex {}", vertex);
+  return numbered("vertex", vertex);
 }
 
 const char* interpolation_name(GltfInterpolation interpolation) {
@@ -249,7 +249,7 @@ const char* interpolation_name(GltfInterpolation interpolation) {
 
 std::string mesh_label(const GltfDocument& document, std::size_t mesh) {
   const std::string& name = document.meshes()[mesh].name;
-  return name.empty() ? formatted("mesh {}", mesh) : printable(name, kLongestName);
+  return name.empty() ? numbered("mesh", mesh) : printable(name, kLongestName);
 }
 
-}  // namespace chronormal::cli
+}  // namespace chronormal::inline internal

@@ -1,10 +1,9 @@
-#include "cli/audit_json.h"
-
-#include <string>
+#include "workflow/json/audit_json.h"
 
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/json.h"
 
-namespace chronormal::cli {
+namespace chronormal {
 namespace {
 
 constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",   "wrong_between",
@@ -93,7 +92,7 @@ Json finding_json(const AuditFinding& finding) {
           {"worst_at", finding.worst_at ? place_json(*finding.worst_at, finding.target ? "weight" : "time") : Json()}};
 }
 
-Json host_json(const Audited& input, const HostAudit& found) {
+Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAudit& found) {
   constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
   constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
                                      "splines_misread"};
@@ -103,11 +102,10 @@ Json host_json(const Audited& input, const HostAudit& found) {
                {"tracks", kTracks[static_cast<std::size_t>(found.host.tracks)]},
                {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
                {"source", found.host.source},
-               {"passed", input.tolerance ? Json(input.passed(found)) : Json()}};
+               {"passed", tolerance ? Json(found.is_within(*tolerance)) : Json()}};
   add_error(found.error, json);
   json["worst_subject"] = or_null(found.worst);
-  json["worst_at"] =
-      found.worst ? place_json(found.error.worst_at, moment_of(input.audit.subjects[*found.worst])) : Json();
+  json["worst_at"] = found.worst ? place_json(found.error.worst_at, moment_of(audit.subjects[*found.worst])) : Json();
   json["displaced_share"] = found.displaced;
   json["targets_beyond"] = found.beyond;
   return json;
@@ -115,15 +113,14 @@ Json host_json(const Audited& input, const HostAudit& found) {
 
 }  // namespace
 
-Json audit_object(const Audited& input) {
-  const Audit& audit = input.audit;
+Json internal::audit_object(const std::string& input, const Audit& audit, std::optional<double> tolerance) {
   Json json;
-  json["input"] = {{"name", input.name()}};
+  json["input"] = {{"name", input}};
   json["rule"] = audit_rule_name(audit.rule);
   json["weighting"] = audit.weighting ? Json(weighting_name(*audit.weighting)) : Json();
   json["stored_normals"] = audit.stored;
-  json["tolerance_degrees"] = or_null(input.tolerance);
-  json["passed"] = input.tolerance ? Json(input.passed()) : Json();
+  json["tolerance_degrees"] = or_null(tolerance);
+  json["passed"] = tolerance ? Json(audit.is_within(*tolerance)) : Json();
   add_error(audit.error, json);
   json["worst_subject"] = or_null(audit.worst);
   json["worst_at"] = audit.worst ? place_json(audit.error.worst_at, moment_of(audit.subjects[*audit.worst])) : Json();
@@ -132,7 +129,7 @@ Json audit_object(const Audited& input) {
   json["subjects"] = Json::array();
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
   json["hosts"] = Json::array();
-  for (const HostAudit& found : audit.hosts) json["hosts"].push_back(host_json(input, found));
+  for (const HostAudit& found : audit.hosts) json["hosts"].push_back(host_json(audit, tolerance, found));
   json["authored_offsets"] = Json::array();
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();
@@ -140,10 +137,10 @@ Json audit_object(const Audited& input) {
   return json;
 }
 
-std::string audit_json(const Audited& input) {
+std::string audit_json(const std::string& input, const Audit& audit, std::optional<double> tolerance) {
   Json json = json_of_command("audit");
-  json.update(audit_object(input));
+  json.update(audit_object(input, audit, tolerance));
   return json_text(json);
 }
 
-}  // namespace chronormal::cli
+}  // namespace chronormal

@@ -1,0 +1,224 @@
+"""Exact normals of triangle meshes that deform.
+
+    import chronormal as cn
+
+    curves = cn.curves(p0, p1, faces)        # once for two arrays of positions
+    normals = curves.unit_normals(0.5)       # (V, 3) float32, exact at every t
+
+Arrays   Positions are (V, 3) float32, C-contiguous: such arrays are read where they are, also read-only ones, and not kept.
+         Everything else that holds numbers is converted once, to the nearest float32 (float64 too).
+Faces    (F, k) of int32, int64, uint32 or any other integers; a list of lists for polygons of different sizes; or a tuple
+         (offsets, corners) of two rows: face f has corners[offsets[f]:offsets[f + 1]].
+Errors   ValueError says where: "face 3, corner 1: ...". OSError is for files.
+Threads  Everything that takes long releases the GIL. One object works for one thread at a time; others wait.
+"""
+
+import dataclasses as _dataclasses
+import json as _json
+import os as _os
+
+import numpy as _np
+
+from ._chronormal import Blend, Curves, Motion, __version__
+from . import _chronormal
+
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "compare", "curves", "errors", "inspect",
+           "read"]
+
+
+def _vectors(array, place):
+    """The array itself where it is C-contiguous float32, or else one copy that is."""
+    array = _np.asarray(array)
+    if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
+        return array
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{place}: the type is {array.dtype}, and must be float32 or other real numbers")
+    with _np.errstate(over="ignore"):  # what is too large becomes infinite, which the library refuses with the place
+        return _np.ascontiguousarray(array, dtype=_np.float32)
+
+
+def _indices(array, place):
+    """A flat array of uint32."""
+    array = _np.asarray(array)
+    if array.size == 0 and array.dtype.kind == "f":  # an empty list
+        array = array.astype(_np.uint32)
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{place}: the type is {array.dtype}, and must be int32, int64 or uint32")
+    if array.size > 0 and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+        where = _np.argwhere((array < 0) | (array > 0xFFFFFFFF))[0]
+        position = ", ".join(str(i) for i in where)
+        raise ValueError(f"{place}[{position}]: {array[tuple(where)]} is no index")
+    return _np.ascontiguousarray(array, dtype=_np.uint32).reshape(-1)
+
+
+def _polygons(faces):
+    """(offsets, corners) in uint32; offsets are empty for triangles."""
+    if isinstance(faces, tuple) and len(faces) == 2 and all(_np.ndim(part) == 1 for part in faces):
+        offsets = _indices(faces[0], "offsets")
+        if offsets.size == 0:
+            raise ValueError("offsets: there must be one more than there are faces")
+        return offsets, _indices(faces[1], "corners")
+    if not isinstance(faces, _np.ndarray):
+        faces = list(faces)
+        sizes = [_np.size(face) for face in faces]
+        if len(set(sizes)) > 1:
+            corners = _np.concatenate([_indices(face, f"faces[{f}]") for f, face in enumerate(faces)])
+            return _np.cumsum([0] + sizes, dtype=_np.uint32), corners
+        faces = _np.asarray(faces) if faces else _np.empty((0, 3), _np.uint32)
+    if faces.ndim != 2:
+        raise ValueError(f"faces: the shape is {faces.shape} and must be (F, k)")
+    count, size = faces.shape
+    corners = _indices(faces, "faces")
+    if size == 3:
+        return _np.empty(0, _np.uint32), corners
+    if size < 3:
+        raise ValueError(f"faces: the shape is {faces.shape}, and a face has 3 corners or more")
+    return _np.arange(0, (count + 1) * size, size, dtype=_np.uint32), corners
+
+
+def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False):
+    """What to open, as the extension wants it."""
+    if (source is None) == (sample is None):
+        raise ValueError("source: give files or bytes, or the name of a built-in sample")
+    data, files = None, []
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        data = bytes(source)
+    elif isinstance(source, (str, _os.PathLike)):
+        files = [_os.fspath(source)]
+    elif source is not None:
+        files = [_os.fspath(file) for file in source]
+    return {"files": files, "bytes": data, "samples": [sample] if sample is not None else [],
+            "base": _os.fspath(base) if base is not None else "", "fps": float(fps),
+            "animation": str(animation) if animation is not None else "", "world": bool(world)}
+
+
+def _names(given):
+    return given if isinstance(given, str) else ",".join(given)
+
+
+def curves(p0, p1, faces, elements="vertices", crease=None, weighting="area", tolerance=1e-6, weld=True, threads=0):
+    """Prepare the unit normals between two arrays of positions; return Curves.
+
+    p0, p1     (V, 3) positions at t = 0 and t = 1; vertices move on straight lines between them
+    faces      (F, 3) vertices of each face, counted from 0; polygons as the package says
+    elements   what has a normal: "vertices", "faces" or "corners", in the order of faces
+    crease     degrees, for corners: edges that are sharper at t = 0 are hard; None: no edge is
+    weighting  how the faces around a vertex count: "area" (exact), "angle", "uniform", "area-angle", "max" (fitted)
+    tolerance  radians: how far a normal may be off; 1e-3 takes a third of the memory
+    weld       whether vertices at one point at both ends share a normal, so that seams do not show
+    threads    0: all cores; k: at most k
+    """
+    offsets, corners = _polygons(faces)
+    return Curves(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, elements, crease, weighting, tolerance, weld,
+                  threads)
+
+
+def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
+    """Prepare the unit normals of blend shapes, base + sum of weights times deltas; return Blend.
+
+    base    (V, 3) positions
+    deltas  (K, V, 3), or a list with one for each target: (V, 3), or (vertices, deltas) of those that move, ascending
+    faces, elements, crease, weld  as for curves()
+    """
+    targets = []
+    for k, target in enumerate(deltas):
+        vertices = _np.empty(0, _np.uint32)
+        if isinstance(target, tuple) and len(target) == 2:
+            vertices, target = _indices(target[0], f"deltas[{k}][0]"), target[1]
+        targets.append((vertices, _vectors(target, f"deltas[{k}]")))
+    offsets, corners = _polygons(faces)
+    return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
+
+
+def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
+    """Read a motion; return Motion, whose arrays curves() takes.
+
+    source     a file, a pattern, a folder, a list of these, or the bytes of one file, of every format of the program
+    sample     a built-in morph instead: "twist", "bend", "cloth", "eversion", "soup", "bumps"
+    base       the mesh of which source are morph targets
+    fps        keyframes per second where a format has no times
+    animation  of a glTF file, by name or index; None: its morph targets
+    world      vertices of a glTF file are where its nodes put them
+    """
+    return Motion(_source(source, sample, base, fps, animation, world))
+
+
+def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
+    """Return what a file holds and what may cause wrong normals: the dict of `chronormal inspect --json`."""
+    return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world)))
+
+
+def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, tolerance=None, weld=True, sample=None,
+          base=None, fps=1.0, animation=None):
+    """Return how wrong the normals are that a file makes hosts show: the dict of `chronormal audit --json`.
+
+    rule, weighting, hosts, samples, tolerance  as the options of the program; hosts may be a list
+    source, sample, base, fps, animation        as for read()
+    """
+    text, _ = _chronormal.audit(_source(source, sample, base, fps, animation), rule or "", weighting or "",
+                                _names(hosts or ""), samples, tolerance, weld, False)
+    return _json.loads(text)
+
+
+def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
+            times=False, sample=None, base=None, fps=1.0, animation=None, world=False):
+    """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
+
+    schemes  names; empty: the usual ones
+    times    whether measured times are in it, which differ from run to run
+    """
+    if access not in ("random", "sequential"):
+        raise ValueError("access: it must be random or sequential")
+    text, _ = _chronormal.compare(_source(source, sample, base, fps, animation, world), list(schemes), samples,
+                                  access == "sequential", elements, crease, weld, times, False)
+    return _json.loads(text)
+
+
+def bake(source=None, *, encode=None, hosts="all", weighting=None, tolerance=None, smooth=False, recompute_base=False,
+         sample=None, fps=1.0):
+    """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
+
+    glb     bytes of a GLB
+    report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
+    """
+    glb, text = _chronormal.bake(_source(source, sample, None, fps), encode or "", _names(hosts), weighting or "",
+                                 tolerance, smooth, recompute_base)
+    return glb, _json.loads(text)
+
+
+@_dataclasses.dataclass(frozen=True, repr=False)
+class ErrorTable:
+    """Every error of one mesh: a row for each sample, a column for each vertex (or face, or corner)."""
+
+    name: str  #: "mesh0" of a glTF file, else ""
+    errors: _np.ndarray  #: (rows, columns) float32, degrees; NaN where nothing was judged
+    subjects: _np.ndarray  #: (rows,) int64: the subject of the audit, or the segment of the motion
+    times: _np.ndarray  #: (rows,) float64, seconds; NaN in rows of targets
+    weights: _np.ndarray  #: (rows,) float64; NaN in rows of animations and sequences
+    positions: _np.ndarray  #: (V, 3) float32, at the first keyframe or of the base
+    primitives: _np.ndarray = None  #: (V,) int64 of a glTF mesh
+    vertices: _np.ndarray = None  #: (V,) int64: the vertex of the primitive
+
+    def __repr__(self):
+        rows, columns = self.errors.shape
+        judged = self.errors[~_np.isnan(self.errors)]
+        worst = f"{judged.max():.4g} degrees at worst" if judged.size > 0 else "nothing judged"
+        return f"<chronormal.ErrorTable {self.name}: {rows} samples of {columns}, {worst}>".replace(" :", ":")
+
+
+def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=None, weighting=None, weld=True,
+           sample=None, base=None, fps=1.0, animation=None):
+    """Return every error, for each vertex at each sample: a list of ErrorTable, one for each mesh.
+
+    scheme  None: the errors of an audit, of the stored normals; or a name, such as "linear": those of a way to
+            interpolate, for any elements
+    """
+    opened = _source(source, sample, base, fps, animation)
+    if scheme is None:
+        if elements != "vertices":
+            raise ValueError("elements: an audit judges vertices")
+        _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
+    else:
+        _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
+                                        weld, False, True)
+    return [ErrorTable(**table) for table in tables]

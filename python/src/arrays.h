@@ -1,0 +1,121 @@
+// NumPy arrays as the library sees memory. An array that C++ reads was checked for its type by python/chronormal; its shape
+// is checked here, where it is read.
+#ifndef CHRONORMAL_PYTHON_ARRAYS_H_
+#define CHRONORMAL_PYTHON_ARRAYS_H_
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/chronormal.h"
+
+namespace chronormal::python {
+
+namespace py = pybind11;
+
+// A C-contiguous array. pybind11 makes one of what has another layout or a narrower type; python/chronormal does so before.
+template <class T>
+using Array = py::array_t<T, py::array::c_style>;
+// The same, of any type of number.
+template <class T>
+using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+// Raises what stands for an error: OSError for files, ValueError for what the caller gave.
+[[noreturn]] inline void raise(const Error& error) {
+  if (error.code == ErrorCode::kFailed) {
+    PyErr_SetString(PyExc_OSError, error.text().c_str());
+    throw py::error_already_set();
+  }
+  throw py::value_error(error.text());
+}
+
+template <class T>
+T value_or_raise(Result<T> result) {
+  if (!result) raise(result.error());
+  return std::move(result).value();
+}
+
+[[noreturn]] inline void refuse(const std::string& place, const std::string& message) {
+  raise(Error{ErrorCode::kUsage, place, message});
+}
+
+// Refuses what does not hold; nothing is made of the words where it does, as a call may take less than a microsecond.
+inline void require(bool condition, const char* place, const char* message) {
+  if (!condition) refuse(place, message);
+}
+
+inline std::string shape_text(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+// (n, 3) float32.
+template <int kFlags>
+VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    refuse(place, "the shape is " + shape_text(array) + " and must be (n, 3)");
+  return VectorView<const float>::packed(array.data(), static_cast<std::size_t>(array.shape(0)));
+}
+
+template <class T>
+std::vector<T> vector_of(const Array<T>& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+// An array that keeps the memory of a vector.
+template <class T>
+py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  T* const data = kept->data();
+  const py::capsule owner(kept.release(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
+  return py::array_t<T>(std::move(shape), data, owner);
+}
+
+// Corners and offsets of a mesh, from two arrays of uint32.
+Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
+
+// Where (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it fits, or a new array for None.
+py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
+
+// Which threads a number asks for: 1 is the calling one, 0 all cores, and others are so many.
+class ChosenThreads {
+ public:
+  explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {
+    require(count >= 0, "threads", "it must be 0 (all cores) or more");
+    if (count > 1) limit_.emplace(static_cast<std::size_t>(count));
+  }
+  [[nodiscard]] Threads threads() const noexcept { return threads_; }
+
+ private:
+  Threads threads_;
+  std::optional<ThreadLimit> limit_;
+};
+
+// Memory of zeros for objects of Python. `Curves.__new__(Curves)` makes one without calling its constructor, and what pybind11
+// then hands to a method is this memory: members that mean "not made" where they are zero can be asked.
+struct ZeroedObject {
+  static void* operator new(std::size_t size) {
+    void* const memory = ::operator new(size);
+    std::memset(memory, 0, size);
+    return memory;
+  }
+  static void* operator new(std::size_t, void* place) noexcept { return place; }
+  static void operator delete(void* memory) noexcept { ::operator delete(memory); }
+};
+
+inline void require_made(bool is_made) { require(is_made, "self", "it was never made: its __init__() has not run"); }
+
+void add_curves(py::module_& module);
+void add_files(py::module_& module);
+
+}  // namespace chronormal::python
+
+#endif  // CHRONORMAL_PYTHON_ARRAYS_H_

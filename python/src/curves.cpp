@@ -1,0 +1,322 @@
+// Curves and blends: the calls that are made for every frame.
+#include <array>
+#include <cstdio>
+#include <mutex>
+
+#include "arrays.h"
+
+namespace chronormal::python {
+namespace {
+
+std::string counted(std::size_t count, ElementKind kind) {
+  return std::to_string(count) + ' ' + std::string(count == 1 ? one_element(kind) : element_kind_name(kind));
+}
+
+// What is asked of curves and blends alike, in words of Python.
+ElementOptions element_options(const std::string& elements, std::optional<double> crease, bool weld) {
+  ElementOptions options;
+  options.kind = value_or_raise(make_element_kind(elements));
+  options.weld = weld;
+  if (crease) {
+    require(options.kind == ElementKind::kCorners, "crease", "hard edges are for corners: say elements=\"corners\"");
+    options.crease_angle = *crease;
+  }
+  return options;
+}
+
+// Angles in degrees between two rows of vectors; NaN where one of the two has no direction.
+void write_errors(VectorView<const float> exact, VectorView<const float> shown, float* degrees) {
+  for (std::size_t i = 0; i < exact.count; ++i) {
+    const Vec3d right = to_double(exact[i]), is = to_double(shown[i]);
+    const bool both = right != Vec3d{} && is != Vec3d{} && is_finite(is);
+    degrees[i] = both ? static_cast<float>(angle_between(right, unit(is)) * kDegreesPerRadian)
+                      : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+// The numbers of a Python float or of an array of them; is_one says which it was.
+struct Numbers {
+  explicit Numbers(const py::object& given, const char* place) {
+    if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
+      is_one = true;
+      one = given.cast<double>();
+      return;
+    }
+    many = Array<double>::ensure(given);
+    if (!*many) {
+      PyErr_Clear();
+      refuse(place, "it must be a number, or numbers in a row");
+    }
+    if (many->ndim() == 0) {
+      is_one = true;
+      one = *many->data();
+      return;
+    }
+    if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
+  }
+
+  [[nodiscard]] std::size_t count() const { return is_one ? 1 : static_cast<std::size_t>(many->size()); }
+  [[nodiscard]] const double* data() const { return is_one ? &one : many->data(); }
+  [[nodiscard]] std::optional<std::size_t> rows() const {
+    return is_one ? std::nullopt : std::optional<std::size_t>(count());
+  }
+
+  bool is_one = false;
+  double one = 0;
+  std::optional<Array<double>> many;  // an empty array would have to be made
+};
+
+class Curves : public ZeroedObject {
+ public:
+  Curves(const Array<float>& from, const Array<float>& to, const Array<std::uint32_t>& offsets,
+         const Array<std::uint32_t>& corners, const std::string& elements, std::optional<double> crease,
+         const std::string& weighting, double tolerance, bool weld, int threads) {
+    const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
+    ElementCurvesOptions options;
+    options.elements = element_options(elements, crease, weld);
+    options.weighting = value_or_raise(make_weighting(weighting));
+    require(std::isfinite(tolerance) && tolerance > 0, "tolerance", "it must be a positive number of radians");
+    options.tolerance = tolerance;
+    const ChosenThreads chosen(threads);
+    options.threads = chosen.threads();
+    Topology topology = topology_of(first.count, offsets, corners);
+    const py::gil_scoped_release released;
+    curves_.emplace(make(std::move(topology), first, last, options));
+  }
+
+  void next(const AnyArray<float>& from, const AnyArray<float>& to) {
+    require_made(curves_.has_value());
+    const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
+    Status status = Success{};
+    {
+      const py::gil_scoped_release released;
+      const std::lock_guard lock(mutex_);
+      status = curves_->next(first, last);
+    }
+    value_or_raise(std::move(status));
+  }
+
+  py::array unit_normals(const py::object& t, const py::object& out, int threads) {
+    const Numbers times(t, "t");
+    const ChosenThreads chosen(threads);
+    py::array result = result_array(out, times.rows(), size());
+    write(times, chosen.threads(), static_cast<float*>(result.mutable_data()));
+    return result;
+  }
+
+  py::array errors(const py::object& t, const AnyArray<float>& normals, int threads) {
+    const Numbers times(t, "t");
+    const ChosenThreads chosen(threads);
+    const auto n = static_cast<py::ssize_t>(size()), rows = static_cast<py::ssize_t>(times.count());
+    const bool fits = times.is_one ? normals.ndim() == 2 && normals.shape(0) == n && normals.shape(1) == 3
+                                   : normals.ndim() == 3 && normals.shape(0) == rows && normals.shape(1) == n &&
+                                         normals.shape(2) == 3;
+    if (!(fits))
+      refuse("normals", "the shape is " + shape_text(normals) + " and must be (" +
+                            (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) + ", 3)");
+    const std::size_t count = times.count() * size();
+    std::vector<float> exact(3 * count), degrees(count);
+    write(times, chosen.threads(), exact.data());
+    {
+      const float* const shown = normals.data();
+      const py::gil_scoped_release released;
+      write_errors(VectorView<const float>::packed(exact.data(), count), VectorView<const float>::packed(shown, count),
+                   degrees.data());
+    }
+    return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
+  }
+
+  [[nodiscard]] std::size_t size() const { return curves().size(); }
+  [[nodiscard]] std::size_t bytes() const { return curves().curves().bytes(); }
+  [[nodiscard]] double fit_bound() const { return curves().fit_bound(); }
+  [[nodiscard]] std::string elements() const {
+    return std::string(element_kind_name(curves().options().elements.kind));
+  }
+  [[nodiscard]] std::string text() const {
+    std::array<char, 32> tolerance{};
+    (void)std::snprintf(tolerance.data(), tolerance.size(), "%.3g", curves().options().tolerance);
+    const ElementKind kind = curves().options().elements.kind;
+    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves().curves().size()) +
+           " of them different, weighting " + std::string(weighting_name(curves().options().weighting)) +
+           ", tolerance " + tolerance.data() + ", " + std::to_string(bytes()) + " bytes>";
+  }
+
+ private:
+  static ElementCurves make(Topology topology, VectorView<const float> from, VectorView<const float> to,
+                            const ElementCurvesOptions& options) {
+    Result<ElementCurves> made = ElementCurves::make(std::move(topology), from, to, options);
+    if (made) return std::move(made).value();
+    const py::gil_scoped_acquire held;
+    raise(made.error());
+  }
+
+  void write(const Numbers& times, Threads threads, float* result) {
+    const std::size_t count = size();
+    const double* const values = times.data();
+    const py::gil_scoped_release released;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = 0; k < times.count(); ++k)
+      curves_->unit_normals(values[k], VectorView<float>::packed(result + 3 * count * k, count), threads);
+  }
+
+  [[nodiscard]] const ElementCurves& curves() const {
+    require_made(curves_.has_value());
+    return *curves_;
+  }
+
+  std::optional<ElementCurves> curves_;
+  std::mutex mutex_;  // evaluations share scratch, and Python's threads run without the GIL meanwhile
+};
+
+class Blend : public ZeroedObject {
+ public:
+  Blend(const Array<float>& base, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>& targets,
+        const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners, const std::string& elements,
+        std::optional<double> crease, bool weld)
+      : targets_(targets.size()) {
+    const auto view = vectors_of(base, "base");
+    BlendSet set{topology_of(view.count, offsets, corners), vector_of(base), {}};
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      const auto& [vertices, deltas] = targets[k];
+      const std::string place = "deltas[" + std::to_string(k) + "]";
+      const std::size_t count = vectors_of(deltas, place).count;
+      if (vertices.size() == 0 && count > 0) {
+        if (!(count == view.count))
+          refuse(place,
+                 "there are " + std::to_string(count) + " deltas for " + std::to_string(view.count) + " vertices");
+        set.targets.push_back(BlendTarget::from_dense({deltas.data(), 3 * count}));
+        continue;
+      }
+      set.targets.push_back({"", vector_of(vertices), vector_of(deltas)});
+    }
+    const ElementOptions options = element_options(elements, crease, weld);
+    kind_ = options.kind;
+    Result<ElementBlend> made = [&] {
+      const py::gil_scoped_release released;
+      return ElementBlend::make(std::move(set), options);
+    }();
+    blend_.emplace(value_or_raise(std::move(made)));
+  }
+
+  py::array unit_normals(const Array<double>& weights, const py::object& out, int threads) {
+    require_made(blend_.has_value());
+    const auto k = static_cast<py::ssize_t>(targets_);
+    const bool is_one = weights.ndim() == 1;
+    if (!((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k))
+      refuse("weights", "the shape is " + shape_text(weights) + " and must be (" + std::to_string(k) + ",) or (T, " +
+                            std::to_string(k) + ")");
+    const ChosenThreads chosen(threads);
+    const std::size_t rows = is_one ? 1 : static_cast<std::size_t>(weights.shape(0)), count = size();
+    py::array result = result_array(out, is_one ? std::nullopt : std::optional(rows), count);
+    float* const data = static_cast<float*>(result.mutable_data());
+    const double* const values = weights.data();
+    const py::gil_scoped_release released;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t r = 0; r < rows; ++r) {
+      blend_->unit_normals({values + r * targets_, targets_}, VectorView<float>::packed(data + 3 * count * r, count),
+                           chosen.threads());
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::size_t size() const { return blend().size(); }
+  [[nodiscard]] std::size_t targets() const { return targets_; }
+  [[nodiscard]] std::size_t bytes() const { return blend().normals().bytes(); }
+  [[nodiscard]] std::string text() const {
+    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend().normals().size()) +
+           " of them different, " + std::to_string(targets_) + (targets_ == 1 ? " target, " : " targets, ") +
+           std::to_string(bytes()) + " bytes>";
+  }
+
+ private:
+  [[nodiscard]] const ElementBlend& blend() const {
+    require_made(blend_.has_value());
+    return *blend_;
+  }
+
+  std::size_t targets_;
+  ElementKind kind_ = ElementKind::kVertices;
+  std::optional<ElementBlend> blend_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners) {
+  if (offsets.size() > 0) {
+    return value_or_raise(Topology::polygons(vertices, vector_of(offsets), vector_of(corners)));
+  }
+  return value_or_raise(Topology::triangles(vertices, vector_of(corners)));
+}
+
+py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size) {
+  constexpr const char* kWanted = "it must be a C-contiguous array of float32";
+  const auto n = static_cast<py::ssize_t>(size);
+  if (out.is_none()) {
+    if (rows) return py::array_t<float>({static_cast<py::ssize_t>(*rows), n, py::ssize_t{3}});
+    return py::array_t<float>({n, py::ssize_t{3}});
+  }
+  require(py::isinstance<py::array>(out), "out", kWanted);
+  auto array = py::reinterpret_borrow<py::array>(out);
+  const py::dtype type = array.dtype();
+  constexpr int kWhole = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
+  require(
+      type.num() == py::detail::npy_api::NPY_FLOAT_ && type.byteorder() == '=' && (array.flags() & kWhole) == kWhole,
+      "out", kWanted);
+  const bool fits = rows ? array.ndim() == 3 && array.shape(0) == static_cast<py::ssize_t>(*rows) &&
+                               array.shape(1) == n && array.shape(2) == 3
+                         : array.ndim() == 2 && array.shape(0) == n && array.shape(1) == 3;
+  if (!fits) {
+    refuse("out", "the shape is " + shape_text(array) + " and must be (" + (rows ? std::to_string(*rows) + ", " : "") +
+                      std::to_string(n) + ", 3)");
+  }
+  require(array.writeable(), "out", "it is read-only");
+  return array;
+}
+
+void add_curves(py::module_& module) {
+  py::class_<Curves>(module, "Curves", R"(Unit normals between two arrays of positions, exact for every t in [0, 1].
+
+Made by chronormal.curves(). len() is the number of normals n: faces, vertices or corners.)")
+      .def(py::init<const Array<float>&, const Array<float>&, const Array<std::uint32_t>&, const Array<std::uint32_t>&,
+                    const std::string&, std::optional<double>, const std::string&, double, bool, int>())
+      .def("unit_normals", &Curves::unit_normals, py::arg("t"), py::arg("out") = py::none(), py::arg("threads") = 1,
+           R"(Return the unit normals at t, (0, 0, 0) where there is none.
+
+t        a float in [0, 1]: the result is (n, 3) float32; or T of them: (T, n, 3)
+out      where to write, a C-contiguous float32 array of that shape, which is returned
+threads  1: the calling thread; 0: all cores where there is enough to do; k: at most k
+
+The GIL is released. Raises ValueError for shapes that do not fit.)")
+      .def("errors", &Curves::errors, py::arg("t"), py::arg("normals"), py::arg("threads") = 1,
+           R"(Return how far normals are from the exact ones, in degrees: (n,) or (T, n) float32.
+
+normals  (n, 3) or (T, n, 3) float32, of any length: what something shows at t
+NaN      where the exact normal or the given one has no direction)")
+      .def("next", &Curves::next, py::arg("p0"), py::arg("p1"),
+           R"(Prepare the next segment of the same mesh in the same memory; p0 and p1 are (V, 3) float32.)")
+      .def_property_readonly("bytes", &Curves::bytes, "Memory that the curves keep, in bytes.")
+      .def_property_readonly("elements", &Curves::elements, "\"faces\", \"vertices\" or \"corners\".")
+      .def_property_readonly("fit_bound", &Curves::fit_bound,
+                             "Radians: how far the fit of another weighting than area may be off; 0 for area.")
+      .def("__len__", &Curves::size)
+      .def("__repr__", &Curves::text);
+  py::class_<Blend>(module, "Blend", R"(Unit normals of blend shapes, exact at any weights.
+
+Made by chronormal.blend(). len() is the number of normals n: faces, vertices or corners.)")
+      .def(py::init<const Array<float>&, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>&,
+                    const Array<std::uint32_t>&, const Array<std::uint32_t>&, const std::string&, std::optional<double>,
+                    bool>())
+      .def("unit_normals", &Blend::unit_normals, py::arg("weights"), py::arg("out") = py::none(),
+           py::arg("threads") = 1,
+           R"(Return the unit normals at some weights, (0, 0, 0) where there is none.
+
+weights  (K,), one for each target: the result is (n, 3) float32; or (T, K): (T, n, 3)
+out, threads  as for Curves.unit_normals())")
+      .def_property_readonly("targets", &Blend::targets, "The number K of targets.")
+      .def_property_readonly("bytes", &Blend::bytes, "Memory that the terms take, in bytes.")
+      .def("__len__", &Blend::size)
+      .def("__repr__", &Blend::text);
+}
+
+}  // namespace chronormal::python

@@ -1,0 +1,344 @@
+// Files and what the commands of the program find in them: reports as JSON, errors and motions as arrays.
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "arrays.h"
+
+namespace chronormal::python {
+namespace {
+
+constexpr const char* kBytes = "<bytes>";  // the name of a file that was given as bytes
+
+// An input that was opened, and what its bytes lie in.
+struct Opened {
+  Input input;
+  py::object bytes;
+};
+
+// The source is what python/chronormal makes of its arguments: a dict with the names of InputOptions.
+InputOptions options_of(const py::dict& source) {
+  InputOptions options;
+  options.files = source["files"].cast<std::vector<std::string>>();
+  options.samples = source["samples"].cast<std::vector<std::string>>();
+  options.base = source["base"].cast<std::string>();
+  options.frames_per_second = source["fps"].cast<double>();
+  options.animation = source["animation"].cast<std::string>();
+  options.world = source["world"].cast<bool>();
+  if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
+    const std::string_view view = bytes.cast<std::string_view>();  // of the object, which outlives the input
+    options.files = {kBytes};
+    options.resolve = [view](const std::string& name) -> Result<std::string_view> {
+      if (name == kBytes) return view;
+      return Error{ErrorCode::kFailed, name, "it lies beside the file, of which only the bytes are here"};
+    };
+  }
+  return options;
+}
+
+Opened open(const py::dict& source, bool allow_mesh, KeepShading shading) {
+  InputOptions options = options_of(source);
+  options.allow_mesh = allow_mesh;
+  options.shading = shading;
+  if (const Status status = check_input(options); !status) raise(status.error());
+  Result<Input> input = [&] {
+    const py::gil_scoped_release released;
+    return open_input(options);
+  }();
+  return {value_or_raise(std::move(input)), source["bytes"]};
+}
+
+// Does what takes long without the GIL, and raises its error with it.
+template <class Work>
+auto without_gil(const Work& work) {
+  auto result = [&] {
+    const py::gil_scoped_release released;
+    return work();
+  }();
+  return value_or_raise(std::move(result));
+}
+
+py::list dicts_of(std::vector<ErrorTable> tables) {
+  py::list list;
+  for (ErrorTable& table : tables) {
+    const auto rows = static_cast<py::ssize_t>(table.rows()), columns = static_cast<py::ssize_t>(table.columns());
+    py::dict dict;
+    dict["name"] = table.name;
+    dict["errors"] = array_of(std::move(table.degrees), {rows, columns});
+    dict["subjects"] = array_of(std::move(table.subjects), {rows});
+    dict["times"] = array_of(std::move(table.times), {rows});
+    dict["weights"] = array_of(std::move(table.weights), {rows});
+    dict["positions"] = array_of(std::move(table.positions), {py::ssize_t(table.topology.vertex_count()), 3});
+    if (!table.primitives.empty()) {
+      dict["primitives"] = array_of(std::move(table.primitives), {columns});
+      dict["vertices"] = array_of(std::move(table.vertices), {columns});
+    }
+    list.append(dict);
+  }
+  return list;
+}
+
+py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
+                       const std::string& hosts, std::optional<std::size_t> samples, std::optional<double> tolerance,
+                       bool weld, bool keep_errors) {
+  AuditOptions options;
+  if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
+  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
+  if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
+  require(!tolerance || *tolerance >= 0, "tolerance", "it must be an angle in degrees, 0 or more");
+  options.samples = samples;
+  options.weld = weld;
+  options.keep_errors = keep_errors;
+  Opened opened = open(source, false, KeepShading::kAll);
+  Input& input = opened.input;
+  options.animation = source["animation"].cast<std::string>();
+  Audit found = without_gil([&]() -> Result<Audit> {
+    if (input.document() != nullptr) return audit(*input.document(), options);
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    const Result<const StoredNormals*> normals = input.normals();
+    if (!normals) return normals.error();
+    return audit(*motion.value(), *normals.value(), options);
+  });
+  return py::make_tuple(audit_json(input.name(), found, tolerance), dicts_of(std::move(found.errors)));
+}
+
+py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
+                         bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
+                         bool keep_errors) {
+  CompareOptions options;
+  options.schemes = schemes;
+  options.samples = samples;
+  options.access = sequential ? Access::kSequential : Access::kRandom;
+  options.elements.kind = value_or_raise(make_element_kind(elements));
+  options.elements.crease_angle = crease;
+  options.elements.weld = weld;
+  options.keep_errors = keep_errors;
+  Opened opened = open(source, false, KeepShading::kNone);
+  NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
+    const Result<const Motion*> motion = opened.input.motion();
+    if (!motion) return motion.error();
+    Result<Comparison> comparison = compare(*motion.value(), options);
+    if (!comparison) return comparison.error();
+    return NamedComparison{opened.input.name(), std::move(comparison).value()};
+  });
+  std::vector<ErrorTable> tables = std::move(found.comparison.errors);
+  return py::make_tuple(compare_json({std::move(found)}, false, with_times), dicts_of(std::move(tables)));
+}
+
+std::string inspect_source(const py::dict& source) {
+  Opened opened = open(source, true, KeepShading::kNone);
+  const std::string animation = source["animation"].cast<std::string>();
+  return inspect_json(without_gil([&] { return inspect_input(std::move(opened.input), animation); }));
+}
+
+// Bakes a glTF document; the file is written as a GLB.
+std::string bake_document(const Input& input, const BakeOptions& options, std::string& json) {
+  const GltfDocument& document = *input.document();
+  GltfEdit edit(document);
+  const GltfBake baked = without_gil([&] { return bake(document, options, edit); });
+  json = bake_json(baked, {input.name(), kBytes, std::nullopt, std::nullopt});
+  return without_gil([&] { return edit.bytes("baked.glb"); });
+}
+
+std::string bake_sequence_of(Input& input, BakeOptions options, std::string& json) {
+  std::string glb;
+  const SequenceBake baked = without_gil([&]() -> Result<SequenceBake> {
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    if (motion.value()->kind == MotionKind::kTargets)
+      return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+    if (motion.value()->segments.size() + 1 != motion.value()->keyframes.size())
+      return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
+    const Result<const StoredNormals*> stored = input.normals();
+    if (!stored) return stored.error();
+    if (!stored.value()->of_keyframes.empty()) {
+      const std::vector<float>& first = stored.value()->of_keyframes.front();
+      options.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+    }
+    options.expansion = input.expansion();
+    return bake_sequence(*motion.value(), options, glb);
+  });
+  json = bake_json(baked, options.encoding.value_or(BakeEncoding::kExact),
+                   {input.name(), kBytes, std::nullopt, std::nullopt});
+  return glb;
+}
+
+py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& hosts,
+                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
+  BakeOptions options;
+  if (!encode.empty()) {
+    options.encoding = find_bake_encoding(encode);
+    require(options.encoding.has_value(), "encode", "it must be harmless, exact or endpoint");
+  }
+  options.hosts = value_or_raise(find_hosts(hosts));
+  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
+  require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
+  options.tolerance = tolerance;
+  options.smooth = smooth;
+  options.recompute_base = recompute_base;
+  Opened opened = open(source, false, KeepShading::kAll);
+  const bool is_document = opened.input.document() != nullptr;
+  if (!is_document) {
+    require(options.encoding != BakeEncoding::kHarmless, "encode", "a sequence is written exact or endpoint");
+    require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
+  }
+  std::string json;
+  const std::string glb =
+      is_document ? bake_document(opened.input, options, json) : bake_sequence_of(opened.input, options, json);
+  return py::make_tuple(py::bytes(glb), json);
+}
+
+// A motion that was read, its arrays, and its normals at chosen moments.
+class ReadMotion : public ZeroedObject {
+ public:
+  explicit ReadMotion(const py::dict& source) : opened_(open(source, true, KeepShading::kNone)) {
+    motion_ = without_gil([&] { return opened_.input.motion(); });
+  }
+
+  // Makes the array of all keyframes once.
+  py::array positions() {
+    require_made(motion_ != nullptr);
+    if (!positions_) {
+      std::vector<float> all;
+      for (const Motion::Keyframe& keyframe : motion().keyframes)
+        all.insert(all.end(), keyframe.positions.begin(), keyframe.positions.end());
+      positions_ = array_of(std::move(all),
+                            {py::ssize_t(motion().keyframes.size()), py::ssize_t(motion().topology.vertex_count()), 3});
+    }
+    return *positions_;
+  }
+
+  // (F, k) where all faces have as many corners, or else (offsets, corners).
+  [[nodiscard]] py::object faces() const {
+    const Topology& topology = motion().topology;
+    std::vector<std::uint32_t> corners(topology.corners().begin(), topology.corners().end()), offsets = {0};
+    const std::size_t width = topology.face_count() > 0 ? topology.face(0).size() : 3;
+    bool is_even = true;
+    for (std::size_t f = 0; f < topology.face_count(); ++f) {
+      is_even = is_even && topology.face(f).size() == width;
+      offsets.push_back(offsets.back() + static_cast<std::uint32_t>(topology.face(f).size()));
+    }
+    if (is_even) return array_of(std::move(corners), {py::ssize_t(topology.face_count()), py::ssize_t(width)});
+    const auto count = static_cast<py::ssize_t>(corners.size());
+    return py::make_tuple(array_of(std::move(offsets), {py::ssize_t(topology.face_count() + 1)}),
+                          array_of(std::move(corners), {count}));
+  }
+
+  [[nodiscard]] py::array times() const {
+    std::vector<double> times;
+    for (const Motion::Keyframe& keyframe : motion().keyframes) times.push_back(keyframe.time);
+    return array_of(std::move(times), {py::ssize_t(motion().keyframes.size())});
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const Motion::Keyframe& keyframe : motion().keyframes) names.push_back(keyframe.name);
+    return names;
+  }
+  [[nodiscard]] py::array segments() const {
+    std::vector<std::int64_t> keys;
+    for (const auto& [from, to] : motion().segments) {
+      keys.push_back(static_cast<std::int64_t>(from));
+      keys.push_back(static_cast<std::int64_t>(to));
+    }
+    return array_of(std::move(keys), {py::ssize_t(motion().segments.size()), 2});
+  }
+  [[nodiscard]] std::string kind() const {
+    return motion().segments.empty() ? "mesh" : std::string(motion_kind_name(motion().kind));
+  }
+
+  py::array unit_normals(const std::optional<Array<double>>& times, const std::optional<Array<double>>& weights,
+                         const std::string& elements, double crease, const std::string& weighting, bool weld) {
+    SampleOptions options;
+    options.elements.kind = value_or_raise(make_element_kind(elements));
+    options.elements.crease_angle = crease;
+    options.elements.weld = weld;
+    options.weighting = value_or_raise(make_weighting(weighting));
+    require(!times || !weights, "weights", "a motion has times or weights, and not both");
+    require(times || weights || motion().segments.empty(), "times", "say at which times, or at which weights");
+    std::vector<double> at;
+    std::size_t rows = 1, width = 0;
+    if (times) {
+      if (times->ndim() != 1) refuse("times", "the shape is " + shape_text(*times) + " and must be (T,)");
+      at = vector_of(*times);
+      rows = at.size();
+    } else if (weights) {
+      if (weights->ndim() != 2) refuse("weights", "the shape is " + shape_text(*weights) + " and must be (T, K)");
+      at = vector_of(*weights);
+      rows = static_cast<std::size_t>(weights->shape(0));
+      width = static_cast<std::size_t>(weights->shape(1));
+    }
+    std::size_t count = 0;
+    std::vector<float> all = without_gil([&]() -> Result<std::vector<float>> {
+      Result<NormalSampler> sampler = NormalSampler::make(motion(), options);
+      if (!sampler) return sampler.error();
+      count = sampler.value().output_count();
+      std::vector<double> in_a_row;
+      if (times) {
+        Result<std::vector<double>> counted = times_in_a_row(motion(), at);
+        if (!counted) return counted.error();
+        in_a_row = std::move(counted).value();
+      }
+      std::vector<float> normals;
+      for (std::size_t r = 0; r < rows; ++r) {
+        const Result<Pose> pose = times     ? sampler.value().at_time(at[r], in_a_row[r])
+                                  : weights ? sampler.value().at_weights({at.data() + r * width, width})
+                                            : Result<Pose>(sampler.value().at_rest());
+        if (!pose) return pose.error();
+        const std::vector<float> of_pose = sampler.value().normals_of_outputs(pose.value());
+        normals.insert(normals.end(), of_pose.begin(), of_pose.end());
+      }
+      return normals;
+    });
+    return array_of(std::move(all), {py::ssize_t(rows), py::ssize_t(count), 3});
+  }
+
+  [[nodiscard]] std::string text() const {
+    require_made(motion_ != nullptr);
+    return "<chronormal.Motion " + opened_.input.name() + ": " + kind() + ", " +
+           std::to_string(motion().keyframes.size()) + " keyframes of " +
+           std::to_string(motion().topology.vertex_count()) + " vertices, " +
+           std::to_string(motion().topology.face_count()) + " faces>";
+  }
+
+ private:
+  [[nodiscard]] const Motion& motion() const {
+    require_made(motion_ != nullptr);
+    return *motion_;
+  }
+
+  Opened opened_;
+  const Motion* motion_ = nullptr;  // of the input
+  std::optional<py::array> positions_;
+};
+
+}  // namespace
+
+void add_files(py::module_& module) {
+  module.def("audit", &audit_source);
+  module.def("compare", &compare_source);
+  module.def("inspect", &inspect_source);
+  module.def("bake", &bake_source);
+  py::class_<ReadMotion>(module, "Motion", R"(A motion that chronormal.read() read: T keyframes of V vertices.)")
+      .def(py::init<const py::dict&>())
+      .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
+      .def_property_readonly(
+          "faces", &ReadMotion::faces,
+          "(F, k) uint32 where all faces have k corners, else (offsets, corners); curves() takes both.")
+      .def_property_readonly("times", &ReadMotion::times, "(T,) float64: seconds; of targets, their weight.")
+      .def_property_readonly("names", &ReadMotion::names, "The name of each keyframe: a file, a target, or \"\".")
+      .def_property_readonly("segments", &ReadMotion::segments,
+                             "(S, 2) int64: the keyframes at both ends of each segment.")
+      .def_property_readonly("kind", &ReadMotion::kind, "\"sequence\", \"targets\", \"animation\" or \"mesh\".")
+      .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
+           py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
+           py::arg("weld") = true,
+           R"(Return the unit normals at chosen moments: (T, n, 3) float32, the bits of `chronormal sample`.
+
+times    (T,) seconds of a sequence or an animation
+weights  (T, K) of K targets
+A mesh that does not move takes neither.)")
+      .def("__repr__", &ReadMotion::text);
+}
+
+}  // namespace chronormal::python

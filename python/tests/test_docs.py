@@ -1,0 +1,57 @@
+"""The page docs/python.md and the README: what stands there runs, and prints what stands there."""
+
+import doctest
+import re
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import chronormal as cn
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+
+def blocks(file, language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", (ROOT / file).read_text(), re.M | re.S)
+
+
+class DocumentTest(unittest.TestCase):
+    def test_the_page_prints_what_it_shows(self):
+        page = "\n".join(blocks("docs/python.md", "pycon"))
+        test = doctest.DocTestParser().get_doctest(page, {}, "docs/python.md", "docs/python.md", 0)
+        self.assertGreater(len(test.examples), 20)
+        self.maxDiff = None
+        said = []
+        doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=said.append)
+        self.assertEqual("".join(said), "")
+
+    def test_the_readme_runs(self):
+        (block,) = blocks("README.md", "python")
+        p0 = np.eye(3, dtype=np.float32)
+        names = {"p0": p0, "p1": p0[::-1] + 1, "faces": [[0, 1, 2]]}
+        exec(compile(block, "README.md", "exec"), names)
+        self.assertEqual(names["normals"].shape, (3, 3))
+
+    def test_every_public_name_has_a_docstring(self):
+        for name in cn.__all__:
+            thing = getattr(cn, name)
+            self.assertTrue(thing.__doc__, name)
+            if isinstance(thing, type):
+                for member, value in vars(thing).items():
+                    if not member.startswith("_") and (callable(value) or isinstance(value, property)):
+                        self.assertTrue(value.__doc__, f"{name}.{member}")
+
+    def test_the_stubs_name_what_there_is(self):
+        stubs = (Path(cn.__file__).parent / "__init__.pyi").read_text()
+        for name in cn.__all__:
+            self.assertRegex(stubs, rf"(?m)^(class|def) {name}\b")
+        for kind in (cn.Curves, cn.Blend, cn.Motion):
+            body = re.search(rf"^class {kind.__name__}:\n((?:    .*\n)+)", stubs, re.M).group(1)
+            stubbed = set(re.findall(r"def (\w+)", body)) - {"__len__"}
+            there = {member for member in vars(kind) if not member.startswith("_")}
+            self.assertEqual(stubbed, there, kind)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,32 @@
+/// Text for people and programs: words with counts in them, and names from files, made safe to print. Private.
+#ifndef CHRONORMAL_CORE_TEXT_H_
+#define CHRONORMAL_CORE_TEXT_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace chronormal::inline internal {
+
+/// Names in files are anyone's words. Control characters, characters that turn the direction of writing, and bytes that
+/// are not UTF-8 come out as \xNN; what is longer than `most` characters ends in "...".
+/// 4 <= most
+[[nodiscard]] std::string printable(std::string_view text, std::size_t most = static_cast<std::size_t>(-1));
+
+/// The text of a JSON document, in UTF-8, with the same characters as \uNNNN inside its strings; line ends stay.
+[[nodiscard]] std::string escaped_for_json(std::string_view document);
+
+/// 1234567 as "1,234,567".
+[[nodiscard]] std::string grouped(std::size_t value);
+
+/// "1 face", "1,234 faces".
+[[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
+
+/// A number with so many decimals, or with so many significant digits and no zeros at the end; "-" where it is infinite
+/// or no number.
+[[nodiscard]] std::string with_decimals(double value, int decimals);
+[[nodiscard]] std::string with_digits(double value, int digits);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_CORE_TEXT_H_

@@ -1,0 +1,55 @@
+// Inspects an input of any kind: its motion, and what a glTF file has beside.
+#include <utility>
+
+#include "chronormal/workflow/inspect.h"
+
+namespace chronormal {
+namespace {
+
+using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
+
+// Inspects the motion or the mesh, both of which are keyframes.
+Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
+  const Result<const Motion*> read = result.opened.motion();
+  if (!read) return read.error();
+  const Motion& motion = *read.value();
+  result.inspection = inspect(motion, progress);
+  for (const Motion::Keyframe& keyframe : motion.keyframes) result.keyframe_names.push_back(keyframe.name);
+  result.segments = motion.segments;
+  result.kind = motion.kind;
+  return Success{};
+}
+
+// Inspects what a glTF file holds, and what moves in it.
+Status inspect_document(const std::string& animation, const ProgressCallback& progress, Inspected& result) {
+  Input& input = result.opened;
+  const GltfDocument& document = *input.document();
+  Result<GltfInspection> inspection = inspect(document);
+  if (!inspection) return inspection.error();
+  InspectedGltf gltf;
+  gltf.document = &document;
+  gltf.inspection = std::move(inspection).value();
+  if (!gltf.inspection.primitives.empty() || !animation.empty()) {
+    if (Status status = inspect_keyframes(progress, result); !status) return status;
+    if (!animation.empty()) gltf.animation = document.find_animation(animation).value();
+    const Result<std::size_t> split = count_split_normals(document, *input.motion().value(), input.parts());
+    if (!split) return split.error();
+    gltf.split = split.value();
+    gltf.parts = input.parts();
+    gltf.curve_error = input.curve_error();
+  }
+  result.gltf = std::move(gltf);
+  return Success{};
+}
+
+}  // namespace
+
+Result<Inspected> inspect_input(Input input, const std::string& animation, const ProgressCallback& progress) {
+  Inspected result{std::move(input), {}, {}, {}, {}, {}};
+  const Status status = result.opened.document() != nullptr ? inspect_document(animation, progress, result)
+                                                            : inspect_keyframes(progress, result);
+  if (!status) return status.error();
+  return result;
+}
+
+}  // namespace chronormal

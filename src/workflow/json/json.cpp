@@ -1,0 +1,15 @@
+#include "core/text.h"
+#include "workflow/json/object.h"
+
+namespace chronormal::inline internal {
+
+Json json_of_command(const char* command) {
+  return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", 1}};
+}
+
+// Control characters that JSON lets stand are those from DEL on, inside of texts: as escapes they are the same texts.
+std::string json_text(const Json& json) {
+  return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,42 @@
+// Words with numbers in them, which reports and JSON share.
+
+#include "core/text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace chronormal::text_test {
+namespace {
+
+TEST(Text, counts_have_groups_of_three_and_the_right_word) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1,000");
+  EXPECT_EQ(grouped(1234567), "1,234,567");
+  EXPECT_EQ(counted(1, "face", "faces"), "1 face");
+  EXPECT_EQ(counted(0, "face", "faces"), "0 faces");
+  EXPECT_EQ(counted(2000, "vertex", "vertices"), "2,000 vertices");
+}
+
+TEST(Text, numbers_have_the_digits_that_are_asked_for) {
+  EXPECT_EQ(with_decimals(0.5, 4), "0.5000");
+  EXPECT_EQ(with_decimals(-2.00005, 2), "-2.00");
+  EXPECT_EQ(with_decimals(1e300, 0).size(), 301u);
+  EXPECT_EQ(with_digits(1.25, 4), "1.25");
+  EXPECT_EQ(with_digits(0.000012345, 3), "1.23e-05");
+  EXPECT_EQ(with_decimals(std::numeric_limits<double>::infinity(), 2), "-");
+  EXPECT_EQ(with_digits(std::numeric_limits<double>::quiet_NaN(), 2), "-");
+}
+
+TEST(Text, long_names_are_cut_between_characters) {
+  EXPECT_EQ(printable("abcdef", 6), "abcdef");
+  EXPECT_EQ(printable("abcdefg", 6), "abc...");
+  EXPECT_EQ(printable("\xc3\xa4\xc3\xb6\xc3\xbc\xc3\x9f", 4), "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\x9f");
+  EXPECT_EQ(printable("\xc3\xa4\xc3\xb6\xc3\xbc\xc3\x9f!", 4), "\xc3\xa4...");
+  EXPECT_EQ(printable("a\x1b\xff", 20), "a\\x1b\\xff");
+  EXPECT_EQ(escaped_for_json("\"\xe2\x80\xae\x7f\""), "\"\\u202e\\u007f\"");
+}
+
+}  // namespace
+}  // namespace chronormal::text_test
