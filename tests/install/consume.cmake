@@ -1,6 +1,7 @@
 # cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a foreign project
 # (CMakeLists.txt beside this) that uses chronormal in one of these ways. For a package the build is installed first, into
 # a folder of its own.
+cmake_minimum_required(VERSION 3.22)  # without its policies, "folder" below is the variable of that name
 set(folder ${BUILD}/consume_${FROM})
 file(REMOVE_RECURSE ${folder})
 function(run)
