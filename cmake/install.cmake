@@ -8,11 +8,9 @@ set(config_folder ${PROJECT_BINARY_DIR}/package)
 set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # so that a package may be moved
 
-# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS)
-function(chronormal_install_library target requires libraries)
-  install(TARGETS ${target} EXPORT ${target}Targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT ${target}Targets NAMESPACE chronormal:: DESTINATION ${package_folder})
-  # Static libraries: whoever links them links what they need, so that this is in Requires and not in Requires.private.
+# chronormal_install_pkg_config(TARGET REQUIRES LIBS): what pkg-config says of a library.
+function(chronormal_install_pkg_config target requires libraries)
+  # Of static libraries: whoever links them links what they need, so that this is in Requires and not in Requires.private.
   file(CONFIGURE OUTPUT ${config_folder}/${target}.pc CONTENT
 "prefix=\${pcfiledir}/@prefix_from_pkg_config@
 libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@
@@ -28,6 +26,13 @@ Libs: -L\${libdir} -l@target@@libraries@
   install(FILES ${config_folder}/${target}.pc DESTINATION ${pkg_config_folder})
 endfunction()
 
+# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS)
+function(chronormal_install_library target requires libraries)
+  install(TARGETS ${target} EXPORT ${target}Targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT ${target}Targets NAMESPACE chronormal:: DESTINATION ${package_folder})
+  chronormal_install_pkg_config(${target} "${requires}" "${libraries}")
+endfunction()
+
 set(core_requires libhwy)
 if(TBB_FOUND)
   string(APPEND core_requires " tbb")
@@ -39,6 +44,7 @@ endif()
 if(CHRONORMAL_C)
   install(TARGETS chronormal_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(FILES ${PROJECT_SOURCE_DIR}/include/chronormal_c.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  chronormal_install_pkg_config(chronormal_c "" "")
 endif()
 if(CHRONORMAL_PROGRAM)
   install(TARGETS chronormal_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

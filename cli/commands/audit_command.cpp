@@ -222,30 +222,31 @@ Command audit_command() {
       {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
   return {
       "audit",
-      "How wrong are the normals that a file makes hosts show",
+      "Measure how far the normals that a host shows are from the right ones",
       {input_table(options->input, refused),
        {{"--rule NAME", &options->rule,
          "what a host makes of stored normals between keyframes: gltf (default for\n"
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
         {"--weighting NAME", &options->weighting,
-         "of the right normals: area, angle, uniform, area-angle, max (default: the one\n"
-         "that the base normals of the file follow, else area)"},
+         "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
+         "(default: as in the base normals of the file, else area)"},
         {"--host NAME,...", &options->hosts,
-         "judge what these show of a glTF file: three, babylon, playcanvas, godot,\n"
+         "judge what these hosts show of a glTF file: three, babylon, playcanvas, godot,\n"
          "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
         {"--samples N",
          &options->samples,
-         "per segment, ends included (default 21; 5 in animations of more than\n"
-         "32 key intervals)",
+         "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
+         "animations of more than 32 key intervals)",
          {.check = check_whole(2, kMostAuditSamples)}},
         {"--tolerance DEG", &options->tolerance,
-         "exit with 4 if the worst error is beyond this; with --host, in any of them"},
+         "exit with code 4 if the worst error is larger, in any host of --host"},
         {"--errors FILE", &options->errors,
          "write the error of every vertex at every sample: .npz for programs, or .ply\n"
          "with the worst of each vertex as its quality, for MeshLab and Blender"},
-        {"--no-weld", &options->no_weld, "sequences: vertices at one point in all keyframes stay apart"},
-        {"--json", &options->json, "one JSON object"}},
+        {"--no-weld", &options->no_weld, "sequences: keep vertices apart that are at one point in all keyframes"},
+        {"--json", &options->json, "print one JSON object, for programs"}},
        options->common.table(false)},
+      "A host is a program that shows meshes, such as three.js or Godot. "
       "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
       "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
       "Several glTF files, or a folder of them, are judged one by one: a row each, and the worst exit code.\n"

@@ -220,7 +220,7 @@ Command bake_command() {
       {"--animation", "bake writes normals for all animations of a glTF file"},
       {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
   return {"bake",
-          "Write right normals into a glTF file, or make one of a sequence",
+          "Write right normals into a glTF file, or make a glTF file of a sequence",
           {input_table(options->input, refused),
            {{"--for HOST,...", &options->hosts,
              "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +

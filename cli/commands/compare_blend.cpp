@@ -26,12 +26,14 @@ Error blamed(Error error, const std::string& option) {
 }  // namespace
 
 std::vector<Option> BlendArguments::table() {
-  return {
-      {"--blend N", &rows,
-       "blend shapes: normal deltas of targets against exact normals at\n"
-       "N random weight vectors, or N of an --animation"},
-      {"--active N", &active, "only for this many targets at once (default 1, 2, 4, 8, 16, all)", {.needs = "--blend"}},
-      {"--seed N", &seed, "of random weights (default 1)", {.needs = "--blend"}}};
+  return {{"--blend N", &rows,
+           "blend shapes: compare deltas of normals, which hosts add up, with exact normals at\n"
+           "N random sets of weights, or at N moments of an --animation"},
+          {"--active N",
+           &active,
+           "how many targets are active at once (default 1, 2, 4, 8, 16, all)",
+           {.needs = "--blend"}},
+          {"--seed N", &seed, "the seed of the random weights (default 1)", {.needs = "--blend"}}};
 }
 
 Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, const ElementArguments& elements,

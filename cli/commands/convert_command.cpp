@@ -1,8 +1,10 @@
 #include <memory>
 #include <utility>
 
+#include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/output.h"
 #include "cli/options/command.h"
+#include "cli/terminal/format.h"
 
 namespace chronormal::cli {
 namespace {
@@ -11,6 +13,22 @@ struct Options {
   InputOptions input;
   CommonOptions common;
 };
+
+std::string footer() {
+  std::string text =
+      "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
+      "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
+      "\nBuilt-in morphs:\n";
+  for (const auto& morphs : {builtin_morphs(), builtin_blend_shapes()})
+    for (const BuiltinMorph& morph : morphs) text += formatted("  {:<9} {}\n", morph.name, morph.summary);
+  return text +
+         "\nExamples:\n"
+         "  chronormal convert --sample twist -o twist_%d.obj\n"
+         "  chronormal convert scans/ -o frame_%03d.ply\n"
+         "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
+         "  chronormal convert face.glb --animation Smile -o smile.npz\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
 
 Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
@@ -33,14 +51,7 @@ Command convert_command() {
   return {"convert",
           "Write a motion, or a built-in morph, in another format",
           {input_table(options->input), options->common.table(true)},
-          "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
-          "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
-          "\nExamples:\n"
-          "  chronormal convert --sample twist -o twist_%d.obj\n"
-          "  chronormal convert scans/ -o frame_%03d.ply\n"
-          "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
-          "  chronormal convert face.glb --animation Smile -o smile.npz\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          footer(),
           [options] { return run(*options); }};
 }
 

@@ -44,7 +44,9 @@ Command inspect_command() {
   auto options = std::make_shared<Options>();
   return {"inspect",
           "List what a file contains and what may cause wrong normals",
-          {input_table(options->input), {{"--json", &options->json, "one JSON object"}}, options->common.table(false)},
+          {input_table(options->input),
+           {{"--json", &options->json, "print one JSON object, for programs"}},
+           options->common.table(false)},
           "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
           "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
           "It does not change the exit code.\n"

@@ -56,14 +56,14 @@ Result<SampleOptions> sample_options(const Options& options) {
   if (!weighting) return misuse("--weighting", weighting.error().message);
   if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
   const bool by_area = weighting.value() == Weighting::kArea;
-  if (options.length == "area" && !by_area)
-    return misuse("--length", "only --weighting area has a length that means something");
+  if (options.length == "area" && !by_area) return misuse("--length", "the area is a length of --weighting area alone");
   if (kind == ElementKind::kFaces && !by_area)
     return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
   if (!options.hard_edges.empty()) {
     if (options.hard_edges != "groups" && options.hard_edges != "normals")
       return misuse("--hard-edges", "it must be groups or normals");
-    if (kind != ElementKind::kCorners) return misuse("--hard-edges", "only --elements corners can have hard edges");
+    if (kind != ElementKind::kCorners)
+      return misuse("--hard-edges", "only corners can have hard edges: add --elements corners");
     if (options.elements.crease_angle != 180)
       return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
     if (!options.input.samples.empty())
@@ -173,16 +173,18 @@ Result<int> run(const Options& options) {
 Command sample_command() {
   auto options = std::make_shared<Options>();
   return {"sample",
-          "Write the normals of a motion at chosen times",
+          "Write the normals of a motion at chosen times, or of targets at chosen weights",
           {input_table(options->input),
            options->moments.table(),
            options->elements.table(),
            {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-            {"--length KIND", &options->length, "unit (default), or area: of weighting area, n itself"},
+            {"--length KIND", &options->length,
+             "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+             "around a vertex (with --weighting area)"},
             {"--hard-edges KIND", &options->hard_edges,
-             "corners: hard edges as the first .obj, the base or a glTF file has them, by its\n"
-             "smoothing groups (s) or by its own normals (vn): groups, normals"},
-            {"--format NAME", &options->format, "of OUT: npy (default for -), npz, ply, obj"}},
+             "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+             "file, by its smoothing groups (groups) or its own normals (normals)"},
+            {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"}},
            options->common.table(true)},
           footer(),
           [options] { return run(*options); }};

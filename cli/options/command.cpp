@@ -6,11 +6,11 @@
 namespace chronormal::cli {
 namespace {
 
-std::string morph_list() {
-  std::string list = "a built-in morph (compare --each takes several):";
-  for (const BuiltinMorph& morph : builtin_morphs()) list += formatted("\n  {:<9} {}", morph.name, morph.summary);
-  for (const BuiltinMorph& morph : builtin_blend_shapes()) list += formatted("\n  {:<9} {}", morph.name, morph.summary);
-  return list;
+std::string morph_names() {
+  std::string names;
+  for (const BuiltinMorph& morph : builtin_morphs()) names.append(morph.name).append(", ");
+  return formatted("a built-in morph in place of files: {}or {}, which is a set of targets", names,
+                   builtin_blend_shapes().front().name);
 }
 
 }  // namespace
@@ -27,15 +27,15 @@ std::vector<Option> CommonOptions::table(bool output_required) {
            output_required ? "where to write" : "where to write (default: standard output)",
            {.required = output_required}},
           {"--force", &force, "overwrite OUT if it exists"},
-          {"-q,--quiet", &quiet, "no progress bar"}};
+          {"-q,--quiet", &quiet, "show no progress bar"}};
 }
 
 std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused) {
   std::vector<Option> table = {
       {"INPUT", &input.files,
-       "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
-       "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
-       ".gltf, .glb, .npz or .md2; - is one file on stdin"},
+       "one motion: .obj or .ply keyframes in order, a quoted pattern of their names, or\n"
+       "their folder (sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache;\n"
+       "or one .gltf, .glb, .npz or .md2 file; - stands for one file on standard input"},
       {"--base FILE",
        &input.base,
        "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
@@ -43,18 +43,18 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        {.check = check_given("it must name a file")}},
       {"--animation NAME",
        &input.animation,
-       "an animation of a glTF file, by name or index; without it\n"
-       "every morph target is a segment",
+       "the animation of a glTF file that moves the mesh, by name or number; without it\n"
+       "each morph target is a motion of its own, from weight 0 to 1",
        {.check = check_given("it must be a name or an index")}},
-      {"--world", &input.world, "vertices of a glTF file are where its nodes put them"},
-      {"--allow-external", &input.allow_external, "a glTF file may name files outside its folder"},
+      {"--world", &input.world, "place the vertices of a glTF file where its nodes put them"},
+      {"--allow-external", &input.allow_external, "allow a glTF file to name files outside its folder"},
       {"--max-expansion N",
        &input.max_expansion,
-       "what is read may ask for N times its bytes of memory and output (default 100;\n"
-       "always for 32 MiB)",
+       "let what is read ask for N times its size in memory and output (default 100;\n"
+       "32 MiB are always allowed)",
        {.check = check_whole(0)}},
-      {"--sample NAME", &input.samples, morph_list()},
-      {"--fps N", &input.frames_per_second, "frames per second of the keyframes (default 1)"}};
+      {"--sample NAME", &input.samples, morph_names()},
+      {"--fps N", &input.frames_per_second, "how many keyframes a second has, in formats without times (default 1)"}};
   for (const RefusedOption& option : refused)
     std::erase_if(table,
                   [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });
@@ -66,9 +66,9 @@ std::vector<Option> ElementArguments::table() {
   return {{"--elements KIND", &asked,
            formatted("which normals: {}, {}, {}", marked("faces"), marked("vertices"), marked("corners"))},
           {"--crease DEG", &crease_angle,
-           "corners: edges between faces that differ by more than this\n"
-           "in the first keyframe are hard (default 180: none)"},
-          {"--no-weld", &no_weld, "vertices at one point in all keyframes stay apart"}};
+           "with --elements corners: make edges hard whose faces differ by more than this angle\n"
+           "in the first keyframe (default 180: none)"},
+          {"--no-weld", &no_weld, "keep vertices apart that are at one point in all keyframes"}};
 }
 
 Result<ElementOptions> ElementArguments::options() const {
@@ -77,7 +77,7 @@ Result<ElementOptions> ElementArguments::options() const {
   if (!(crease_angle >= 0 && crease_angle <= 180))
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
   if (crease_angle != 180 && found.value() != ElementKind::kCorners)
-    return misuse("--crease", "only --elements corners can have hard edges");
+    return misuse("--crease", "only corners can have hard edges: add --elements corners");
   if (no_weld && found.value() == ElementKind::kFaces)
     return misuse("--no-weld", "faces are not welded: it goes with vertices or corners");
   return ElementOptions{found.value(), !no_weld, crease_angle};

@@ -105,7 +105,7 @@ bool takes_several(const Option& option) { return std::holds_alternative<std::ve
 // "-o, --output OUT"
 std::string spelled(const Option& option) {
   std::string text = option.spelling;
-  if (const std::size_t comma = text.find(','); comma != std::string::npos) text.insert(comma + 1, 1, ' ');
+  if (const std::size_t comma = text.find(','); comma < text.find(' ')) text.insert(comma + 1, 1, ' ');
   return takes_several(option) && names_of(option).empty() ? text + "..." : text;
 }
 
@@ -263,10 +263,14 @@ std::string help_of_program(const std::vector<Command>& commands, std::size_t co
 std::string help_of_command(const Command& command, std::size_t columns) {
   std::string text =
       flowing(command.summary, 0, columns) + "\n\n" + broken({"Usage: " + usage_of(command), 7}, 0, columns) + "\n\n";
-  visit_options(command, false, [&](const Option& option) { text += row(spelled(option), meaning(option), columns); });
+  const auto add_row = [&](const Option& option) { text += row(spelled(option), meaning(option), columns); };
+  visit_options(command, false, add_row);
   text += "\nOptions:\n";
-  visit_options(command, true, [&](const Option& option) { text += row(spelled(option), meaning(option), columns); });
-  text += row("-h, --help", "print this", columns);
+  for (auto table = command.tables.begin() + 1; table != command.tables.end(); ++table)
+    std::for_each(table->begin(), table->end(), add_row);
+  text += row("-h, --help", "print this", columns) + "\nOptions for what is read:\n";
+  for (const Option& option : command.tables.front())
+    if (!names_of(option).empty()) add_row(option);
   if (!command.footer.empty()) text += formatted("\n{}\n", flowing(command.footer, 0, columns));
   return with_headings(text);
 }

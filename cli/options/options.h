@@ -42,7 +42,8 @@ struct RefusedOption {
   std::string name, reason;
 };
 
-/// A command of the program. Its tables of options come one after the other.
+/// A command of the program. Its tables of options come one after the other; the first chooses what is read, and help
+/// shows it last.
 struct Command {
   std::string name, summary;
   std::vector<std::vector<Option>> tables;

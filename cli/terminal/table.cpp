@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -12,9 +13,8 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr std::size_t kGap = 2;  // between columns
-constexpr std::size_t kLongestShare =
-    3;  // of a line that is too long: names longer than this part stand above the rest
+constexpr std::size_t kGap = 2;           // between columns
+constexpr std::size_t kLongestShare = 2;  // of a line: longer names stand above the rest of their row
 
 // A text from a column on, in lines that break between words; a line takes at least one.
 std::string broken(const std::string& text, std::size_t from, std::size_t columns) {
@@ -77,11 +77,17 @@ std::string Table::text_of(const std::vector<std::size_t>& chosen, const std::ve
   return text;
 }
 
+std::size_t Table::width_of_column(std::size_t column, std::size_t most) const {
+  std::size_t width = std::max(width_of(columns_[column].title), width_of(columns_[column].unit));
+  for (const std::vector<std::string>& row : rows_)
+    if (const std::size_t own = width_of(row[column]); own <= most) width = std::max(width, own);
+  return width;
+}
+
 std::string Table::text(std::size_t columns) const {
   std::vector<std::size_t> widths;
-  for (const Column& column : columns_) widths.push_back(std::max(width_of(column.title), width_of(column.unit)));
-  for (const std::vector<std::string>& row : rows_)
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width_of(row[c]));
+  for (std::size_t c = 0; c < columns_.size(); ++c)
+    widths.push_back(width_of_column(c, std::numeric_limits<std::size_t>::max()));
   std::size_t width_of_all = kGap * (columns_.size() - 1);
   for (const std::size_t width : widths) width_of_all += width;
 
@@ -90,7 +96,7 @@ std::string Table::text(std::size_t columns) const {
   std::size_t next = 0, width_about = 0;
   for (bool is_name = false; next < columns_.size() && !is_name; ++next) {
     is_name = columns_[next].align == Align::kLeft;
-    if (is_name && width_of_all > columns) widths[next] = std::min(widths[next], columns / kLongestShare);
+    if (is_name && width_of_all > columns) widths[next] = width_of_column(next, columns / kLongestShare);
     about.push_back(next);
     width_about += widths[next] + (next > 0 ? kGap : 0);
   }

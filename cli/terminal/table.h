@@ -44,6 +44,8 @@ class Table {
     Align align;
   };
 
+  // The width of the titles and of all cells that are not wider than that.
+  [[nodiscard]] std::size_t width_of_column(std::size_t column, std::size_t most) const;
   // The table of some of the columns with these widths, in lines of so many columns.
   [[nodiscard]] std::string text_of(const std::vector<std::size_t>& chosen, const std::vector<std::size_t>& widths,
                                     std::size_t columns) const;

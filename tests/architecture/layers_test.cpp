@@ -92,10 +92,13 @@ std::optional<Place> place_of(const std::string& path) {
     const auto& [name, rooms] = kFloors[f];
     if (name != parts[0]) continue;
     if (name == "cli" && parts[1] == "main.cpp") return Place{f, rooms.size() + 1};
-    const std::string room = is_public                                   ? room_of_public_header(name, parts[1])
-                             : parts.size() > 2 && parts[1] != "kernels" ? parts[1]
-                             : fs::path(path).stem().string().ends_with("json") && name == "cli" ? "reports"
-                                                                                                 : "";
+    std::string room;
+    if (is_public)
+      room = room_of_public_header(name, parts[1]);
+    else if (parts.size() > 2 && parts[1] != "kernels")
+      room = parts[1];
+    else if (name == "cli" && fs::path(path).stem().string().ends_with("json"))
+      room = "reports";  // results as JSON, beside those as words
     if (room.empty()) return Place{f, 0};
     const auto found = std::find(rooms.begin(), rooms.end(), room);
     if (found == rooms.end()) return std::nullopt;

@@ -117,6 +117,16 @@ TEST_F(Cli, help_fits_the_width_of_the_output) {
   }
 }
 
+TEST_F(Cli, help_begins_with_what_only_this_command_has) {
+  const std::string help = run("help audit").out;
+  EXPECT_LT(help.find("--tolerance DEG"), help.find("Options for what is read:\n"));
+  EXPECT_LT(help.find("Options for what is read:\n"), help.find("--fps N"));
+  EXPECT_NE(help.find("--host NAME,... "), std::string::npos) << "no blank inside of a value's name";
+  EXPECT_NE(help.find("-o, --output OUT"), std::string::npos);
+  for (const char* const morph : {"cloth  ", "eversion  ", "bumps  "})
+    EXPECT_NE(run("help convert").out.find(morph), std::string::npos) << morph;
+}
+
 TEST_F(Cli, help_and_version_have_short_ways) {
   EXPECT_EQ(run("-V").out, run("--version").out);
   EXPECT_EQ(run("help").out, run("--help").out);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -76,6 +77,16 @@ TEST(Views, planes_and_packed_name_the_same_vectors) {
   EXPECT_EQ(packed[5], 9);
   const VectorView<const float> read_only = b;
   EXPECT_EQ(read_only[1], (Vec3f{7, 8, 9}));
+}
+
+TEST(Views, a_whole_vector_is_a_packed_view_of_a_third_as_many) {
+  std::vector<float> values = {1, 2, 3, 4, 5, 6};
+  const auto view = VectorView<float>::packed(values);
+  ASSERT_EQ(view.count, 2U);
+  view.set(1, {7, 8, 9});
+  EXPECT_EQ(values[3], 7);
+  EXPECT_EQ(VectorView<const float>::packed(values)[1], (Vec3f{7, 8, 9}));
+  EXPECT_EQ(VectorView<float>::packed(std::span<float>()).count, 0U);
 }
 
 TEST(Views, an_empty_packed_view_may_have_no_memory) {

@@ -1,6 +1,7 @@
 # cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a foreign project
 # (CMakeLists.txt beside this) that uses chronormal in one of these ways. For a package the build is installed first, into
 # a folder of its own.
+cmake_minimum_required(VERSION 3.22)  # without its policies, "folder" below is the variable of that name
 set(folder ${BUILD}/consume_${FROM})
 file(REMOVE_RECURSE ${folder})
 function(run)
@@ -15,20 +16,29 @@ file(MAKE_DIRECTORY ${folder})
 
 set(options -DFROM=${FROM} -DSOURCE=${SOURCE} -DVERSION=${VERSION} -DCMAKE_CXX_COMPILER=${COMPILER})
 set(programs core)
+set(project ${SOURCE}/tests/install)
 if(FROM STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
   # Moved, to see that nothing names the place where it was.
   file(RENAME ${folder}/prefix ${folder}/moved)
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
-  list(APPEND programs engine core_by_pkg_config engine_by_pkg_config)
+  list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config)
 elseif(FROM STREQUAL "folder")
+  # The project that the README shows, with this repository as its folder.
+  set(project ${folder}/project)
+  set(programs first_steps)
+  file(READ ${SOURCE}/README.md readme)
+  string(REGEX MATCH "```cmake\n([^`]*)```" block "${readme}")
+  file(WRITE ${project}/CMakeLists.txt "${CMAKE_MATCH_1}")
+  file(COPY ${SOURCE}/examples/first_steps.cpp DESTINATION ${project})
+  file(CREATE_LINK ${SOURCE} ${project}/chronormal SYMBOLIC)
   foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt TBB)  # as if they were not installed
     list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
 else()
   list(APPEND programs engine)
 endif()
-run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/install -B ${folder}/build ${options})
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${project} -B ${folder}/build ${options})
 run(${CMAKE_COMMAND} --build ${folder}/build --parallel 2)
 foreach(program ${programs})
   run(${folder}/build/${program})

@@ -25,8 +25,10 @@ ProcessResult run_shell(const std::string& command, const std::string& folder, c
   char name[] = "/tmp/chronormal_process_XXXXXX";
   const std::filesystem::path scratch = mkdtemp(name);
   std::ofstream(scratch / "in", std::ios::binary) << input;
-  const std::string line = "cd '" + folder + "' && ( " + command + " ) <'" + (scratch / "in").string() + "' >'" +
-                           (scratch / "out").string() + "' 2>'" + (scratch / "err").string() + "'";
+  // What a person sets for a terminal is not what a test expects.
+  const std::string line = "unset COLUMNS NO_COLOR CLICOLOR_FORCE; cd '" + folder + "' && ( " + command + " ) <'" +
+                           (scratch / "in").string() + "' >'" + (scratch / "out").string() + "' 2>'" +
+                           (scratch / "err").string() + "'";
   const int status = std::system(line.c_str());
   ProcessResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

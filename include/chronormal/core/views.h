@@ -12,6 +12,7 @@
 
 #include <cassert>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "chronormal/core/vec3.h"
@@ -41,6 +42,11 @@ struct VectorView {
   [[nodiscard]] static VectorView packed(T* xyz, std::size_t count) noexcept {
     if (count == 0) return {};
     return {xyz, xyz + 1, xyz + 2, count, 3};
+  }
+  /// Of a whole array or std::vector, with three scalars for each vector.
+  [[nodiscard]] static VectorView packed(std::span<T> xyz) noexcept {
+    assert(xyz.size() % 3 == 0);
+    return packed(xyz.data(), xyz.size() / 3);
   }
 
   [[nodiscard]] Vec3<Scalar> operator[](std::size_t i) const noexcept {
