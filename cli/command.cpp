@@ -34,7 +34,7 @@ std::vector<Option> input_table(InputOptions& input) {
   return {{"INPUT", &input.files,
            "one motion: .obj or .ply keyframes in order, a quoted pattern, a folder\n"
            "(sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache; one\n"
-           ".gltf, .glb, .npz or .md2; - is one file on stdin"},
+           ".gltf, .glb, .vrm, .npz or .md2; - is one file on stdin"},
           {"--base FILE",
            &input.base,
            "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"
