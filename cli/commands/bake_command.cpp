@@ -30,6 +30,7 @@ struct Options {
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
   std::string hosts = "all";
+  std::optional<std::string> output;  // where it is asked for by name
   std::optional<double> tolerance;
   std::optional<std::string> drivers;  // where to write them beside the result
   bool json = false, no_audit = false;
@@ -122,12 +123,16 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
     return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
   how.progress = progress.callback("baking");
   GltfEdit edit(document);
-  const Result<GltfBake> baked = bake(document, how, edit);
+  Result<GltfBake> baked = bake(document, how, edit);
   progress.clear();
   if (!baked) return baked.error();
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
+  // Elsewhere than beside its source, a file refers to what it takes along in other ways.
+  Result<std::vector<std::string>> pointers = edit.pointers(output);
+  if (!pointers) return pointers.error();
+  baked.value().pointers = std::move(pointers).value();
   BakeReport told{input.name(), output, options.drivers, std::nullopt};
   std::vector<std::string> warnings = baked.value().warnings;
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
@@ -160,7 +165,8 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
     return misuse(output, "a sequence is written as .glb");
   const Motion& motion = *input.motion().value();
   if (motion.kind == MotionKind::kTargets)
-    return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+    return invalid_input(input.name(),
+                         "these are targets and no sequence: convert makes a .glb of them, and bake takes that");
   if (motion.segments.size() + 1 != motion.keyframes.size())
     return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
   // Hard edges are those that the file shows, where nothing else is asked for.
@@ -192,13 +198,30 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   return report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
 }
 
-Result<int> run(const Options& options) {
+// Without -o the last of several files is where to write, where it can be: IN OUT.
+Status take_output(Options& options) {
+  std::vector<std::string>& files = options.input.files;
+  if (options.output) {
+    options.common.output = *options.output;
+    return Success{};
+  }
+  const std::string extension = files.size() < 2 ? "" : std::filesystem::path(files.back()).extension().string();
+  if (extension != ".glb" && extension != ".gltf" && extension != ".vrm" && extension != ".GLB")
+    return misuse("-o,--output", "say where to write: bake IN OUT, or -o OUT");
+  options.common.output = files.back();
+  files.pop_back();
+  return Success{};
+}
+
+Result<int> run(Options options) {
+  if (const Status status = take_output(options); !status) return status.error();
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
   // This is said before anything is read; for other names it depends on what the input turns out to be.
   if (!is_stream(options.common.output) && is_motion_file(options.common.output))
-    return misuse(options.common.output, "bake writes glTF: the name must end in .glb, or .gltf for a glTF file");
+    return misuse(options.common.output,
+                  "bake writes glTF: the name must end in .glb, or .gltf or .vrm for such a file");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   if (options.drivers) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
@@ -211,12 +234,18 @@ Result<int> run(const Options& options) {
                                              : run_sequence(options, how.value(), input.value(), progress);
 }
 
+// The table that all commands share, but that OUT need not be named.
+std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
+  table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT, where there are several)"};
+  return table;
+}
+
 }  // namespace
 
 Command bake_command() {
   auto options = std::make_shared<Options>();
   const std::vector<RefusedOption> refused = {
-      {"--base", "bake takes keyframes or a glTF file; put the base and its targets into one glTF file, and bake that"},
+      {"--base", "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},
       {"--animation", "bake writes normals for all animations of a glTF file"},
       {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
   return {"bake",
@@ -250,11 +279,12 @@ Command bake_command() {
              "write what drives extra targets, which stands in the result, to a JSON file too"},
             {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
             {"--json", &options->json, "one JSON object"}},
-           options->common.table(true)},
+           with_output(options->common.table(true), options->output)},
           "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
           "targets. OUT may be INPUT, with --force.\n"
           "\nExamples:\n"
-          "  chronormal bake face.glb -o face.exact.glb\n"
+          "  chronormal bake face.glb face.right.glb\n"
+          "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
           "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
           "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
           "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",

@@ -18,6 +18,7 @@ std::string footer() {
   std::string text =
       "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
       "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
+      "Targets over a base become morph targets of a .glb.\n"
       "\nBuilt-in morphs:\n";
   for (const auto& morphs : {builtin_morphs(), builtin_blend_shapes()})
     for (const BuiltinMorph& morph : morphs) text += formatted("  {:<9} {}\n", morph.name, morph.summary);
@@ -27,6 +28,7 @@ std::string footer() {
          "  chronormal convert scans/ -o frame_%03d.ply\n"
          "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
          "  chronormal convert face.glb --animation Smile -o smile.npz\n"
+         "  chronormal convert --base face.obj targets/ -o face.glb\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 

@@ -35,7 +35,7 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
       {"INPUT", &input.files,
        "one motion: .obj or .ply keyframes in order, a quoted pattern of their names, or\n"
        "their folder (sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache;\n"
-       "or one .gltf, .glb, .npz or .md2 file; - stands for one file on standard input"},
+       "or one .gltf, .glb, .vrm, .npz or .md2 file; - stands for one file on standard input"},
       {"--base FILE",
        &input.base,
        "the mesh of which every INPUT is a morph target: .obj or .ply meshes,\n"

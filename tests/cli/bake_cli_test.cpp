@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -111,6 +112,21 @@ TEST_F(BakeCli, json_is_one_object_with_schema_1) {
   for (const Json& pointer : json["pointers"]) names_normal |= pointer == "/meshes/0/primitives/0/targets/0/NORMAL";
   EXPECT_TRUE(names_normal) << json["pointers"];
   EXPECT_FALSE(Json::parse(run("moving.glb -o b.glb --json --no-audit").out).contains("audit"));
+}
+
+TEST_F(BakeCli, json_tells_what_targets_leave_from_what_tracks_leave) {
+  test::GltfBuilder bent = test::hills_document(1);
+  bent.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, -2, 1, 0}, "CUBICSPLINE");
+  folder_.write("bent.glb", bent.glb());
+  const auto mesh = [&](const std::string& arguments) {
+    return Json::parse(run(arguments + " --json --no-audit").out)["meshes"][0];
+  };
+  const Json of_tracks = mesh("bent.glb of_tracks.glb --encode exact --tolerance 1");
+  EXPECT_EQ(of_tracks["target_fit_degrees"], 0.0);
+  EXPECT_GT(of_tracks["track_fit_degrees"], 0.0);
+  const Json of_targets = mesh("moving.glb of_targets.glb --encode endpoint");
+  EXPECT_GT(of_targets["target_fit_degrees"], 0.0);
+  EXPECT_EQ(of_targets["track_fit_degrees"], 0.0);
 }
 
 TEST_F(BakeCli, output_may_be_the_input) {
@@ -224,6 +240,40 @@ TEST_F(BakeCli, the_input_stays_where_the_drivers_cannot_be_written) {
   EXPECT_TRUE(bytes_of("still.glb") == before);
   ASSERT_EQ(run("still.glb -o still.glb --force --encode exact --drivers drivers.json").exit_code, 0);
   EXPECT_EQ(Json::parse(bytes_of("drivers.json"))["meshes"].size(), 1U);
+}
+
+TEST_F(BakeCli, the_last_of_several_files_is_where_to_write) {
+  const ProcessResult named = run("moving.glb -o named.glb"), unnamed = run("moving.glb unnamed.glb");
+  EXPECT_EQ(unnamed.exit_code, 0) << unnamed.err;
+  EXPECT_EQ(bytes_of("unnamed.glb"), bytes_of("named.glb"));
+  EXPECT_EQ(run("f_0.obj f_1.obj f_2.obj frames.glb").exit_code, 0);
+  expect_error("moving.glb", 2, "say where to write");
+  expect_error("f_0.obj f_1.obj f_2.obj", 2, "say where to write");
+  expect_error("moving.glb still.glb", 1, "still.glb");  // it is there
+}
+
+TEST_F(BakeCli, avatars_are_read_and_written_as_glb_under_their_own_extension) {
+  folder_.write("moving.vrm", bytes_of("moving.glb"));
+  EXPECT_EQ(run("moving.vrm out.vrm").exit_code, 0);
+  EXPECT_EQ(run("moving.glb out.glb").exit_code, 0);
+  EXPECT_EQ(bytes_of("out.vrm"), bytes_of("out.glb"));
+  folder_.write("broken.vrm", "none");
+  expect_error("broken.vrm out_2.vrm", 3, "this is not glTF");
+}
+
+TEST_F(BakeCli, uris_that_another_folder_changes_are_among_the_pointers) {
+  folder_.write("bytes.bin", "0123");
+  Json document = Json::parse(bytes_of("moving.gltf"));
+  document["buffers"].push_back({{"uri", "bytes.bin"}, {"byteLength", 4}});
+  folder_.write("outside.gltf", document.dump());
+  std::filesystem::create_directory(folder_ / "elsewhere");
+  const auto names_uri = [&](const std::string& output) {
+    const ProcessResult result = run("outside.gltf " + output + " --json");
+    const Json pointers = Json::parse(result.out)["pointers"];
+    return std::find(pointers.begin(), pointers.end(), "/buffers/1/uri") != pointers.end();
+  };
+  EXPECT_FALSE(names_uri("beside.gltf"));
+  EXPECT_TRUE(names_uri("elsewhere/away.gltf"));
 }
 
 TEST_F(BakeCli, standard_streams_work) {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "chronormal/io/gltf_document.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/target_bytes.h"
@@ -145,6 +147,26 @@ TEST_F(TargetsCli, targets_have_weights_and_sequences_have_times) {
     EXPECT_NE(text.find(" target"), std::string::npos) << text;
     EXPECT_EQ(Json::parse(run(std::string("inspect --json ") + input).out)["kind"], "targets");
   }
+}
+
+TEST_F(TargetsCli, targets_become_morph_targets_of_a_glb_with_their_names) {
+  EXPECT_EQ(run("convert --base base.obj targets smile.obj -o face.glb").exit_code, 0);
+  const GltfDocument document = GltfDocument::open(folder_ / "face.glb").value();
+  ASSERT_EQ(document.meshes().size(), 1U);
+  const GltfMesh& mesh = document.meshes()[0];
+  EXPECT_EQ(mesh.name, "base");
+  EXPECT_EQ(mesh.target_names, (std::vector<std::string>{"lift", "packed", "smile"}));
+  const GltfGeometry geometry = document.geometry(0, 0, {.shading = true}).value();
+  EXPECT_EQ(geometry.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
+  // The same shapes as before, so that the same schemes are off by as much.
+  const auto sum = [&](const std::string& input) { return json_of(input)["schemes"][0]["sum_degrees"].get<double>(); };
+  EXPECT_NEAR(sum("face.glb"), sum("--base base.obj targets smile.obj"), 1e-3);
+  EXPECT_EQ(run("bake face.glb baked.glb").exit_code, 0);
+  EXPECT_EQ(run("audit baked.glb").exit_code, 0);
+  EXPECT_EQ(run("convert --sample bumps -o bumps.vrm").exit_code, 0);
+  expect_error("convert base.obj smile.obj -o walk.glb", 2, {"walk.glb", "bake writes glTF"});
+  expect_error("convert --base base.obj smile.obj -o face.gltf", 2, {"face.gltf", ".glb"});
+  expect_error("convert --base base.obj smile.obj -o face.glb", 1, {"face.glb", "--force"});
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-/// glTF 2.0 files (.gltf, .glb): what is in them, and their morphing meshes as arrays.
+/// glTF 2.0 files (.gltf, .glb, .vrm): what is in them, and their morphing meshes as arrays.
 ///
 /// Opening a document maps the file and reads its JSON, nothing else; geometry and tracks are read when they are asked
 /// for, so that the cost is that of what is asked for. All of the format that concerns normals over time is understood:
 /// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
 /// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression and
-/// KHR_draco_mesh_compression. What is read is checked, strictly by the specification; what is not read (materials,
+/// KHR_draco_mesh_compression, KHR_animation_pointer. What is read is checked, strictly by the specification; what is not read (materials,
 /// textures, skins, the bounds of accessors) is not.
 ///
 /// A file that requires another extension is refused by the name of that, but for those of materials, textures and
@@ -115,8 +115,10 @@ struct GltfMesh {
   std::size_t target_count = 0;           ///< the same in all primitives
   std::vector<std::string> target_names;  ///< extras.targetNames, where it has target_count names; else empty
   std::vector<double> weights;            ///< the default ones; target_count of them, 0 where the file has none
-  std::optional<GltfBakeMark> mark;       ///< where a bake left one that can be understood
-  std::optional<Error> mark_fault;        ///< why there is a mark that cannot: for those who have to understand it
+  /// The weights that each expression of a VRM avatar gives it, versions 0 and 1; target_count of them each.
+  std::vector<std::vector<double>> expressions;
+  std::optional<GltfBakeMark> mark;  ///< where a bake left one that can be understood
+  std::optional<Error> mark_fault;   ///< why there is a mark that cannot: for those who have to understand it
 };
 
 struct GltfNode {
@@ -126,7 +128,8 @@ struct GltfNode {
   std::vector<double> weights;  ///< its own, or empty: those of the mesh
 };
 
-/// The animation of the weights of one node.
+/// The animation of the weights of one node: by a channel for it, or by one of KHR_animation_pointer for all weights of the
+/// node, or of its mesh (then each node that has none of its own has such a track).
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
   /// The first track of the animation that gives the same weights: the same keys, interpolation and number of targets.

@@ -30,6 +30,10 @@ struct GlbChunks {
 };
 
 [[nodiscard]] inline bool is_glb(std::string_view bytes) noexcept { return bytes.starts_with("glTF"); }
+/// Whether files with this extension, in lower case, are GLB files: avatars are too.
+[[nodiscard]] inline bool is_glb_extension(std::string_view extension) noexcept {
+  return extension == ".glb" || extension == ".vrm";
+}
 
 /// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a length that is not that of
 /// the file, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.

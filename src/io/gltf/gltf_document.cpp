@@ -98,7 +98,7 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   const Expansion expansion(options.max_expansion, bytes.size());
   gltf::Origin origin{name, folder, std::nullopt, options.allow_external, expansion, options.resolve};
   GlbChunks chunks{bytes, 0, std::nullopt, {}};
-  if (lower_extension(name) == ".glb" && !recognises(bytes.substr(0, 512)))
+  if (is_glb_extension(lower_extension(name)) && !recognises(bytes.substr(0, 512)))
     return invalid_input(binary::place(name, 0),
                          "this is not glTF: it begins neither as GLB (glTF) nor as a JSON object ({)");
   if (is_glb(bytes)) {

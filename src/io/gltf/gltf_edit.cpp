@@ -105,9 +105,9 @@ Result<gltf::LayoutTarget> GltfEdit::State::target_of(const std::string& path) c
     return target;
   }
   const std::string extension = lower_extension(path);
-  if (extension != ".glb" && extension != ".gltf")
-    return Error{ErrorCode::kUsage, path, "the name of a glTF file ends with .glb or .gltf"};
-  target.glb = extension == ".glb";
+  if (!is_glb_extension(extension) && extension != ".gltf")
+    return Error{ErrorCode::kUsage, path, "the name of a glTF file ends with .glb, .gltf or .vrm"};
+  target.glb = is_glb_extension(extension);
   target.stands_alone = !folder || (target.glb && !is_glb) ||
                         !is_same_folder(std::filesystem::path(path).parent_path().string(), *folder);
   return target;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // what a JSON number holds exactly
 
-constexpr std::array<std::string_view, 3> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
-                                                         "KHR_draco_mesh_compression"};
+constexpr std::array<std::string_view, 4> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+                                                         "KHR_draco_mesh_compression", "KHR_animation_pointer"};
 // Extensions of these families say how a surface looks, not where it is.
 constexpr std::array<std::string_view, 4> kHarmlessFamilies = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                                "KHR_lights_punctual"};
@@ -72,6 +72,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
     for_each_item(root, "meshes", [&](const JsonView& item) { parse_mesh(item); });
     check_nodes(root);
     for_each_item(root, "animations", [&](const JsonView& item) { parse_animation(item); });
+    parse_expressions(document);
   }
   if (complaint_.first()) return *complaint_.first();
   return std::move(model_);

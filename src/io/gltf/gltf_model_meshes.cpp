@@ -1,5 +1,7 @@
 // Meshes, what their accessors must look like, and the animations of their weights.
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -12,6 +14,18 @@
 
 namespace chronormal::inline internal::gltf {
 namespace {
+
+// Weights of an expression beyond this are no weights.
+constexpr double kLargestBind = 100;
+
+// Where KHR_animation_pointer points to; empty where it does not.
+std::string pointer_of(const JsonView& target) {
+  const std::optional<JsonView> extensions = target.object("extensions");
+  const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
+  return extension ? extension->required_text("pointer") : std::string();
+}
+
+std::string node_weights(std::size_t node) { return "/nodes/" + std::to_string(node) + "/weights"; }
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
 
@@ -249,10 +263,36 @@ void Parser::check_unstrided(const JsonView& object, const char* key, const Buff
   if (view.stride) object.complain(key, std::string("the buffer view of ").append(what) + " has a byteStride");
 }
 
+std::vector<std::size_t> Parser::nodes_pointed_to(const JsonView& target) {
+  const std::string pointer = pointer_of(target);
+  const auto index_in = [&](std::string_view list) -> std::optional<std::size_t> {
+    std::size_t index = 0;
+    if (!pointer.starts_with(list)) return std::nullopt;
+    const char* const end = pointer.data() + pointer.size();
+    const auto [stop, code] = std::from_chars(pointer.data() + list.size(), end, index);
+    return code == std::errc() && std::string_view(stop, end) == "/weights" ? std::optional(index) : std::nullopt;
+  };
+  const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
+  if ((node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {
+    target.complain("there is no " + pointer);
+    return {};
+  }
+  if (node) return {*node};
+  std::vector<std::size_t> nodes, all;
+  for (std::size_t n = 0; mesh && n < model_.nodes.size(); ++n) {
+    if (model_.nodes[n].mesh != mesh) continue;
+    all.push_back(n);
+    if (model_.nodes[n].weights.empty()) nodes.push_back(n);
+  }
+  // Where all nodes have their own weights, nobody shows those of the mesh.
+  if (nodes.empty() && !all.empty()) nodes.push_back(all.front());
+  return nodes;
+}
+
 void Parser::parse_animation(const JsonView& item) {
   GltfAnimation animation;
   std::vector<TrackSource> sources;
-  std::set<std::size_t> driven_nodes;
+  std::set<std::string> driven;
   animation.name = item.text("name");
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
   if (!channels || !samplers) return item.complain("an animation has channels and samplers");
@@ -262,8 +302,17 @@ void Parser::parse_animation(const JsonView& item) {
     if (!channel.is_object()) return;
     const std::optional<JsonView> target = channel.object("target");
     if (!target) return channel.complain("target", "a channel has a target");
-    if (target->required_text("path") == "weights" && target->has("node"))
-      parse_track(item, channel, c, animation, sources, driven_nodes);
+    const std::string path = target->required_text("path");
+    std::vector<std::size_t> nodes;
+    if (path == "pointer") {
+      nodes = nodes_pointed_to(*target);
+    } else if (path == "weights" && target->has("node")) {
+      if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) nodes.push_back(*node);
+    }
+    if (nodes.empty()) continue;
+    for (const std::size_t node : nodes) parse_track(item, channel, c, node, animation, sources);
+    const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(nodes.front());
+    if (!driven.insert(weights).second) target->complain("the animation has two channels for these weights");
   }
   // The same numbers mean the same weights only by the same interpolation, for as many targets.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
@@ -278,22 +327,18 @@ void Parser::parse_animation(const JsonView& item) {
 }
 
 void Parser::parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index,
-                         GltfAnimation& result, std::vector<TrackSource>& sources,
-                         std::set<std::size_t>& driven_nodes) {
+                         std::size_t node, GltfAnimation& result, std::vector<TrackSource>& sources) {
   GltfTrack track;
   TrackSource source;
   const JsonView target = *channel.object("target"), samplers = *animation.array("samplers");
-  const std::optional<std::size_t> node = target.find_index("node", model_.nodes.size(), "nodes");
   const std::optional<std::size_t> sampler_index = channel.required_index("sampler", samplers.size(), "samplers");
-  if (!node || !sampler_index) return;
-  track.node = *node;
+  if (!sampler_index) return;
+  track.node = node;
   track.channel = channel_index;
   source.sampler = *sampler_index;
   const std::optional<std::uint32_t> mesh = model_.nodes[track.node].mesh;
   const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
   if (target_count == 0) return target.complain("node", "the node has no mesh with morph targets to give weights to");
-  if (!driven_nodes.insert(track.node).second)
-    return target.complain("the animation has two channels for these weights");
 
   const JsonView sampler = samplers.item(source.sampler);
   if (!sampler.is_object()) return;
@@ -323,6 +368,58 @@ void Parser::parse_track(const JsonView& animation, const JsonView& channel, std
   source.output = *output;
   result.tracks.push_back(track);
   sources.push_back(source);
+}
+
+namespace {
+
+// Calls visit(name, binds) for each expression of a VRM avatar, as its version has them.
+template <class Visit>
+void for_each_expression(const nlohmann::json& root, const Visit& visit) {
+  using Pointer = nlohmann::json::json_pointer;
+  const Pointer of_0("/extensions/VRM/blendShapeMaster/blendShapeGroups");
+  if (root.contains(of_0) && root[of_0].is_array()) {
+    for (const nlohmann::json& group : root[of_0])
+      if (group.is_object() && group.contains("binds")) visit(group["binds"]);
+  }
+  for (const char* const list :
+       {"/extensions/VRMC_vrm/expressions/preset", "/extensions/VRMC_vrm/expressions/custom"}) {
+    const Pointer of_1(list);
+    if (!root.contains(of_1) || !root[of_1].is_object()) continue;
+    for (const nlohmann::json& expression : root[of_1])
+      if (expression.is_object() && expression.contains("morphTargetBinds")) visit(expression["morphTargetBinds"]);
+  }
+}
+
+// A number of an object that is a whole one below a limit.
+std::optional<std::size_t> whole_below(const nlohmann::json& object, const char* key, std::size_t limit) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  if (!(value >= 0 && value < static_cast<double>(limit)) || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::size_t>(value);
+}
+
+}  // namespace
+
+void Parser::parse_expressions(const nlohmann::json& root) {
+  for_each_expression(root, [&](const nlohmann::json& binds) {
+    std::map<std::size_t, std::vector<double>> of_meshes;
+    if (!binds.is_array()) return;
+    for (const nlohmann::json& bind : binds) {
+      if (!bind.is_object() || !bind.contains("weight") || !bind["weight"].is_number()) continue;
+      // Version 0 names the mesh, and weights in percent; version 1 a node of it, and weights from 0 to 1.
+      const auto node = whole_below(bind, "node", model_.nodes.size());
+      auto mesh = whole_below(bind, "mesh", model_.meshes.size());
+      if (node && model_.nodes[*node].mesh) mesh = *model_.nodes[*node].mesh;
+      const auto target = mesh ? whole_below(bind, "index", model_.meshes[*mesh].target_count) : std::nullopt;
+      const double weight = bind["weight"].get<double>() / (node ? 1 : 100);
+      if (!target || !(std::fabs(weight) <= kLargestBind)) continue;
+      std::vector<double>& weights = of_meshes[*mesh];
+      weights.resize(model_.meshes[*mesh].target_count);
+      weights[*target] = weight;
+    }
+    for (auto& [mesh, weights] : of_meshes) model_.meshes[mesh].expressions.push_back(std::move(weights));
+  });
 }
 
 }  // namespace chronormal::inline internal::gltf

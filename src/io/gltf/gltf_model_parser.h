@@ -74,8 +74,12 @@ class Parser {
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  void parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index, GltfAnimation& result,
-                   std::vector<TrackSource>& sources, std::set<std::size_t>& driven_nodes);
+  /// The nodes whose weights a target of a channel drives by KHR_animation_pointer; none where it drives something else.
+  std::vector<std::size_t> nodes_pointed_to(const JsonView& target);
+  void parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index, std::size_t node,
+                   GltfAnimation& result, std::vector<TrackSource>& sources);
+  /// The expressions of a VRM avatar. What is not as they are defined is passed over: no geometry depends on it.
+  void parse_expressions(const nlohmann::json& root);
 
   const nlohmann::json* document_ = nullptr;
   JsonComplaint complaint_;

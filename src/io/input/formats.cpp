@@ -22,8 +22,8 @@ using Extension = std::string_view;
 
 constexpr std::array<Extension, 1> kObj = {".obj"}, kPly = {".ply"}, kNpz = {".npz"}, kMd2 = {".md2"}, kPc2 = {".pc2"},
                                    kMdd = {".mdd"}, kNpy = {".npy"}, kMayaDescription = {".xml"};
-constexpr std::array<Extension, 2> kGltf = {".gltf", ".glb"}, kMaya = {".mc", ".mcx"},
-                                   kTarget = {".target", ".target.gz"};
+constexpr std::array<Extension, 2> kMaya = {".mc", ".mcx"}, kTarget = {".target", ".target.gz"};
+constexpr std::array<Extension, 3> kGltf = {".gltf", ".glb", ".vrm"};
 
 // The first line that is neither empty nor a comment begins with a common word of OBJ.
 bool is_obj(std::string_view first_bytes) {

@@ -6,6 +6,9 @@
 
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
+#include "io/bytes/extension.h"
+#include "io/gltf/glb.h"
+#include "io/gltf/glb_targets.h"
 #include "io/input/formats.h"
 
 namespace chronormal {
@@ -97,8 +100,14 @@ Status write_motion(const Motion& motion, const std::string& path, bool force, c
   const Format* const format = find_format(path);
   if (format != nullptr && format->write_mesh != nullptr)
     return write_keyframes(motion, *format, path, force, expansion);
-  if (format != nullptr && format->holds == Holds::kGltf)
-    return Error{ErrorCode::kUsage, path, "bake writes glTF, with the normals; convert does not"};
+  if (format != nullptr && format->holds == Holds::kGltf) {
+    if (motion.kind != MotionKind::kTargets || !is_glb_extension(lower_extension(path)))
+      return Error{ErrorCode::kUsage, path, "convert writes targets as .glb; bake writes glTF, with the normals"};
+    if (Status status = check_output(path, force); !status) return status;
+    const Result<std::string> glb = write_glb_targets(motion);
+    if (!glb) return Error{glb.error().code, path, glb.error().message};
+    return write_output(path, glb.value(), force);
+  }
   if (format == nullptr || format->write_motion == nullptr) {
     std::string writable;
     for (const Format& each : formats())

@@ -41,18 +41,21 @@ struct Found {
   double error = 0;
 };
 
-// Gathers what find_delta(element, vertex, delta, error) writes for the vertices of all parts. It returns whether there
-// is a delta.
+// Gathers what find_delta(element, vertex, delta, error) writes for the vertices of all parts that show one of these
+// elements. It returns whether there is a delta.
 template <class FindDelta>
-TargetDeltas gather(const GltfShading& shading, const FindDelta& find_delta) {
+TargetDeltas gather(const GltfShading& shading, std::span<const std::uint32_t> elements, const FindDelta& find_delta) {
   TargetDeltas result;
+  std::vector<bool> is_asked(shading.groups.size(), false);
+  for (const std::uint32_t e : elements) is_asked[e] = true;
   for (const GltfPart& part : shading.parts) {
     std::vector<float> deltas(3 * part.vertex_count);
     const auto take = [&](std::size_t n, Found& found) {
       const std::size_t vertex = part.first_vertex + n;
       const std::uint32_t element = shading.element_of_vertex[vertex];
       Vec3d delta;
-      if (element == GltfShading::kNoElement || !find_delta(element, vertex, delta, found.error)) return;
+      if (element == GltfShading::kNoElement || !is_asked[element]) return;
+      if (!find_delta(element, vertex, delta, found.error)) return;
       VectorView<float>::packed(deltas.data(), part.vertex_count).set(n, to_float(delta));
       found.any = true;
     };
@@ -69,7 +72,8 @@ TargetDeltas gather(const GltfShading& shading, const FindDelta& find_delta) {
 TargetDeltas end_deltas(const DeltaSource& source, std::size_t target) {
   const NormalTerms::Term linear = source.terms.linear_by_element(target);
   const NormalTerms::Term square = source.terms.pair_by_element(target, target);
-  return gather(source.shading, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
+  const std::vector<std::uint32_t> elements = source.terms.elements(target);
+  return gather(source.shading, elements, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
     Vec3d a, c;
     const bool has_linear = linear.find(element, a), has_square = square.find(element, c);
     if (!has_linear && !has_square) return false;
@@ -81,7 +85,8 @@ TargetDeltas end_deltas(const DeltaSource& source, std::size_t target) {
 TargetDeltas single_deltas(const DeltaSource& source, std::size_t target) {
   const NormalTerms::Term linear = source.terms.linear_by_element(target);
   const NormalTerms::Term square = source.terms.pair_by_element(target, target);
-  return gather(source.shading, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double& error) {
+  const std::vector<std::uint32_t> elements = source.terms.elements(target);
+  return gather(source.shading, elements, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double& error) {
     Vec3d a, c;
     const bool has_linear = linear.find(element, a), has_square = square.find(element, c);
     if (!has_linear && !has_square) return false;
@@ -154,7 +159,8 @@ TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target) {
 TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra) {
   const NormalTerms::Term term = source.terms.pair_by_element(extra.i, extra.j);
   const double sign = extra.i == extra.j ? -1 : 1;
-  return gather(source.shading, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
+  const std::vector<std::uint32_t> elements = source.terms.elements(extra.i, extra.j);
+  return gather(source.shading, elements, [&](std::uint32_t element, std::size_t vertex, Vec3d& delta, double&) {
     Vec3d value;
     if (!term.find(element, value)) return false;
     delta = sign * terms_of_vertex(source, element, vertex)(value);

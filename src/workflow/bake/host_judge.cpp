@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <deque>
 
@@ -88,9 +89,15 @@ std::vector<float> side_by_side(const PoseList& poses) {
 constexpr std::size_t kBins = 160;
 constexpr float kBinsPerOctave = 8, kLeastBin = 1e-3F;
 
+// The exponent of a float counts octaves, and its fraction is held against eighths of one.
 std::size_t bin_of(float degrees) {
-  const float bin = kBinsPerOctave * std::log2(std::fmax(degrees, kLeastBin) / kLeastBin);
-  return std::min(kBins - 1, static_cast<std::size_t>(bin));
+  constexpr std::array<float, 7> kEighths = {1.0905077F, 1.1892071F, 1.2968396F, 1.4142135F,
+                                             1.5422108F, 1.6817929F, 1.8340081F};
+  const auto bits = std::bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
+  const float fraction = std::bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
+  std::size_t bin = std::size_t{8} * ((bits >> 23) - 127);
+  for (const float eighth : kEighths) bin += fraction >= eighth ? 1 : 0;
+  return std::min(kBins - 1, bin);
 }
 
 // Errors with their spread, to a tenth of themselves.
@@ -266,6 +273,13 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
   std::vector<std::uint32_t> some;
   for (const std::uint32_t n : set.numbers) some.push_back(vertices_[n]);
   const std::span<const std::uint32_t> vertices = some.empty() ? vertices_ : some;
+  // (forms, vertices)
+  std::vector<char> are_plain(forms.size() * vertices.size());
+  parallel_each(are_plain.size(), kBlock, [&](std::size_t i) {
+    const std::size_t at = i % vertices.size();
+    const auto entries = forms[i / vertices.size()].of(some.empty() ? at : set.numbers[at]);
+    are_plain[i] = is_plain(to_float(rights_.stored(vertices[at])), entries) ? 1 : 0;
+  });
   rights_.for_each(vertices, set.poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
     thread_local std::vector<float> errors;
@@ -276,7 +290,7 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
       for (std::size_t f = 0; f < forms.size(); ++f) {
         // Where these show what the kind before showed, it has been added up.
         const bool is_known = kind > 0 && !is_rounding(kinds[kind].host) && !is_rounding(kinds[kind - 1].host) &&
-                              is_plain(normal, forms[f].of(n));
+                              are_plain[f * vertices.size() + at] != 0;
         if (is_known) continue;
         sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, set.poses.size(), first, right.size());
         for (std::size_t p = 0; p < right.size(); ++p) errors[f * right.size() + p] = sums.angle_to(right[p], p);

@@ -27,6 +27,8 @@ Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading
   weights.poses.push_back(document.meshes()[mesh].weights);
   for (const GltfNode& node : document.nodes())
     if (node.mesh == mesh && !node.weights.empty()) weights.poses.push_back(node.weights);
+  const auto& expressions = document.meshes()[mesh].expressions;
+  weights.poses.insert(weights.poses.end(), expressions.begin(), expressions.end());
   for (const std::vector<double>& pose : weights.poses) weights.use.add_pose(pose);
   return weights;
 }

@@ -22,7 +22,7 @@ struct MeshWeights {
   std::vector<WeightTrack> tracks;  ///< of the animations; `use` refers to them
   std::vector<TrackName> names;     ///< of each track
   std::vector<TimeRange> ranges;    ///< of the animation of each track
-  PoseList poses;                   ///< that stand still: of the mesh and its nodes
+  PoseList poses;                   ///< that stand still: of the mesh, its nodes, and the expressions of an avatar
   WeightUse use;
   bool is_driven = false;  ///< an animation gives some moving target a weight
 };

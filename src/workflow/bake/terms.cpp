@@ -158,6 +158,11 @@ bool NormalTerms::Term::find(std::uint32_t element, Vec3d& value) const {
   return true;
 }
 
+std::vector<std::uint32_t> NormalTerms::elements(std::size_t i, std::size_t j) const {
+  if (!is_fitted()) return by_area_.elements(i, j);
+  return i == j ? fits_[i].elements : common(fits_[i].elements, fits_[j].elements);
+}
+
 bool NormalTerms::overlap(std::size_t i, std::size_t j) const {
   return is_fitted() ? !common(fits_[i].elements, fits_[j].elements).empty() : by_area_.overlap(i, j);
 }
@@ -168,6 +173,21 @@ std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const 
   blend_positions(shading_.set, weights, blended);
   const std::vector<float> to(blended.begin(), blended.end());
   return sample_all(segment_to(shading_.set, to));
+}
+
+std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> positions,
+                                            std::span<const std::uint32_t> elements) const {
+  // The normals of all faces are worth their time only where most of them are asked for.
+  const std::vector<float> to(positions.begin(), positions.end());
+  const Segment segment = segment_to(shading_.set, to);
+  std::vector<Vec3d> result(elements.size());
+  if (4 * elements.size() > shading_.groups.size()) {
+    const std::vector<Vec3d> all = sample_all(segment);
+    for (std::size_t n = 0; n < elements.size(); ++n) result[n] = all[elements[n]];
+    return result;
+  }
+  parallel_each(elements.size(), kBlock, [&](std::size_t n) { result[n] = sample(segment, elements[n], 1); });
+  return result;
 }
 
 ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept {

@@ -42,6 +42,8 @@ class NormalTerms {
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const {
     return is_fitted() ? fits_[i].elements : by_area_.elements(i);
   }
+  /// All elements where their pair may have a term, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i, std::size_t j) const;
   /// Whether there is something between two targets: a face that both move, or for fitted weightings an element.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
   /// The right normals at some weights from the blended positions, with the length by area; and those by area whatever
@@ -51,6 +53,9 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
+  /// The normals by the weighting of some elements, with the length by area, from the positions of all vertices, (V, 3).
+  [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> positions,
+                                               std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
   /// How far the fit of a target alone is from the weighted normals that are shown, in radians, at eighths of its
   /// weight; 0 by area.
@@ -105,7 +110,10 @@ class VertexTerms {
   VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept;
 
   [[nodiscard]] static bool has_base(const Vec3d& base, double largest) noexcept {
-    return largest <= kLongest * length(base);
+    return has_base(length(base), largest);
+  }
+  [[nodiscard]] static bool has_base(double length_of_base, double largest) noexcept {
+    return largest <= kLongest * length_of_base;
   }
 
   /// Of a term of n(w).

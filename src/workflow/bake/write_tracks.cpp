@@ -54,18 +54,37 @@ struct Sampler {
   bool has_new_input = false, is_converted = false;
 };
 
-// Weights that an extension drives would lack the new ones.
-Status check_pointers(const GltfDocument& document, const GltfEdit& edit) {
-  bool is_used = false;
-  for (const std::string& extension : document.extensions()) is_used |= extension == "KHR_animation_pointer";
-  if (!is_used) return Success{};
-  for (std::size_t a = 0; a < document.animations().size(); ++a) {
-    for (std::size_t c = 0; c < document.animations()[a].channel_count; ++c) {
+// Whether a JSON pointer leads to weights, or to one of them, of a mesh that has extra targets.
+bool leads_to_weights(const GltfDocument& document, std::span<const GrownMesh> meshes, const std::string& pointer) {
+  std::string_view rest = pointer;
+  const bool of_node = rest.starts_with("/nodes/");
+  if (!of_node && !rest.starts_with("/meshes/")) return false;
+  rest.remove_prefix(rest.find('/', 1) + 1);
+  std::size_t index = 0;
+  const auto [stop, code] = std::from_chars(rest.data(), rest.data() + rest.size(), index);
+  if (code != std::errc() || !std::string_view(stop, rest.data() + rest.size()).starts_with("/weights")) return false;
+  if (of_node) {
+    if (index >= document.nodes().size() || !document.nodes()[index].mesh) return false;
+    index = *document.nodes()[index].mesh;
+  }
+  return std::any_of(meshes.begin(), meshes.end(), [&](const GrownMesh& mesh) { return mesh.mesh == index; });
+}
+
+// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the mesh.
+Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
+  for (std::size_t a = 0; a < document.animations().size() && !meshes.empty(); ++a) {
+    const GltfAnimation& animation = document.animations()[a];
+    std::set<std::size_t> of_tracks;
+    for (const GltfTrack& track : animation.tracks) of_tracks.insert(track.channel);
+    for (std::size_t c = 0; c < animation.channel_count; ++c) {
       const std::string channel = item(item("/animations", a) + "/channels", c);
       const std::string pointer = channel + "/target/extensions/KHR_animation_pointer/pointer";
-      if (edit.has(pointer) && edit.text(pointer).find("/weights") != std::string::npos) {
+      if (of_tracks.count(c) > 0 || !edit.has(pointer)) continue;
+      const std::string text = edit.text(pointer);
+      if (text.size() > 2 && leads_to_weights(document, meshes, text.substr(1, text.size() - 2))) {
         return invalid_input(std::string(document.name()).append(", ").append(pointer),
-                             "weights that are driven by KHR_animation_pointer cannot be extended");
+                             "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: "
+                             "let it drive all weights, or use --encode endpoint");
       }
     }
   }
@@ -205,7 +224,7 @@ class TrackWriter {
 
 Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes, double tolerance,
                                    GltfEdit& edit) {
-  if (Status status = check_pointers(document, edit); !status) return status.error();
+  if (Status status = check_pointers(document, meshes, edit); !status) return status.error();
   TrackWriter writer(document, meshes, tolerance, edit);
   for (std::size_t a = 0; a < document.animations().size() && !meshes.empty(); ++a) {
     if (Status status = writer.write_animation(a); !status) return status.error();

@@ -217,7 +217,7 @@ TEST(GltfEditFiles, path_that_names_no_gltf_file_is_refused) {
     const Status status = edit.write(folder / name, false);
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().code, ErrorCode::kUsage);
-    EXPECT_EQ(status.error().text(), folder / name + ": the name of a glTF file ends with .glb or .gltf");
+    EXPECT_EQ(status.error().text(), folder / name + ": the name of a glTF file ends with .glb, .gltf or .vrm");
   }
   EXPECT_EQ(folder.entry_count(), 0U);
 }

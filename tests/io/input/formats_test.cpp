@@ -255,7 +255,7 @@ TEST(Formats, are_found_by_extension_in_upper_and_lower_case) {
 
 TEST(Formats, list_their_extensions_for_messages) {
   EXPECT_EQ(extensions_of({Holds::kMesh}, " or "), ".obj or .ply");
-  EXPECT_EQ(extensions_of({Holds::kGltf, Holds::kMotion}), ".gltf, .glb, .npz, .md2");
+  EXPECT_EQ(extensions_of({Holds::kGltf, Holds::kMotion}), ".gltf, .glb, .vrm, .npz, .md2");
 }
 
 TEST(Formats, have_the_readers_and_writers_that_go_with_what_they_hold) {

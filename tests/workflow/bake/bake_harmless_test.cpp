@@ -349,6 +349,17 @@ TEST(BakeHarmless, the_report_says_what_each_host_shows) {
   EXPECT_NEAR(change(result, poses, Rule::kSum).worst, hosts[0].poses[0].after.worst, 0.5);
 }
 
+TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
+  // All of them are about as wrong, so that the mean is no small part of the worst.
+  const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
+  ASSERT_EQ(result.error, "");
+  const HostChange& host = result.report.meshes[0].hosts.at(0);
+  EXPECT_GT(host.poses[0].before.worst, 90);
+  EXPECT_GT(host.poses[0].before.mean, 0.3 * host.poses[0].before.worst);
+  EXPECT_LE(host.poses[0].before.mean, host.poses[0].before.most);
+  EXPECT_LE(host.poses[0].before.most, host.poses[0].before.worst);
+}
+
 TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
   BakeOptions options;
   options.encoding = BakeEncoding::kExact;

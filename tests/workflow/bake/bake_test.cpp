@@ -379,6 +379,33 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
   EXPECT_EQ(added(90), 0U);
 }
 
+TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
+  // More keys than poses are measured at, so that what is left out is bounded by a sum.
+  GltfBuilder builder;
+  test::Hills hills(9);
+  std::vector<std::vector<float>> deltas;
+  for (int k = 0; k < 5; ++k) deltas.push_back(hills.deltas(1, 0.01));
+  builder.add_node(builder.add_mesh(hills.primitive(builder, deltas)));
+  builder.add_animation("");
+  std::vector<float> times, values;
+  for (int key = 0; key < 2200; ++key) {
+    times.push_back(static_cast<float>(key));
+    for (int k = 0; k < 5; ++k) values.push_back(hills.uniform(0, 1));
+  }
+  builder.add_track(0, 0, times, values, "STEP");
+  std::size_t before = 16;
+  for (double tolerance = 1e-3; tolerance < 10; tolerance *= 1.5) {
+    BakeOptions options = with(BakeEncoding::kExact);
+    options.tolerance = tolerance;
+    const Baked baked = test::bake_document(builder, options);
+    ASSERT_EQ(baked.error, "");
+    EXPECT_LE(baked.report.meshes[0].resampling_error, tolerance);
+    EXPECT_LE(baked.report.added_targets, before);
+    before = baked.report.added_targets;
+  }
+  EXPECT_EQ(before, 0U);
+}
+
 TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
   GltfBuilder builder;
   test::Hills hills(8);

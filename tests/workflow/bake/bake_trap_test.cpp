@@ -457,14 +457,87 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
   EXPECT_EQ(patched, result.before->json);
 }
 
-TEST(BakeTraps, weights_that_an_extension_drives_are_refused) {
-  GltfBuilder builder = moving_hills();
+// Lets the first channel drive what a pointer names, by KHR_animation_pointer.
+GltfBuilder driven_by_pointer(const std::string& pointer, GltfBuilder builder = moving_hills()) {
   builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
-  builder.json["animations"][0]["channels"].push_back(
-      {{"sampler", 0},
-       {"target",
-        {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/meshes/0/weights"}}}}}}}});
-  EXPECT_NE(test::bake_document(builder).error.find("KHR_animation_pointer"), std::string::npos);
+  builder.json["animations"][0]["channels"][0]["target"] = {
+      {"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+  return builder;
+}
+
+TEST(BakeTraps, weights_that_a_pointer_drives_are_baked_as_those_of_a_channel) {
+  const Baked by_channel = baked(moving_hills());
+  ASSERT_GT(by_channel.report.added_targets, 0U);
+  for (const char* const pointer : {"/nodes/0/weights", "/meshes/0/weights"}) {
+    const Baked by_pointer = baked(driven_by_pointer(pointer));
+    ASSERT_EQ(by_pointer.error, "") << pointer;
+    EXPECT_EQ(by_pointer.report.added_targets, by_channel.report.added_targets) << pointer;
+    EXPECT_EQ(by_pointer.mesh(), by_channel.mesh()) << pointer;
+    EXPECT_EQ(by_pointer.json()["animations"][0]["samplers"], by_channel.json()["animations"][0]["samplers"])
+        << pointer;
+    EXPECT_EQ(by_pointer.after->bin(), by_channel.after->bin()) << pointer;
+  }
+}
+
+TEST(BakeTraps, a_pointer_to_the_weights_of_a_mesh_drives_every_node_without_weights_of_its_own) {
+  GltfBuilder builder = driven_by_pointer("/meshes/0/weights");
+  builder.add_node(0);
+  builder.json["nodes"][builder.add_node(0)]["weights"] = std::vector<double>(2, 0.5);
+  const test::GltfFixture file(builder);
+  ASSERT_TRUE(file.ok()) << file.error();
+  std::vector<std::size_t> nodes;
+  for (const GltfTrack& track : (*file).animations()[0].tracks) nodes.push_back(track.node);
+  EXPECT_EQ(nodes, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(baked(builder).error, "");
+}
+
+TEST(BakeTraps, a_pointer_to_what_is_not_there_and_a_second_one_to_the_same_weights_are_refused) {
+  EXPECT_NE(test::bake_document(driven_by_pointer("/meshes/7/weights")).error.find("/meshes/7/weights"),
+            std::string::npos);
+  GltfBuilder builder = driven_by_pointer("/nodes/0/weights");
+  builder.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}});
+  EXPECT_NE(test::bake_document(builder).error.find("two channels"), std::string::npos);
+}
+
+TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targets) {
+  const auto with_single = [](const std::string& pointer) {
+    GltfBuilder builder = moving_hills();
+    builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
+    builder.add_mesh(builder.json["meshes"][0]["primitives"][0]);
+    builder.json["animations"][0]["channels"].push_back(
+        {{"sampler", 0},
+         {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+    return builder;
+  };
+  for (const char* const pointer : {"/meshes/0/weights/1", "/nodes/0/weights/1"})
+    EXPECT_NE(test::bake_document(with_single(pointer)).error.find("KHR_animation_pointer"), std::string::npos)
+        << pointer;
+  for (const char* const pointer : {"/meshes/0/extras/weights", "/materials/0/weights", "/cameras/0/weights/1"})
+    EXPECT_EQ(baked(with_single(pointer)).error, "") << pointer;
+}
+
+TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
+  // The animation has one target at a time, fully or not at all: only the expression asks for extra ones.
+  for (const bool is_first_version : {true, false}) {
+    GltfBuilder builder = test::hills_document(2);
+    builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{1, 0, 0, 0, 0, 1}, "STEP");
+    const std::size_t without = test::bake_document(builder, {.encoding = BakeEncoding::kExact}).report.added_targets;
+    const auto bind = [&](int target) {
+      return is_first_version ? Json{{"mesh", 0}, {"index", target}, {"weight", 50}}
+                              : Json{{"node", 0}, {"index", target}, {"weight", 0.5}};
+    };
+    const Json binds = {bind(0), bind(1), Json{{"mesh", 9}, {"node", 9}, {"index", 0}, {"weight", 1}}, Json("?")};
+    if (is_first_version)
+      builder.json["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"] = {{{"name", "Joy"}, {"binds", binds}}};
+    else
+      builder.json["extensions"]["VRMC_vrm"]["expressions"]["preset"]["happy"] = {{"morphTargetBinds", binds}};
+    const Baked with = test::bake_document(builder, {.encoding = BakeEncoding::kExact});
+    ASSERT_EQ(with.error, "");
+    EXPECT_EQ(without, 0U);
+    EXPECT_EQ(with.report.added_targets, 3U) << "the pair, and what each has too much at a half";
+    EXPECT_EQ((**with.source).meshes()[0].expressions, (std::vector<std::vector<double>>{{0.5, 0.5}}));
+    EXPECT_EQ(with.json()["extensions"], builder.json["extensions"]);
+  }
 }
 
 }  // namespace
