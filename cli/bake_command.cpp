@@ -31,6 +31,8 @@ struct Options {
   std::optional<std::size_t> most_bytes;
   std::string hosts = "all";
   std::optional<double> tolerance;
+  std::optional<std::size_t> most_targets;
+  bool animations_only = false;
   std::optional<std::string> drivers;  // where to write them beside the result
   bool json = false, no_audit = false;
 };
@@ -65,6 +67,8 @@ Result<BakeOptions> understand(const Options& options) {
   how.dense_zeros = options.dense_zeros;
   how.most_bytes = options.most_bytes;
   how.tolerance = options.tolerance;
+  how.most_targets = options.most_targets;
+  how.animations_only = options.animations_only;
   if (options.json && is_stream(options.common.output))
     return misuse("--json", "it goes to the standard output: write the result to a file");
   if (options.drivers) {
@@ -242,6 +246,13 @@ Command bake_command() {
              &options->most_bytes,
              "fail where more bytes of arrays would be added",
              {.check = check_whole(0)}},
+            {"--max-targets N",
+             &options->most_targets,
+             "of smallest: how many targets a mesh may have (default: what the hosts bear)",
+             {.check = check_whole(0)}},
+            {"--animations-only", &options->animations_only,
+             "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
+             "fitted to these: a target that is set by itself shows anything"},
             {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
             {"--tolerance DEG", &options->tolerance,
              "leave out extra targets that turn no normal by more than this, and cut tracks so\n"

@@ -87,15 +87,17 @@ struct GltfExtraTarget {
 };
 
 /// How a bake encodes the normals of targets (workflow/bake.h).
-enum class BakeEncoding { kHarmless, kExact, kEndpoint };
+enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
 struct BakeEncodingName {
   BakeEncoding encoding;
   std::string_view name;
 };
-inline constexpr std::array<BakeEncodingName, 3> kBakeEncodings = {
-    {{BakeEncoding::kHarmless, "harmless"}, {BakeEncoding::kExact, "exact"}, {BakeEncoding::kEndpoint, "endpoint"}}};
+inline constexpr std::array<BakeEncodingName, 4> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
+                                                                     {BakeEncoding::kExact, "exact"},
+                                                                     {BakeEncoding::kEndpoint, "endpoint"},
+                                                                     {BakeEncoding::kSmallest, "smallest"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;

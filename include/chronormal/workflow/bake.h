@@ -51,6 +51,11 @@ struct BakeOptions {
   /// Degrees: extra targets whose lack, all together, turns no normal by more are left out, and tracks are cut to this.
   /// Nothing: kHarmlessTolerance, and kExactBakeTolerance of exact.
   std::optional<double> tolerance = {};
+  /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the hosts bear.
+  std::optional<std::size_t> most_targets = {};
+  /// Of smallest: nothing but the animations of the file will ever be played, so that the deltas of the mesh's own
+  /// targets may be fitted to these, and mean nothing alone.
+  bool animations_only = false;
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 

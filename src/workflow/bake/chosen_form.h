@@ -10,25 +10,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/deltas.h"
+#include "workflow/bake/extra_curves.h"
 #include "workflow/bake/harmless_form.h"
 #include "workflow/bake/host_judge.h"
 #include "workflow/bake/mesh_weights.h"
 
 namespace chronormal::inline internal {
 
-/// How many pieces each gap between two keys of a LINEAR track is cut into.
-using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
-
 class ChosenForm {
  public:
-  std::vector<ExtraWeight> weights;  ///< of extra targets
-  TrackPieces pieces;
+  ExtraDrivers drivers;           ///< of extra targets
   std::vector<HostChange> hosts;  ///< of those that are named
   std::size_t kept = 0;           ///< different normals that keep what is stored, though targets move them
   std::size_t left_out = 0;       ///< extra targets beyond the limit of the hosts
@@ -45,6 +41,7 @@ class ChosenForm {
  private:
   friend ChosenForm choose_of_lengths(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths);
   friend ChosenForm choose_endpoint(const DeltaSource&, const MeshWeights&, const BakeOptions&);
+  friend ChosenForm choose_low_rank(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths, std::size_t);
 
   // The deltas of the mesh's own targets in a form other than the stored one.
   [[nodiscard]] const std::vector<VertexVectors>& own_of(std::uint8_t form) const;

@@ -25,6 +25,7 @@ std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
 }  // namespace
 
 std::string name_of_extra(const GltfExtraTarget& extra) {
+  if (extra.quadratic.empty() && extra.linear.empty()) return "chronormal of the animations";
   if (extra.quadratic.empty()) return "chronormal w" + std::to_string(extra.linear.front().i);
   const auto& [i, j, q] = extra.quadratic.front();
   std::string name("chronormal w");

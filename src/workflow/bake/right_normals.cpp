@@ -20,9 +20,9 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
 }
 
 Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept {
-  const double of_base = length(terms_.base_of(element)), size = length(by_area);
+  const double of_base = length(base_[element]), size = length(by_area);
   if (!(size > kLeastLength * std::fmax(of_base, largest_[element]))) return {};
-  return (VertexTerms::has_base(terms_.base_of(element), largest_[element]) ? size / of_base : 1) * unit(direction);
+  return (VertexTerms::has_base(base_[element], largest_[element]) ? size / of_base : 1) * unit(direction);
 }
 
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const {
@@ -54,7 +54,7 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
 Vec3d RightNormals::of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept {
   if (of_element == Vec3d{}) return {};
   const std::uint32_t element = shading_.element_of_vertex[vertex];
-  return length(of_element) * shown_direction(stored(vertex), terms_.base_of(element), of_element);
+  return length(of_element) * shown_direction(stored(vertex), base_[element], of_element);
 }
 
 }  // namespace chronormal::inline internal

@@ -26,7 +26,9 @@ class RightNormals {
   /// element. All of them must outlive this.
   RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
                const std::vector<double>& largest)
-      : shading_(shading), terms_(terms), base_normals_(base_normals), largest_(largest) {}
+      : shading_(shading), terms_(terms), base_normals_(base_normals), largest_(largest), base_(shading.groups.size()) {
+    for (std::uint32_t e = 0; e < base_.size(); ++e) base_[e] = terms.base_of(e);
+  }
 
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
   /// The stored normal of a vertex.
@@ -67,6 +69,7 @@ class RightNormals {
   const NormalTerms& terms_;
   std::span<const float> base_normals_;
   const std::vector<double>& largest_;
+  std::vector<Vec3d> base_;  // of each element: many ask for it
 };
 
 }  // namespace chronormal::inline internal
