@@ -31,6 +31,10 @@ struct BakeReport {
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
+/// What each form of each mesh would come to, of --encode smallest.
+[[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
+[[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
+
 /// One JSON object with everything, as docs/cli.md has it.
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);

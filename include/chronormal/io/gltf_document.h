@@ -95,9 +95,9 @@ struct BakeEncodingName {
   std::string_view name;
 };
 inline constexpr std::array<BakeEncodingName, 4> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
-                                                                     {BakeEncoding::kExact, "exact"},
-                                                                     {BakeEncoding::kEndpoint, "endpoint"},
-                                                                     {BakeEncoding::kSmallest, "smallest"}}};
+                                                                    {BakeEncoding::kExact, "exact"},
+                                                                    {BakeEncoding::kEndpoint, "endpoint"},
+                                                                    {BakeEncoding::kSmallest, "smallest"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;

@@ -18,7 +18,8 @@ HWY_INLINE void AddTile(const StridedMatrix& a, const StridedMatrix& b, std::siz
                         std::size_t stride) {
   Floats tile[kRows][kVectors];
   for (std::size_t r = 0; r < kRows; ++r)
-    for (std::size_t v = 0; v < kVectors; ++v) tile[r][v] = hn::LoadU(kFloats, sums + (i + r) * stride + j + v * kLanes);
+    for (std::size_t v = 0; v < kVectors; ++v)
+      tile[r][v] = hn::LoadU(kFloats, sums + (i + r) * stride + j + v * kLanes);
   const float* of_a = a.data + i * a.column_stride;
   const float* of_b = b.data + j;
   for (std::size_t row = 0; row < a.rows; ++row, of_a += a.row_stride, of_b += b.row_stride) {
@@ -30,11 +31,13 @@ HWY_INLINE void AddTile(const StridedMatrix& a, const StridedMatrix& b, std::siz
     }
   }
   for (std::size_t r = 0; r < kRows; ++r)
-    for (std::size_t v = 0; v < kVectors; ++v) hn::StoreU(tile[r][v], kFloats, sums + (i + r) * stride + j + v * kLanes);
+    for (std::size_t v = 0; v < kVectors; ++v)
+      hn::StoreU(tile[r][v], kFloats, sums + (i + r) * stride + j + v * kLanes);
 }
 
 template <std::size_t kRows>
-HWY_INLINE void AddRows(const StridedMatrix& a, const StridedMatrix& b, std::size_t i, float* sums, std::size_t stride) {
+HWY_INLINE void AddRows(const StridedMatrix& a, const StridedMatrix& b, std::size_t i, float* sums,
+                        std::size_t stride) {
   std::size_t j = 0;
   for (; j + 2 * kLanes <= b.columns; j += 2 * kLanes) AddTile<kRows, 2>(a, b, i, j, sums, stride);
   for (; j + kLanes <= b.columns; j += kLanes) AddTile<kRows, 1>(a, b, i, j, sums, stride);

@@ -9,9 +9,9 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 256, kWeights = 32;
-constexpr double kHarm = 0.01;           // degrees
+constexpr double kHarm = 0.01;  // degrees
 constexpr double kPartOfTolerance = 0.9;
-constexpr double kLeastLength = 2e-5;    // of the terms that a normal is made of: below, its direction means nothing
+constexpr double kLeastLength = 2e-5;  // of the terms that a normal is made of: below, its direction means nothing
 constexpr std::array<double, 8> kLengths = {0.8, 1.25, 0.6, 1.6, 0.4, 2.5, 0.2, 5};
 constexpr std::array<double, 7> kParts = {0.8, 0.6, 0.4, 0.25, 0.15, 0.07, 0.03};
 
@@ -37,14 +37,17 @@ struct Course {
   }
 };
 
-Vec3d harmless_delta(const Course& course, const Vec3d& before, const Vec3d& delta, double tolerance) {
+Vec3d harmless_delta(const Course& course, const Vec3d& before, const Vec3d& delta, FormLengths lengths,
+                     double tolerance) {
   if (!course.is_harmed(before, delta, tolerance)) return delta;
+  const bool is_free = lengths == FormLengths::kFree;
   for (const double size : kLengths) {
     const Vec3d other = size * (course.base + delta) - course.base;
-    if (!course.is_harmed(before, other, tolerance)) return other;
+    if (is_free && !course.is_harmed(before, other, tolerance)) return other;
   }
   for (const double part : kParts) {
-    const Vec3d other = (1 - part) * before + part * delta;
+    Vec3d other = (1 - part) * before + part * delta;
+    if (!is_free) other = length(course.base) * unit(course.base + other) - course.base;
     if (!course.is_harmed(before, other, tolerance)) return other;
   }
   return before;
@@ -52,8 +55,8 @@ Vec3d harmless_delta(const Course& course, const Vec3d& before, const Vec3d& del
 
 }  // namespace
 
-void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVectors>& stored, double tolerance,
-                         std::vector<VertexVectors>& deltas) {
+void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVectors>& stored, FormLengths lengths,
+                         double tolerance, std::vector<VertexVectors>& deltas) {
   const VectorView<const float> normals =
       VectorView<const float>::packed(source.base_normals.data(), source.base_normals.size() / 3);
   for (std::size_t i = 0; i < deltas.size(); ++i) {
@@ -70,7 +73,8 @@ void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVect
       (void)square.find(element, c);
       const Course course{turned(of_element), turned(a), turned(c),
                           length(turned(Vec3d{source.plan.largest[element], 0, 0})), base};
-      vectors[n] = to_float(harmless_delta(course, to_double(stored[i].at(v)), to_double(vectors[n]), tolerance));
+      vectors[n] =
+          to_float(harmless_delta(course, to_double(stored[i].at(v)), to_double(vectors[n]), lengths, tolerance));
     });
   }
 }

@@ -128,6 +128,7 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
   auto chosen = std::make_shared<ChosenForm>(choose());
   report.hosts = chosen->hosts;
   report.kept = chosen->kept;
+  report.choices = chosen->choices;
   report.left_out = chosen->left_out;
   report.resampling_error = chosen->track_error * kDegreesPerRadian;
   report.largest_error = chosen->fit_error * kDegreesPerRadian;

@@ -71,6 +71,37 @@ bool ChosenForm::changes(const GltfShading& shading) const {
   return false;
 }
 
+VertexColumns ChosenForm::columns(const GltfShading& shading) const {
+  std::vector<VertexVectors> own(shading.set.targets.size());
+  const std::vector<VertexVectors> stored = stored_deltas(shading);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t n = 0; n < vertices_.size(); ++n) {
+      const Vec3f delta = (choice_[n] > 0 ? own_of(choice_[n]) : stored)[i].at(vertices_[n]);
+      if (delta == Vec3f{}) continue;
+      own[i].vertices.push_back(vertices_[n]);
+      own[i].vectors.push_back(delta);
+    }
+  }
+  return by_vertex(columns_of(own, extras_), vertices_);
+}
+
+std::size_t ChosenForm::bytes(const GltfShading& shading) const {
+  constexpr std::size_t kVector = 12, kIndex = 4;
+  std::size_t total = 0;
+  const auto add = [&](const TargetDeltas& deltas) {
+    for (const std::vector<float>& of_part : deltas.of_parts) {
+      std::size_t used = 0;
+      for (std::size_t n = 0; n < of_part.size(); n += 3)
+        used += of_part[n] != 0 || of_part[n + 1] != 0 || of_part[n + 2] != 0 ? std::size_t{1} : 0;
+      total += std::min(sizeof(float) * of_part.size(), used * (kVector + kIndex));
+    }
+  };
+  for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
+    if (const std::optional<TargetDeltas> deltas = own_deltas(shading, i)) add(*deltas);
+  for (std::size_t k = 0; k < extras_.size(); ++k) add(extra_deltas(shading, k));
+  return total;
+}
+
 std::optional<TargetDeltas> ChosenForm::own_deltas(const GltfShading& shading, std::size_t target) const {
   const std::vector<float>& stored = shading.normal_deltas[target];
   std::vector<float> all = stored.empty() ? std::vector<float>(shading.normals.size()) : stored;
@@ -99,7 +130,7 @@ ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weigh
   const std::span<const Host> hosts = options.hosts;
   const std::size_t targets = shading.set.targets.size();
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
-  const HarmlessLimits limits{lengths, most_extras(hosts, targets), tolerance};
+  const HarmlessLimits limits{lengths, most_extras(options, targets), tolerance};
 
   ChosenForm result;
   const std::vector<VertexVectors> stored = stored_deltas(shading);

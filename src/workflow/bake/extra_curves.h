@@ -53,7 +53,9 @@ struct ExtraCurves {
   std::vector<double> values;
 
   /// Those of one node.
-  [[nodiscard]] std::span<const double> of(std::size_t node) const { return std::span(values).subspan(node * extras, extras); }
+  [[nodiscard]] std::span<const double> of(std::size_t node) const {
+    return std::span(values).subspan(node * extras, extras);
+  }
   /// Writes the weights of the extra targets at a part of the gap after a key.
   void at(const CurveNodes& nodes, std::size_t key, double part, std::span<double> weights) const;
 };

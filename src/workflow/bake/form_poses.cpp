@@ -43,8 +43,7 @@ std::vector<DrivingTrack> written_tracks(const MeshWeights& weights, const Extra
   std::vector<DrivingTrack> result;
   for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
     const WeightTrack& track = weights.tracks[t];
-    const ExtendedTrack extended =
-        extras.extended(weights.names[t], track, std::numeric_limits<double>::infinity());
+    const ExtendedTrack extended = extras.extended(weights.names[t], track, std::numeric_limits<double>::infinity());
     result.push_back({as_track(track, extended, extras.size()), weights.ranges[t]});
   }
   return result;
@@ -176,10 +175,12 @@ std::vector<const VertexVectors*> columns_of(const std::vector<VertexVectors>& o
   return result;
 }
 
-std::size_t most_extras(std::span<const Host> hosts, std::size_t targets) {
+std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   std::size_t most = 10000;
-  for (const Host& host : hosts)
-    if (host.most_targets > 0) most = std::min(most, host.most_targets - std::min(host.most_targets, targets));
+  const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
+  for (const Host& host : options.hosts)
+    if (host.most_targets > 0) limit(host.most_targets);
+  if (options.most_targets) limit(*options.most_targets);
   return most;
 }
 
@@ -222,11 +223,12 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = changing[n * changing.size() / count];
     if (!numbers[i].empty())
-      sets.push_back(
-          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras.formulas, steps, sampling.phase), numbers[i]});
+      sets.push_back({PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras.formulas, steps, sampling.phase),
+                      numbers[i]});
   }
   const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
-  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras.formulas, mixed, sampling.seed), {}});
+  sets.push_back(
+      {PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras.formulas, mixed, sampling.seed), {}});
   sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
   return sets;
 }

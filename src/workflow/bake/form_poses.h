@@ -41,8 +41,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::vector<const VertexVectors*> columns_of(const std::vector<VertexVectors>& own,
                                                            const std::vector<VertexVectors>& extras = {});
 
-/// How many extra targets all hosts have room for.
-[[nodiscard]] std::size_t most_extras(std::span<const Host> hosts, std::size_t targets);
+/// How many extra targets all hosts have room for, and the options.
+[[nodiscard]] std::size_t most_extras(const BakeOptions& options, std::size_t targets);
 
 /// The lengths of vectors that all hosts keep.
 [[nodiscard]] FormLengths lengths_for(std::span<const Host> hosts);

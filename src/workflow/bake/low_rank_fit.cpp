@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "analysis/kernels/products.h"
 #include "analysis/leading_vectors.h"
@@ -12,9 +13,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 16;           // points at a time
-constexpr std::size_t kParts = 32;           // sums over points, each in the memory of a whole matrix
-constexpr std::size_t kColumnsAtOnce = 64;   // of a symmetric matrix
+constexpr std::size_t kBlock = 16;          // points at a time
+constexpr std::size_t kParts = 32;          // sums over points, each in the memory of a whole matrix
+constexpr std::size_t kColumnsAtOnce = 64;  // of a symmetric matrix
 constexpr std::size_t kPadding = 16;
 constexpr std::size_t kSampledPoints = 1500;
 // A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth.
@@ -24,6 +25,10 @@ constexpr int kRounds = 3;
 // Of the tolerance: what points beyond it count more for, and what they are fitted by themselves from.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
+// Multiplications of all least squares: where many extra targets make each dear, there are fewer of them.
+constexpr double kRefitWork = 1e10;
+// Of n(0): the direction of a shorter normal is not fitted to.
+constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
 constexpr double kRidge = 1e-4, kLeastSquare = 1e-6;
 
@@ -146,7 +151,8 @@ std::vector<double> LowRankFit::errors_with(std::span<const std::size_t> counts)
         const Vec3f is = {now[r], now[stride + r], now[2 * stride + r]};
         const Vec3f should = {shown[r] + lack[r], shown[stride + r] + lack[stride + r],
                               shown[2 * stride + r] + lack[2 * stride + r]};
-        errors[c][n * rows + r] = should == Vec3f{} ? 0 : degrees_between(is, should);
+        const bool is_known = dot(should, should) > kLeastLength * kLeastLength;
+        errors[c][n * rows + r] = is_known ? degrees_between(is, should) : 0;
       }
     }
   });
@@ -185,29 +191,28 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point) const {
     for (std::size_t r = 0; r < rows; ++r) {
       to_shown[r] = shown[r];
       to_right[r] = shown[r] + lack[r];
-      if (to_right[r] != 0) course.is_known[r] = 1;
     }
     for (std::size_t n = rows; n < instants; ++n) {
       to_shown[n] = at_place(places_[n - rows], to_shown);
       to_right[n] = at_place(places_[n - rows], to_right);
     }
   }
+  for (std::size_t r = 0; r < rows; ++r) {
+    const Vec3f right = {course.right[r], course.right[plane + r], course.right[2 * plane + r]};
+    course.is_known[r] = static_cast<char>(dot(right, right) > kLeastLength * kLeastLength);
+  }
   for (std::size_t n = rows; n < instants; ++n) {
     const auto& nodes = places_[n - rows].nodes;
-    course.is_known[n] =
-        static_cast<char>(course.is_known[nodes[0]] != 0 && course.is_known[nodes[1]] != 0 && course.is_known[nodes[2]] != 0);
+    course.is_known[n] = static_cast<char>(course.is_known[nodes[0]] != 0 && course.is_known[nodes[1]] != 0 &&
+                                           course.is_known[nodes[2]] != 0);
   }
   return course;
 }
 
 // The largest error of each point at rows and places.
 void LowRankFit::measure() {
-  const Basis basis = [&] {
-    Basis of_extras = basis_of({});
-    return of_extras;
-  }();
+  const Basis basis = basis_of({});
   parallel_blocks(missing_.points(), kBlock, [&](IndexRange points) {
-    std::vector<float> sums(3 * basis.stride);
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       Course course = course_of(p);
       const StridedMatrix a{deltas_.data() + 3 * padded_ * p, extras_, 3, 1, padded_};
@@ -231,7 +236,8 @@ void LowRankFit::refit(std::size_t point, const Basis& basis, double tolerance) 
   const Course course = course_of(point);
   std::vector<float> x(3 * basis.padded, 0.0F);
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t k = 0; k < extras_; ++k) x[axis * basis.padded + own_targets_ + k] = deltas(point)[axis * padded_ + k];
+    for (std::size_t k = 0; k < extras_; ++k)
+      x[axis * basis.padded + own_targets_ + k] = deltas(point)[axis * padded_ + k];
   const std::vector<float> first = x;
   std::vector<float> best = x;
   float least = std::numeric_limits<float>::infinity();
@@ -334,8 +340,10 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   for (std::size_t p = 0; p < errors_.size(); ++p)
     if (static_cast<double>(errors_[p]) > kPartToRefit * tolerance) bad.push_back(p);
   std::stable_sort(bad.begin(), bad.end(), [&](std::size_t a, std::size_t b) { return errors_[a] > errors_[b]; });
-  if (bad.size() > kMostRefitted) bad.resize(kMostRefitted);
   const Basis basis = basis_of(own_weights);
+  const double size = 3 * static_cast<double>(basis.columns);
+  const auto most = static_cast<std::size_t>(std::fmin(kMostRefitted, kRefitWork / (size * size * size)));
+  if (bad.size() > most) bad.resize(most);
   parallel_each(bad.size(), 1, [&](std::size_t n) { refit(bad[n], basis, tolerance); });
 }
 

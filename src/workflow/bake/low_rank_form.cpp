@@ -25,12 +25,14 @@ constexpr std::size_t kRowsAtOnce = 64, kBlock = 16;
 // squares should then leave at worst.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
+// What more extra targets do not make smaller than this is not made smaller by more.
+constexpr double kNoGain = 1.05;
 constexpr int kTries = 3;
 // Of the tolerance: how far the lack of one entry of a delta may turn a normal.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
-constexpr std::array<std::size_t, 24> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14,  16,  20,  24,
-                                                 28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128, 192};
+constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
+                                                 28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
 // Which instants are fitted to.
 struct Rows {
@@ -56,7 +58,8 @@ Rows choose_rows(const FileInstants& all, std::size_t most) {
     }
     for (std::size_t node = 0; node + 2 < nodes; node += 2 * step) {
       for (std::size_t n = 0; n < 3; ++n) take(first + node + n);
-      const std::array<std::size_t, 3> of = {*row_of[first + node], *row_of[first + node + 1], *row_of[first + node + 2]};
+      const std::array<std::size_t, 3> of = {*row_of[first + node], *row_of[first + node + 1],
+                                             *row_of[first + node + 2]};
       rows.places.push_back({of, {0.375, 0.75, -0.125}});
       rows.places.push_back({of, {-0.125, 0.75, 0.375}});
     }
@@ -117,6 +120,14 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
+// How many products of two weights there are: by area, n(w) has no more terms that are missing.
+std::size_t products_of(const PoseList& poses) {
+  std::size_t active = 0;
+  for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
+    if (std::any_of(poses.begin(), poses.end(), [i](const auto& pose) { return pose[i] != 0; })) ++active;
+  return active * (active + 1) / 2;
+}
+
 // Fits with as few extra targets as the tolerance needs, as far as a look at some points and three tries can tell.
 void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
   std::vector<std::size_t> counts;
@@ -124,18 +135,24 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
     if (count < limits.most_extras) counts.push_back(count);
   counts.push_back(std::min(limits.most_extras, kCounts.back()));
   const std::vector<double> errors = fit.errors_with(counts);
-  const auto is_near = [&](double error) { return error <= kPartOfSingular * limits.tolerance; };
+  const double least = kNoGain * *std::min_element(errors.begin(), errors.end());
+  const auto is_near = [&](double error) { return error <= std::fmax(kPartOfSingular * limits.tolerance, least); };
   const auto found = std::find_if(errors.begin(), errors.end(), is_near);
   const auto at = static_cast<std::size_t>(found - errors.begin());
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
   // Between two counts the logarithm of the error falls about evenly.
-  if (found != errors.end() && at > 0 && errors[at] > 0) {
-    const double part = std::log(errors[at - 1] / (kPartOfSingular * limits.tolerance)) / std::log(errors[at - 1] / errors[at]);
-    extras = counts[at - 1] + static_cast<std::size_t>(std::ceil(part * static_cast<double>(counts[at] - counts[at - 1])));
+  if (at > 0 && errors[at] > 0 && errors[at] < kPartOfSingular * limits.tolerance) {
+    const double part =
+        std::log(errors[at - 1] / (kPartOfSingular * limits.tolerance)) / std::log(errors[at - 1] / errors[at]);
+    extras =
+        counts[at - 1] + static_cast<std::size_t>(std::ceil(part * static_cast<double>(counts[at] - counts[at - 1])));
   }
   for (int tries = 1;; ++tries) {
     fit.fit(extras, limits.tolerance, weights, own_targets);
-    if (fit.worst() <= kPartOfWorst * limits.tolerance || extras >= limits.most_extras || tries == kTries) return;
+    const bool is_hopeless = errors[std::min(at, errors.size() - 1)] > kPartOfSingular * limits.tolerance;
+    if (fit.worst() <= kPartOfWorst * limits.tolerance || extras >= limits.most_extras || tries == kTries ||
+        is_hopeless)
+      return;
     extras = std::min(limits.most_extras, 2 + static_cast<std::size_t>(kMoreExtras * static_cast<double>(extras)));
   }
 }
@@ -199,12 +216,14 @@ struct FittedVertex {
 
 LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights,
                           std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> element_of_vertex,
-                          std::vector<VertexVectors> own, const LowRankLimits& limits) {
+                          std::vector<VertexVectors> own, const LowRankLimits& asked) {
   const std::size_t targets = rights.targets();
   LowRankForm form;
   form.own = std::move(own);
   std::vector<PointVertices> points = points_of(rights, vertices, element_of_vertex);
   const FileInstants instants(weights);
+  LowRankLimits limits = asked;
+  limits.most_extras = std::min(limits.most_extras, products_of(instants.poses));
   if (limits.most_extras == 0 || points.empty() || weights.tracks.empty()) return form;
 
   const std::size_t room = kBytes / (6 * sizeof(float) * points.size());
@@ -216,7 +235,8 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
     for (const VertexVectors& column : form.own) columns.push_back(&column);
     return by_vertex(columns, first);
   };
-  MissingNormals missing(rights, points, element_of_vertex, columns_of_points(points), poses_of(instants, rows.instants));
+  MissingNormals missing(rights, points, element_of_vertex, columns_of_points(points),
+                         poses_of(instants, rows.instants));
   missing.keep_beyond(kPartOfNeed * limits.tolerance);
   if (missing.points() == 0) return form;
   std::vector<PointVertices> fitted;
@@ -289,7 +309,8 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   // Weights become at most 1, and entries that turn nothing become zero.
   std::vector<std::size_t> kept;
   std::vector<double> largest(extras, 0.0);
-  for (std::size_t n = 0; n < curves.size(); ++n) largest[n % extras] = std::fmax(largest[n % extras], std::fabs(curves[n]));
+  for (std::size_t n = 0; n < curves.size(); ++n)
+    largest[n % extras] = std::fmax(largest[n % extras], std::fabs(curves[n]));
   const double least = kPartOfEntry * limits.tolerance / kDegreesPerRadian;
   for (std::size_t k = 0; k < extras; ++k) {
     VertexVectors column;

@@ -97,7 +97,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
   }
-  if (!is_harmless) {
+  if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;
     for (const Host& host : options.hosts)
       if (host.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(host.title);

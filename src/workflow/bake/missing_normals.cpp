@@ -30,8 +30,9 @@ std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const
   std::vector<PointVertices> points;
   for (std::size_t n = 0; n < keys.size(); ++n) {
     const auto& [element, x, y, z, vertex] = keys[n];
-    const bool is_new = n == 0 || std::tie(element, x, y, z) != std::tie(std::get<0>(keys[n - 1]), std::get<1>(keys[n - 1]),
-                                                                         std::get<2>(keys[n - 1]), std::get<3>(keys[n - 1]));
+    const bool is_new =
+        n == 0 || std::tie(element, x, y, z) != std::tie(std::get<0>(keys[n - 1]), std::get<1>(keys[n - 1]),
+                                                         std::get<2>(keys[n - 1]), std::get<3>(keys[n - 1]));
     if (is_new) points.emplace_back();
     points.back().push_back(vertex);
   }
@@ -110,7 +111,8 @@ void MissingNormals::keep_beyond(double degrees) {
     for (std::vector<float>* floats : {&shown_, &missing_}) {
       const auto from = floats->begin() + static_cast<std::ptrdiff_t>(size * p);
       if (kept < p)
-        std::copy(from, from + static_cast<std::ptrdiff_t>(size), floats->begin() + static_cast<std::ptrdiff_t>(size * kept));
+        std::copy(from, from + static_cast<std::ptrdiff_t>(size),
+                  floats->begin() + static_cast<std::ptrdiff_t>(size * kept));
     }
     numbers_[kept++] = numbers_[p];
   }
