@@ -109,6 +109,7 @@ struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
   std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
+  bool animations_only = false;         ///< deltas are fitted to the animations of the file, and mean nothing alone
 };
 
 struct GltfMesh {

@@ -189,7 +189,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras, deltas.grown.drivers.rest);
-  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras});
+  baked.report.unmarked_nodes = writer.set_mark(
+      {plan.encoding, false, baked.report.extras, plan.encoding == BakeEncoding::kSmallest && options.animations_only});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.grown = std::move(deltas.grown);
