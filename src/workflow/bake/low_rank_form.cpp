@@ -27,7 +27,7 @@ constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85
 constexpr double kMoreExtras = 1.2;
 // What more extra targets do not make smaller than this is not made smaller by more.
 constexpr double kNoGain = 1.05;
-constexpr int kTries = 3;
+constexpr int kTries = 4;
 // Of the tolerance: how far the lack of one entry of a delta may turn a normal.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
