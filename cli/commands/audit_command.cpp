@@ -21,8 +21,6 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr int kExitBeyond = 4;
-
 struct Options {
   InputOptions input;
   CommonOptions common;

@@ -32,6 +32,8 @@ struct Options {
   std::string hosts = "all";
   std::optional<std::string> output;  // where it is asked for by name
   std::optional<double> tolerance;
+  std::optional<std::size_t> most_targets;
+  bool animations_only = false, plan = false;
   std::optional<std::string> drivers;  // where to write them beside the result
   bool json = false, no_audit = false;
 };
@@ -46,7 +48,7 @@ Result<BakeOptions> understand(const Options& options) {
   BakeOptions how;
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
-    if (!how.encoding) return misuse("--encode", "it must be harmless, exact or endpoint");
+    if (!how.encoding) return misuse("--encode", "it must be harmless, exact, endpoint or smallest");
   }
   Result<std::vector<Host>> hosts = find_hosts(options.hosts);
   if (!hosts) return misuse("--for", hosts.error().message);
@@ -66,6 +68,17 @@ Result<BakeOptions> understand(const Options& options) {
   how.dense_zeros = options.dense_zeros;
   how.most_bytes = options.most_bytes;
   how.tolerance = options.tolerance;
+  how.most_targets = options.most_targets;
+  how.animations_only = options.animations_only;
+  how.plan = options.plan;
+  if (how.encoding != BakeEncoding::kSmallest) {
+    constexpr const char* kNeedsSmallest = "it is for --encode smallest";
+    if (options.most_targets) return misuse("--max-targets", kNeedsSmallest);
+    if (options.animations_only) return misuse("--animations-only", kNeedsSmallest);
+    if (options.plan) return misuse("--plan", kNeedsSmallest);
+  } else {
+    how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
+  }
   if (options.json && is_stream(options.common.output))
     return misuse("--json", "it goes to the standard output: write the result to a file");
   if (options.drivers) {
@@ -74,6 +87,15 @@ Result<BakeOptions> understand(const Options& options) {
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   return how;
+}
+
+// Whether some mesh has no form within what was asked for.
+bool is_beyond(const Options& options, const GltfBake& bake) {
+  if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
+  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
+    return std::any_of(mesh.choices.begin(), mesh.choices.end(),
+                       [](const BakeChoice& choice) { return choice.chosen && !choice.within; });
+  });
 }
 
 // Where the report goes: beside the result, or out of its way.
@@ -136,6 +158,13 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   BakeReport told{input.name(), output, options.drivers, std::nullopt};
   std::vector<std::string> warnings = baked.value().warnings;
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
+  const int code = is_beyond(options, baked.value()) ? kExitBeyond : kExitDone;
+  if (options.plan) {
+    warn(warnings);
+    const Status printed = print(options.json ? plan_json(baked.value(), told) : plan_text(baked.value(), told));
+    if (!printed) return printed.error();
+    return code;
+  }
   // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.
   if (options.drivers) {
     if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
@@ -149,7 +178,9 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
     told.audit = std::move(audited).value();
   }
   warn_if_worse(told);
-  return report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
+  const Result<int> reported = report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
+  if (!reported) return reported.error();
+  return code;
 }
 
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
@@ -158,6 +189,8 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
                                    [](const Host& host) { return host.normals == NormalRule::kSum; });
   if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
+  if (how.encoding == BakeEncoding::kSmallest)
+    return misuse("--encode", "a sequence is written harmless, exact or endpoint");
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
@@ -222,8 +255,10 @@ Result<int> run(Options options) {
   if (!is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output,
                   "bake writes glTF: the name must end in .glb, or .gltf or .vrm for such a file");
-  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
-  if (options.drivers) {
+  const bool writes = !options.plan;
+  if (const Status output = check_output(options.common.output, options.common.force || !writes); !output)
+    return output.error();
+  if (options.drivers && writes) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
   }
   InputOptions wanted = options.input;
@@ -245,7 +280,8 @@ std::vector<Option> with_output(std::vector<Option> table, std::optional<std::st
 Command bake_command() {
   auto options = std::make_shared<Options>();
   const std::vector<RefusedOption> refused = {
-      {"--base", "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},
+      {"--base",
+       "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},
       {"--animation", "bake writes normals for all animations of a glTF file"},
       {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
   return {"bake",
@@ -258,7 +294,10 @@ Command bake_command() {
              "harmless (default): what all of these show alike, with extra targets where\n"
              "they are worth it; exact: extra targets for all quadratic terms, right\n"
              "where a host adds up targets as stored; endpoint: the best single delta per target,\n"
-             "by least squares where several are active at once"},
+             "by least squares where several are active at once; smallest: the smallest of the\n"
+             "file's own deltas, one delta per target, the extra targets of harmless, and extra\n"
+             "targets that only the animations of the file drive, whose errors in these are\n"
+             "within the tolerance"},
             {"--weighting NAME", &options->weighting,
              "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
              "base normals of each mesh, else area)"},
@@ -269,8 +308,17 @@ Command bake_command() {
             {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
             {"--max-bytes N",
              &options->most_bytes,
-             "fail where more bytes of arrays would be added",
+             "fail where more bytes of arrays would be added; with smallest: for each mesh, keep\n"
+             "to so many bytes of deltas",
              {.check = check_whole(0)}},
+            {"--max-targets N",
+             &options->most_targets,
+             "of smallest: how many targets a mesh may have (default: what the hosts bear)",
+             {.check = check_whole(0)}},
+            {"--animations-only", &options->animations_only,
+             "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
+             "fitted to these: a target that is set by itself shows anything"},
+            {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
             {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
             {"--tolerance DEG", &options->tolerance,
              "leave out extra targets that turn no normal by more than this, and cut tracks so\n"
@@ -287,7 +335,8 @@ Command bake_command() {
           "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
           "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
           "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but of smallest no form is within the\n"
+          "tolerance or the limits that were asked for",
           [options] { return run(*options); },
           refused};
 }

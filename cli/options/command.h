@@ -18,6 +18,7 @@
 namespace chronormal::cli {
 
 inline constexpr int kExitDone = 0;
+inline constexpr int kExitBeyond = 4;  ///< a tolerance or a limit was exceeded
 
 /// Where the result goes, and how much is said on the way. Every command has these options.
 struct CommonOptions {

@@ -192,6 +192,27 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   return text + left_text(bake) + hosts_text(bake) + lines_after(report);
 }
 
+std::string plan_text(const GltfBake& bake, const BakeReport& report) {
+  Table table;
+  table.add_column("mesh", "", Table::Align::kLeft);
+  table.add_column("form", "", Table::Align::kLeft);
+  table.add_column("targets", "", Table::Align::kRight);
+  table.add_column("deltas", "bytes", Table::Align::kRight);
+  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("worst", "", Table::Align::kRight);
+  table.add_column("", "", Table::Align::kLeft);
+  for (const BakedMesh& mesh : bake.meshes) {
+    for (const BakeChoice& choice : mesh.choices) {
+      const char* const word = choice.chosen ? "the smallest" : "";
+      table.add_row({mesh_name(mesh), std::string(choice.form), grouped(choice.targets), grouped(choice.bytes),
+                     four_decimals(choice.played.mean), four_decimals(choice.played.most),
+                     four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
+    }
+  }
+  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text();
+}
+
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
   std::string text = headline(report);
   text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),

@@ -15,6 +15,9 @@ namespace chronormal::cli {
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
+/// What each form of each mesh would come to, of --encode smallest.
+[[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
+
 }  // namespace chronormal::cli
 
 #endif  // CLI_REPORTS_BAKE_REPORT_H_

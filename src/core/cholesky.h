@@ -20,11 +20,16 @@ class Cholesky {
   /// Of a matrix (n, n), of which the lower half is read. No squared pivot becomes smaller than `least`, which rounding
   /// could make negative. least must be positive
   Cholesky(std::vector<double> matrix, std::size_t n, double least) : lower_(std::move(matrix)), n_(n) {
-    for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        double sum = at(i, j);
-        for (std::size_t k = 0; k < j; ++k) sum -= at(i, k) * at(j, k);
-        lower_[i * n_ + j] = i == j ? std::sqrt(std::max(sum, least)) : sum / at(j, j);
+    // Column by column, each taken from all that is right of it: inner loops run along rows.
+    std::vector<double> column(n_);
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double pivot = std::sqrt(std::max(lower_[k * n_ + k], least));
+      lower_[k * n_ + k] = column[k] = pivot;
+      for (std::size_t i = k + 1; i < n_; ++i) {
+        double* const row = lower_.data() + i * n_;
+        const double factor = row[k] / pivot;
+        row[k] = column[i] = factor;
+        for (std::size_t j = k + 1; j <= i; ++j) row[j] -= factor * column[j];
       }
     }
   }

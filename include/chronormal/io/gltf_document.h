@@ -87,15 +87,17 @@ struct GltfExtraTarget {
 };
 
 /// How a bake encodes the normals of targets (workflow/bake.h).
-enum class BakeEncoding { kHarmless, kExact, kEndpoint };
+enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
 struct BakeEncodingName {
   BakeEncoding encoding;
   std::string_view name;
 };
-inline constexpr std::array<BakeEncodingName, 3> kBakeEncodings = {
-    {{BakeEncoding::kHarmless, "harmless"}, {BakeEncoding::kExact, "exact"}, {BakeEncoding::kEndpoint, "endpoint"}}};
+inline constexpr std::array<BakeEncodingName, 4> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
+                                                                    {BakeEncoding::kExact, "exact"},
+                                                                    {BakeEncoding::kEndpoint, "endpoint"},
+                                                                    {BakeEncoding::kSmallest, "smallest"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
@@ -107,6 +109,7 @@ struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
   std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
+  bool animations_only = false;         ///< deltas are fitted to the animations of the file, and mean nothing alone
 };
 
 struct GltfMesh {

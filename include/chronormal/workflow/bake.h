@@ -5,6 +5,9 @@
 ///                that is named, and in none of them worse than before (docs/theory.md, section 16)
 ///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
 ///                at every instant in every host that adds up targets
+///     smallest   the smallest of these forms whose errors are within a tolerance: what the file has, deltas of its targets
+///                alone, the extra targets of harmless, or extra targets of low rank that only the animations of the file
+///                drive (docs/theory.md, section 17); nowhere worse than before, as harmless
 ///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
@@ -18,6 +21,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -51,6 +55,14 @@ struct BakeOptions {
   /// Degrees: extra targets whose lack, all together, turns no normal by more are left out, and tracks are cut to this.
   /// Nothing: kHarmlessTolerance, and kExactBakeTolerance of exact.
   std::optional<double> tolerance = {};
+  /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the hosts bear.
+  std::optional<std::size_t> most_targets = {};
+  /// Of smallest: nothing but the animations of the file will ever be played, so that the deltas of the mesh's own
+  /// targets may be fitted to these, and mean nothing alone.
+  bool animations_only = false;
+  /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
+  std::optional<std::size_t> most_delta_bytes = {};
+  bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
@@ -71,6 +83,18 @@ struct HostChange {
   /// In the animations of the file as the host plays them, its standing weights, and each target alone from 0 to 1; in
   /// random poses of 2 to 16 targets; and on the way from one animation to another.
   std::array<Errors, 3> poses;
+};
+
+/// A form of a mesh that --encode smallest looked at.
+struct BakeChoice {
+  std::string_view form;  ///< "as it is", "own deltas", "pairs" or "low rank"
+  std::size_t targets = 0, bytes = 0;
+  /// Along the animations of the file, between its keys, and in its standing weights, or where it has no animation of
+  /// weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  ShownErrors played;
+  std::vector<HostChange> hosts;
+  bool within = false;  ///< its worst is within the tolerance, and it within the limits
+  bool chosen = false;
 };
 
 /// What was done to one mesh.
@@ -95,6 +119,7 @@ struct BakedMesh {
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
   bool already_baked = false;       ///< nothing was changed
   std::vector<HostChange> hosts;    ///< of harmless and endpoint: what each named host shows
+  std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
   std::size_t kept = 0;             ///< different normals that targets move and that keep the deltas of the file
   std::size_t left_out = 0;         ///< extra targets that the hosts have no room for
   /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.

@@ -59,6 +59,9 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
+/// What each form of each mesh would come to, of --encode smallest.
+[[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
+
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_WORKFLOW_JSON_H_

@@ -116,9 +116,10 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   if (version != kVersion && version != kVersionOfFactors)
     view.complain("version", "it was written by another version of chronormal");
   const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
-  if (!encoding) view.complain("encode", "it is none of harmless, exact and endpoint");
+  if (!encoding) view.complain("encode", "it is none of harmless, exact, endpoint and smallest");
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = read_flag(view, value, "sequence");
+  mark.animations_only = read_flag(view, value, "animations_only");
   const std::vector<JsonView> extras = items_of(view, value, "extras");
   if (extras.size() > target_count) {
     view.complain("extras", "there are more of them than targets");
@@ -168,10 +169,10 @@ nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark) {
     for (const auto& term : extra.quadratic) quadratic.push_back(Ordered::array({term.i, term.j, term.q}));
     extras.push_back({{"target", extra.target}, {"linear", std::move(linear)}, {"quadratic", std::move(quadratic)}});
   }
-  return {{"version", kVersion},
-          {"encode", name_of(mark.encoding)},
-          {"sequence", mark.sequence},
-          {"extras", std::move(extras)}};
+  Ordered result = {{"version", kVersion}, {"encode", name_of(mark.encoding)}, {"sequence", mark.sequence}};
+  if (mark.animations_only) result["animations_only"] = true;
+  result["extras"] = std::move(extras);
+  return result;
 }
 
 }  // namespace chronormal::inline internal::gltf

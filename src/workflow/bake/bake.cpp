@@ -21,6 +21,7 @@
 #include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/messages.h"
 #include "workflow/bake/plan.h"
+#include "workflow/bake/smallest_form.h"
 #include "workflow/bake/terms.h"
 #include "workflow/bake/write_mesh.h"
 #include "workflow/bake/write_tracks.h"
@@ -112,24 +113,28 @@ struct MeshDeltas {
 MeshDeltas exact_deltas(const DeltaSource& source) {
   return {[&source](std::size_t i) { return own_target_deltas(source, i); },
           [&source](std::size_t k) { return extra_target_deltas(source, source.plan.extras[k]); },
-          {source.shading.mesh, source.plan.extras, {}, false},
+          {source.shading.mesh, {source.plan.extras, {}, {}, {}}, false},
           true};
 }
 
 // Those of the other encodings, with what there is to say of them.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                          BakedMesh& report) {
-  const bool is_harmless = source.plan.encoding == BakeEncoding::kHarmless;
-  auto chosen = std::make_shared<ChosenForm>(is_harmless ? choose_harmless(source, weights, options)
-                                                         : choose_endpoint(source, weights, options));
+  const auto choose = [&] {
+    if (source.plan.encoding == BakeEncoding::kSmallest) return choose_smallest(source, weights, options);
+    return source.plan.encoding == BakeEncoding::kHarmless ? choose_harmless(source, weights, options)
+                                                           : choose_endpoint(source, weights, options);
+  };
+  auto chosen = std::make_shared<ChosenForm>(choose());
   report.hosts = chosen->hosts;
   report.kept = chosen->kept;
+  report.choices = chosen->choices;
   report.left_out = chosen->left_out;
   report.resampling_error = chosen->track_error * kDegreesPerRadian;
   report.largest_error = chosen->fit_error * kDegreesPerRadian;
   return {[&source, chosen](std::size_t i) { return chosen->own_deltas(source.shading, i); },
           [&source, chosen](std::size_t k) { return chosen->extra_deltas(source.shading, k); },
-          {source.shading.mesh, chosen->weights, chosen->pieces, is_harmless},
+          {source.shading.mesh, chosen->drivers, source.plan.encoding != BakeEncoding::kEndpoint},
           chosen->changes(source.shading)};
 }
 
@@ -160,8 +165,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
                           ? exact_deltas(source)
                           : chosen_deltas(source, weights.value(), options, baked.report);
-  for (std::size_t k = 0; k < deltas.grown.extras.size(); ++k)
-    baked.report.extras.push_back(deltas.grown.extras[k].as_target(mesh.target_count + k));
+  for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k)
+    baked.report.extras.push_back(deltas.grown.drivers.formulas[k].as_target(mesh.target_count + k));
 
   const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
   if (!deltas.is_new && !any_base) return Success{};
@@ -179,12 +184,13 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     step();
     if (Status status = check_size(); !status) return status;
   }
-  for (std::size_t k = 0; k < deltas.grown.extras.size(); ++k) {
+  for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k) {
     writer.append_target(deltas.extra(k));
     if (Status status = check_size(); !status) return status;
   }
-  writer.append_weights(baked.report.extras);
-  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras});
+  writer.append_weights(baked.report.extras, deltas.grown.drivers.rest);
+  baked.report.unmarked_nodes = writer.set_mark(
+      {plan.encoding, false, baked.report.extras, plan.encoding == BakeEncoding::kSmallest && options.animations_only});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.grown = std::move(deltas.grown);
@@ -251,7 +257,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
     if (!baked) return baked.error();
     if (!baked.value()) continue;
     MeshBake& of_mesh = *baked.value();
-    if (!of_mesh.grown.extras.empty()) {
+    if (!of_mesh.grown.drivers.formulas.empty()) {
       grown.push_back(std::move(of_mesh.grown));
       report_of_grown.push_back(result.meshes.size());
     }

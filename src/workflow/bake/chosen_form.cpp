@@ -3,258 +3,19 @@
 #include "workflow/bake/chosen_form.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "core/blocks.h"
-#include "workflow/bake/played_poses.h"
+#include "workflow/bake/form_poses.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
 // Of the tolerance: what straight pieces may leave of it.
 constexpr double kPartOfTracks = 0.25;
-// Poses, as many as these numbers of deltas added up allow.
-constexpr double kSums = 1e9;
-constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
-// Weights of poses that are held: of files with thousands of targets, not all are looked at alone.
-constexpr std::size_t kMostWeights = 8000000;
-constexpr std::size_t kFewestSteps = 3, kMostSteps = 16, kFewestMixed = 8, kMostMixed = 96, kPartOfMixed = 4;
 // Of the errors: what twice as many targets must leave at most.
 constexpr double kBetterByFar = 0.6;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
-
-std::vector<std::size_t> changing_targets(const GltfShading& shading) {
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
-    if (!shading.set.targets[i].vertices.empty() || shading.turns[i]) result.push_back(i);
-  return result;
-}
-
-// What the file stores, other than zero.
-std::vector<VertexVectors> stored_deltas(const GltfShading& shading) {
-  std::vector<VertexVectors> result(shading.normal_deltas.size());
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const std::vector<float>& deltas = shading.normal_deltas[k];
-    for (std::size_t v = 0; 3 * v < deltas.size(); ++v) {
-      const Vec3f delta = {deltas[3 * v], deltas[3 * v + 1], deltas[3 * v + 2]};
-      if (shading.element_of_vertex[v] == GltfShading::kNoElement || delta == Vec3f{}) continue;
-      result[k].vertices.push_back(static_cast<std::uint32_t>(v));
-      result[k].vectors.push_back(delta);
-    }
-  }
-  return result;
-}
-
-// The vertices whose normal a target may turn: by its faces, or by what is stored.
-std::vector<std::uint32_t> judged_vertices(const DeltaSource& source, const std::vector<VertexVectors>& stored) {
-  const GltfShading& shading = source.shading;
-  std::vector<bool> element_moves(shading.groups.size(), false), is_judged(shading.element_of_vertex.size(), false);
-  for (std::size_t i = 0; i < shading.set.targets.size(); ++i) {
-    if (!moves(shading, i)) continue;
-    for (const std::uint32_t e : source.terms.elements(i)) element_moves[e] = true;
-  }
-  for (const VertexVectors& column : stored)
-    for (const std::uint32_t v : column.vertices) is_judged[v] = true;
-  std::vector<std::uint32_t> result;
-  for (std::uint32_t v = 0; v < is_judged.size(); ++v) {
-    const std::uint32_t e = shading.element_of_vertex[v];
-    if (e != GltfShading::kNoElement && (is_judged[v] || element_moves[e])) result.push_back(v);
-  }
-  return result;
-}
-
-// Which of these each target may turn, as they are numbered there.
-std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
-                                                           const std::vector<VertexVectors>& stored,
-                                                           std::span<const std::uint32_t> vertices) {
-  const GltfShading& shading = source.shading;
-  std::vector<std::vector<std::uint32_t>> result(shading.set.targets.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    std::vector<bool> element_moves(shading.groups.size(), false);
-    if (moves(shading, i))
-      for (const std::uint32_t e : source.terms.elements(i)) element_moves[e] = true;
-    for (std::uint32_t n = 0; n < vertices.size(); ++n) {
-      const bool is_turned = element_moves[shading.element_of_vertex[vertices[n]]];
-      if (is_turned || stored[i].at(vertices[n]) != Vec3f{}) result[i].push_back(n);
-    }
-  }
-  return result;
-}
-
-std::vector<bool> new_bases(const DeltaSource& source) {
-  std::vector<bool> result(source.shading.element_of_vertex.size(), false);
-  for (std::size_t i = 0; i < source.base_normals.size(); ++i)
-    if (source.base_normals[i] != source.shading.normals[i]) result[i / 3] = true;
-  return result;
-}
-
-std::vector<const VertexVectors*> columns_of(const std::vector<VertexVectors>& own,
-                                             const std::vector<VertexVectors>& extras = {}) {
-  std::vector<const VertexVectors*> result;
-  for (const VertexVectors& column : own) result.push_back(&column);
-  for (const VertexVectors& column : extras) result.push_back(&column);
-  return result;
-}
-
-std::size_t most_extras(std::span<const Host> hosts, std::size_t targets) {
-  std::size_t most = 10000;
-  for (const Host& host : hosts)
-    if (host.most_targets > 0) most = std::min(most, host.most_targets - std::min(host.most_targets, targets));
-  return most;
-}
-
-FormLengths lengths_for(std::span<const Host> hosts) {
-  const auto adds_up = [](const Host& host) { return host.normals == NormalRule::kSum; };
-  const auto keeps_weights = [](const Host& host) { return host.weight_bits == 32; };
-  if (std::all_of(hosts.begin(), hosts.end(), adds_up)) return FormLengths::kFree;
-  return std::all_of(hosts.begin(), hosts.end(), keeps_weights) ? FormLengths::kOpposite : FormLengths::kUnit;
-}
-
-// Whether two hosts play these tracks alike.
-bool plays_alike(const Host& a, const Host& b, std::span<const WeightTrack> tracks) {
-  if (a.tracks == b.tracks && a.weight_bits == b.weight_bits) return true;
-  return std::all_of(tracks.begin(), tracks.end(), [&](const WeightTrack& track) {
-    const auto is_as_specified = [&](const Host& host) {
-      return PlayedTrack(host, track.keys, track.interpolation, track.targets, {}).is_as_specified();
-    };
-    return is_as_specified(a) && is_as_specified(b);
-  });
-}
-
-// How the poses of one look at a form are taken.
-struct Sampling {
-  std::size_t between_keys = 4, most = kMostPoses;
-  double phase = 0;
-  unsigned seed = kFirstSeed;
-};
-
-std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& weights,
-                               std::span<const DrivingTrack> tracks, std::span<const ExtraWeight> extras,
-                               std::span<const Host> hosts, std::span<const std::vector<std::uint32_t>> numbers,
-                               const Sampling& sampling) {
-  const std::size_t targets = shading.set.targets.size();
-  std::vector<std::size_t> all(hosts.size());
-  for (std::size_t h = 0; h < all.size(); ++h) all[h] = h;
-  std::vector<PoseSet> sets;
-  std::vector<WeightTrack> of_tracks;
-  for (const DrivingTrack& driving : tracks) of_tracks.push_back(driving.track);
-  for (std::size_t h = 0; h < hosts.size() && !tracks.empty(); ++h) {
-    const auto like_me = [&](const PoseSet& set) { return plays_alike(hosts[set.hosts[0]], hosts[h], of_tracks); };
-    const auto found = std::find_if(sets.begin(), sets.end(), like_me);
-    if (found != sets.end()) {
-      found->hosts.push_back(h);
-      continue;
-    }
-    PoseSet& set = sets.emplace_back();
-    set.hosts = {h};
-    for (const DrivingTrack& driving : tracks)
-      add_played_poses(driving, hosts[h], sampling.between_keys, sampling.phase,
-                       std::max<std::size_t>(2, sampling.most / tracks.size()), set.poses);
-  }
-  const std::vector<std::size_t> changing = changing_targets(shading);
-  const std::size_t steps = std::clamp(sampling.most / (changing.size() + 1), kFewestSteps, kMostSteps);
-  sets.push_back({PoseSet::Kind::kFile, all, {}});
-  for (const std::vector<double>& pose : weights.poses) sets.back().poses.push_back(with_extras(pose, extras));
-  const std::size_t room = std::max<std::size_t>(1, kMostWeights / (steps * (targets + extras.size() + 1)));
-  const std::size_t count = std::min(changing.size(), room);
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t i = changing[n * changing.size() / count];
-    if (!numbers[i].empty())
-      sets.push_back(
-          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
-  }
-  const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
-  sets.push_back({PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras, mixed, sampling.seed), {}});
-  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
-  return sets;
-}
-
-// Where the straight line of an extra weight between two keys is farthest from what it should be, in the middle, it is
-// off by a quarter of its second difference; this is what that turns.
-double middle_error(const RightNormals& rights, const WeightTrack& track, const HarmlessForm& form,
-                    std::span<const std::uint32_t> vertices, const VertexColumns& columns,
-                    std::vector<double>& of_gaps) {
-  PoseList middles;
-  std::vector<std::vector<double>> lack;
-  for (std::size_t key = 0; key + 1 < track.size(); ++key) {
-    std::vector<double> from(track.targets), to(track.targets), middle(track.targets);
-    for (std::size_t i = 0; i < track.targets; ++i) {
-      from[i] = track.value(key, i);
-      to[i] = track.value(key + 1, i);
-      middle[i] = (from[i] + to[i]) / 2;
-    }
-    const std::vector<double> at_start = with_extras(from, form.weights), at_end = with_extras(to, form.weights);
-    middles.push_back(with_extras(middle, form.weights));
-    std::vector<double>& missing = lack.emplace_back(middles.back().size(), 0.0);
-    for (std::size_t c = track.targets; c < missing.size(); ++c)
-      missing[c] = (at_start[c] + at_end[c]) / 2 - middles.back()[c];
-  }
-  std::vector<std::atomic<float>> worst(middles.size());
-  rights.for_each(vertices, middles, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
-    const Vec3d stored = rights.stored(vertices[n]);
-    for (std::size_t p = 0; p < right.size(); ++p) {
-      if (right[p] == Vec3f{}) continue;
-      Vec3d shown = stored, off;
-      for (const auto& [column, delta] : columns.of(n)) {
-        const double w = middles[first + p][column], q = lack[first + p][column];
-        if (w != 0) shown = shown + w * to_double(delta);
-        if (q != 0) off = off + q * to_double(delta);
-      }
-      if (off == Vec3d{}) continue;
-      const auto angle = static_cast<float>(angle_between(shown, shown + off));
-      std::atomic<float>& most = worst[first + p];
-      for (float known = most; known < angle && !most.compare_exchange_weak(known, angle);) continue;
-    }
-  });
-  of_gaps.assign(worst.begin(), worst.end());
-  return of_gaps.empty() ? 0 : *std::max_element(of_gaps.begin(), of_gaps.end());
-}
-
-// Cuts the gaps of a track until straight pieces are near enough, and says what they leave.
-std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, const HarmlessForm& form,
-                                     std::span<const std::uint32_t> vertices, const VertexColumns& columns,
-                                     double tolerance, double& left) {
-  std::vector<double> of_gaps;
-  (void)middle_error(rights, track, form, vertices, columns, of_gaps);
-  const double most = std::clamp(static_cast<double>(kMostKeys) / static_cast<double>(track.size()), 1.0,
-                                 static_cast<double>(kMostPieces));
-  std::vector<std::uint32_t> pieces;
-  for (const double error : of_gaps) {
-    const double count = std::clamp(std::ceil(std::sqrt(error / tolerance)), 1.0, std::floor(most));
-    pieces.push_back(static_cast<std::uint32_t>(count));
-    left = std::fmax(left, error / (count * count));
-  }
-  return pieces;
-}
-
-// The tracks of a mesh as they will be written.
-std::vector<DrivingTrack> written_tracks(const MeshWeights& weights, std::span<const ExtraWeight> extras,
-                                         const TrackPieces& pieces) {
-  std::vector<DrivingTrack> result;
-  for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
-    const WeightTrack& track = weights.tracks[t];
-    const auto cut = pieces.find(weights.names[t]);
-    const ExtendedTrack extended = cut != pieces.end()
-                                       ? straight_track(track, extras, cut->second)
-                                       : extended_track(track, extras, std::numeric_limits<double>::infinity());
-    result.push_back({as_track(track, extended, extras.size()), weights.ranges[t]});
-  }
-  return result;
-}
-
-// How many poses may be looked at.
-std::size_t enough_poses(const GltfShading& shading, std::span<const VertexColumns> forms) {
-  constexpr std::size_t kOfVertex = 10, kOfCorner = 6;
-  std::size_t of_pose = 1 + kOfCorner * shading.set.topology.corner_count();
-  for (const VertexColumns& form : forms) of_pose += kOfVertex * form.first.size() + form.entries.size();
-  const std::size_t most = std::min(kMostPoses, kMostWeights / (1 + shading.set.targets.size()));
-  return std::clamp(static_cast<std::size_t>(kSums / static_cast<double>(of_pose)), kLeastPoses,
-                    std::max(kLeastPoses, most));
-}
 
 // The forms with extra targets: those of each target alone, or all.
 enum Choice : std::uint8_t { kStored, kEnds, kSelf, kAll };
@@ -262,31 +23,24 @@ enum Choice : std::uint8_t { kStored, kEnds, kSelf, kAll };
 bool is_of_one(const ExtraWeight& weight) { return weight.i == weight.j; }
 
 // Keeps of the extra targets those that some vertex takes part in.
-void drop_unused(std::span<const std::uint32_t> vertices, std::span<const std::uint8_t> choice, HarmlessForm& form) {
+void drop_unused(std::span<const std::uint32_t> vertices, std::span<const std::uint8_t> choice, HarmlessForm& form,
+                 ExtraDrivers& drivers) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < form.extras.size(); ++k) {
     VertexVectors used;
     const VertexVectors& all = form.extras[k];
     for (std::size_t n = 0, at = 0; n < all.vertices.size(); ++n) {
       while (vertices[at] < all.vertices[n]) ++at;
-      if (choice[at] != kAll && !(choice[at] == kSelf && is_of_one(form.weights[k]))) continue;
+      if (choice[at] != kAll && !(choice[at] == kSelf && is_of_one(drivers.formulas[k]))) continue;
       used.vertices.push_back(all.vertices[n]);
       used.vectors.push_back(all.vectors[n]);
     }
     if (used.vertices.empty()) continue;
     form.extras[kept] = std::move(used);
-    form.weights[kept++] = form.weights[k];
+    drivers.formulas[kept++] = drivers.formulas[k];
   }
   form.extras.resize(kept);
-  form.weights.resize(kept);
-}
-
-std::size_t kept_elements(const GltfShading& shading, std::span<const std::uint32_t> vertices,
-                          std::span<const std::uint8_t> choice) {
-  std::vector<bool> is_kept(shading.groups.size(), false);
-  for (std::size_t n = 0; n < vertices.size(); ++n)
-    if (choice[n] == 0) is_kept[shading.element_of_vertex[vertices[n]]] = true;
-  return static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
+  drivers.formulas.resize(kept);
 }
 
 std::vector<std::vector<float>> of_parts(const GltfShading& shading, const std::vector<float>& all) {
@@ -304,25 +58,6 @@ void set_vector(std::vector<float>& all, std::size_t vertex, const Vec3f& vector
   VectorView<float>::packed(all.data(), all.size() / 3).set(vertex, vector);
 }
 
-// The deltas of all targets, and the largest error that they are stated with.
-std::vector<VertexVectors> endpoint_deltas(const DeltaSource& source, double& error) {
-  std::vector<VertexVectors> result(source.shading.set.targets.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const TargetDeltas deltas = own_target_deltas(source, i);
-    error = std::fmax(error, deltas.error);
-    for (std::size_t p = 0; p < deltas.of_parts.size(); ++p) {
-      const std::vector<float>& all = deltas.of_parts[p];
-      for (std::size_t v = 0; 3 * v < all.size(); ++v) {
-        const Vec3f delta = {all[3 * v], all[3 * v + 1], all[3 * v + 2]};
-        if (delta == Vec3f{}) continue;
-        result[i].vertices.push_back(static_cast<std::uint32_t>(source.shading.parts[p].first_vertex + v));
-        result[i].vectors.push_back(delta);
-      }
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 const std::vector<VertexVectors>& ChosenForm::own_of(std::uint8_t form) const {
@@ -330,10 +65,41 @@ const std::vector<VertexVectors>& ChosenForm::own_of(std::uint8_t form) const {
 }
 
 bool ChosenForm::changes(const GltfShading& shading) const {
-  if (!weights.empty()) return true;
+  if (drivers.size() > 0) return true;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
     if (own_deltas(shading, i)) return true;
   return false;
+}
+
+VertexColumns ChosenForm::columns(const GltfShading& shading) const {
+  std::vector<VertexVectors> own(shading.set.targets.size());
+  const std::vector<VertexVectors> stored = stored_deltas(shading);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t n = 0; n < vertices_.size(); ++n) {
+      const Vec3f delta = (choice_[n] > 0 ? own_of(choice_[n]) : stored)[i].at(vertices_[n]);
+      if (delta == Vec3f{}) continue;
+      own[i].vertices.push_back(vertices_[n]);
+      own[i].vectors.push_back(delta);
+    }
+  }
+  return by_vertex(columns_of(own, extras_), vertices_);
+}
+
+std::size_t ChosenForm::bytes(const GltfShading& shading) const {
+  constexpr std::size_t kVector = 12, kIndex = 4;
+  std::size_t total = 0;
+  const auto add = [&](const TargetDeltas& deltas) {
+    for (const std::vector<float>& of_part : deltas.of_parts) {
+      std::size_t used = 0;
+      for (std::size_t n = 0; n < of_part.size(); n += 3)
+        used += of_part[n] != 0 || of_part[n + 1] != 0 || of_part[n + 2] != 0 ? std::size_t{1} : 0;
+      total += std::min(sizeof(float) * of_part.size(), used * (kVector + kIndex));
+    }
+  };
+  for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
+    if (const std::optional<TargetDeltas> deltas = own_deltas(shading, i)) add(*deltas);
+  for (std::size_t k = 0; k < extras_.size(); ++k) add(extra_deltas(shading, k));
+  return total;
 }
 
 std::optional<TargetDeltas> ChosenForm::own_deltas(const GltfShading& shading, std::size_t target) const {
@@ -364,7 +130,7 @@ ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weigh
   const std::span<const Host> hosts = options.hosts;
   const std::size_t targets = shading.set.targets.size();
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
-  const HarmlessLimits limits{lengths, most_extras(hosts, targets), tolerance};
+  const HarmlessLimits limits{lengths, most_extras(options, targets), tolerance};
 
   ChosenForm result;
   const std::vector<VertexVectors> stored = stored_deltas(shading);
@@ -389,22 +155,27 @@ ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weigh
     if (!is_of_one(form.weights[k])) of_one[targets + k] = &none;
   forms.push_back(by_vertex(of_one, vertices));
   forms.push_back(by_vertex(all, vertices));
+  ExtraDrivers& drivers = result.drivers;
+  drivers.formulas = std::move(form.weights);
+  const auto extras_at = [&](std::size_t, double, std::span<const double> own, std::span<double> of_extras) {
+    for (std::size_t k = 0; k < of_extras.size(); ++k)
+      of_extras[k] = drivers.formulas[k].at(own[drivers.formulas[k].i], own[drivers.formulas[k].j]);
+  };
   for (std::size_t t = 0; t < weights.tracks.size() && !form.extras.empty(); ++t) {
     if (weights.tracks[t].interpolation != GltfInterpolation::kLinear) continue;
-    result.pieces[weights.names[t]] = pieces_of(rights, weights.tracks[t], form, vertices, forms[2],
-                                                kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
+    drivers.pieces[weights.names[t]] =
+        pieces_of(rights, weights.tracks[t], form.extras.size(), extras_at, vertices, forms[2],
+                  kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
   }
   const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
-    return pose_sets(shading, weights, written_tracks(weights, form.weights, result.pieces), form.weights, hosts,
-                     numbers, sampling);
+    return pose_sets(shading, weights, drivers, hosts, numbers, sampling);
   };
   const std::size_t most = enough_poses(shading, forms);
-  result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), false);
+  result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), FormPreference::kNearest);
   result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed}), result.choice_);
-  drop_unused(vertices, result.choice_, form);
+  drop_unused(vertices, result.choice_, form, drivers);
   result.kept = kept_elements(shading, vertices, result.choice_);
-  result.weights = std::move(form.weights);
   result.extras_ = std::move(form.extras);
   result.own_of_form_.push_back(std::move(form.own));
   return result;
@@ -414,7 +185,7 @@ ChosenForm choose_harmless(const DeltaSource& source, const MeshWeights& weights
   const FormLengths lengths = lengths_for(options.hosts);
   if (lengths != FormLengths::kOpposite) return choose_of_lengths(source, weights, options, lengths);
   ChosenForm unit = choose_of_lengths(source, weights, options, FormLengths::kUnit);
-  if (unit.weights.empty()) return unit;
+  if (unit.drivers.size() == 0) return unit;
   ChosenForm opposite = choose_of_lengths(source, weights, options, FormLengths::kOpposite);
   const auto error = [](const ChosenForm& form) {
     double sum = 0;
@@ -451,12 +222,11 @@ ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, options.hosts, is_binding,
                         options.tolerance.value_or(kHarmlessTolerance));
   const std::size_t most = enough_poses(shading, forms);
-  const std::vector<DrivingTrack> tracks = written_tracks(weights, {}, {});
   const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
-    return pose_sets(shading, weights, tracks, {}, options.hosts, numbers, sampling);
+    return pose_sets(shading, weights, {}, options.hosts, numbers, sampling);
   };
-  result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), true);
+  result.choice_ = judge.choose(forms, sets({4, most, 0, kFirstSeed}), FormPreference::kLast);
   result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed}), result.choice_);
   result.kept = kept_elements(shading, vertices, result.choice_);
   const bool is_last_form = std::all_of(result.choice_.begin(), result.choice_.end(),

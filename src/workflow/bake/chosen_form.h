@@ -10,31 +10,34 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/deltas.h"
+#include "workflow/bake/extra_curves.h"
 #include "workflow/bake/harmless_form.h"
 #include "workflow/bake/host_judge.h"
 #include "workflow/bake/mesh_weights.h"
 
 namespace chronormal::inline internal {
 
-/// How many pieces each gap between two keys of a LINEAR track is cut into.
-using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
-
 class ChosenForm {
  public:
-  std::vector<ExtraWeight> weights;  ///< of extra targets
-  TrackPieces pieces;
-  std::vector<HostChange> hosts;  ///< of those that are named
-  std::size_t kept = 0;           ///< different normals that keep what is stored, though targets move them
-  std::size_t left_out = 0;       ///< extra targets beyond the limit of the hosts
-  double track_error = 0;         ///< radians: of straight pieces between keys, at worst
-  double fit_error = 0;           ///< radians: a bound for the deltas of targets alone, of endpoint
+  ExtraDrivers drivers;             ///< of extra targets
+  std::vector<HostChange> hosts;    ///< of those that are named
+  std::size_t kept = 0;             ///< different normals that keep what is stored, though targets move them
+  std::size_t left_out = 0;         ///< extra targets beyond the limit of the hosts
+  double track_error = 0;           ///< radians: of straight pieces between keys, at worst
+  double fit_error = 0;             ///< radians: a bound for the deltas of targets alone, of endpoint
+  std::vector<BakeChoice> choices;  ///< of smallest: what was looked at
 
+  /// What is written for each of the judged vertices.
+  [[nodiscard]] VertexColumns columns(const GltfShading& shading) const;
+  [[nodiscard]] std::span<const std::uint32_t> judged() const { return vertices_; }
+  /// About how many bytes the arrays of deltas take.
+  [[nodiscard]] std::size_t bytes(const GltfShading& shading) const;
   /// Whether anything becomes other than it is stored.
   [[nodiscard]] bool changes(const GltfShading& shading) const;
   /// The deltas of a target of the mesh; nothing where all of them stay as they are.
@@ -45,6 +48,9 @@ class ChosenForm {
  private:
   friend ChosenForm choose_of_lengths(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths);
   friend ChosenForm choose_endpoint(const DeltaSource&, const MeshWeights&, const BakeOptions&);
+  friend ChosenForm keep_stored(const DeltaSource&);
+  friend ChosenForm choose_low_rank(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths,
+                                    std::size_t);
 
   // The deltas of the mesh's own targets in a form other than the stored one.
   [[nodiscard]] const std::vector<VertexVectors>& own_of(std::uint8_t form) const;

@@ -175,10 +175,11 @@ struct GatheredPairs {
 };
 
 // Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
-// those that grew into the upper half of what 99.9 % were below, since other poses would find more of them.
+// those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where 99.9 %
+// are now below that half, there is room for these, but not for what grew beyond the worst.
 void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
   const ShownErrors then = before.spread().errors(), now = after.spread().errors();
-  const double high = std::fmax(then.most / 2, tolerance);
+  const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.worst, tolerance);
   for (std::size_t n = 0; n < noted.size(); ++n) {
     const bool grew = after.worst[n] > before.worst[n] && static_cast<double>(after.worst[n]) > high;
     if (grew || (now.mean > then.mean && after.sum[n] > before.sum[n])) noted[n] = 1;
@@ -301,12 +302,14 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
 }
 
 std::vector<std::uint8_t> HostJudge::choose(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
-                                            bool prefers_last) const {
+                                            FormPreference preference) const {
   const std::size_t count = vertices_.size(), form_count = forms.size();
   std::vector<char> is_harmful(count * form_count, 0);
   std::vector<float> squares(count * form_count, 0.0F);
+  const bool prefers_last = preference == FormPreference::kLast;
   for (const PoseSet& set : sets) {
     const bool is_mixed = set.kind != PoseSet::Kind::kFile;
+    if (is_mixed && preference == FormPreference::kNearestInFile) continue;
     std::vector<Kind> kinds = kinds_of(set);
     kinds.erase(std::remove_if(kinds.begin(), kinds.end(), [](const Kind& kind) { return !kind.is_binding; }),
                 kinds.end());

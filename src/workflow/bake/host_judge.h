@@ -68,6 +68,13 @@ struct PoseSet {
   std::vector<std::uint32_t> numbers = {};  ///< of the vertices that these poses move, ascending; none: all of them
 };
 
+/// Which of the harmless forms a vertex gets.
+enum class FormPreference {
+  kNearest,        ///< by the sum of squares over all poses
+  kNearestInFile,  ///< the same over those of the file
+  kLast            ///< the last that is nearer than what is stored
+};
+
 class HostJudge {
  public:
   /// The vertices that are judged, with their elements, and whether each has a new base normal, so that there is no stored
@@ -79,10 +86,9 @@ class HostJudge {
   /// The largest error of one form over some poses for each vertex, in a host that adds up what is stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& form, const PoseList& poses) const;
 
-  /// Chooses a form for each vertex, the same for all of one element: the nearest, or the last that is nearer than what is
-  /// stored.
+  /// Chooses a harmless form for each vertex, the same for all of one element.
   [[nodiscard]] std::vector<std::uint8_t> choose(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
-                                                 bool prefers_last) const;
+                                                 FormPreference preference) const;
 
   /// Measures the chosen forms against the stored ones, host by host. Elements whose form is not harmless in these poses,
   /// and where mixed poses as a whole are worse, those that make them so, get the stored form.

@@ -25,6 +25,7 @@ std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
 }  // namespace
 
 std::string name_of_extra(const GltfExtraTarget& extra) {
+  if (extra.quadratic.empty() && extra.linear.empty()) return "chronormal of the animations";
   if (extra.quadratic.empty()) return "chronormal w" + std::to_string(extra.linear.front().i);
   const auto& [i, j, q] = extra.quadratic.front();
   std::string name("chronormal w");
@@ -96,7 +97,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
   }
-  if (!is_harmless) {
+  if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;
     for (const Host& host : options.hosts)
       if (host.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(host.title);

@@ -23,12 +23,6 @@ std::vector<double> mixed(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
-std::vector<double> with_extras(std::vector<double> own, std::span<const ExtraWeight> extras) {
-  own.reserve(own.size() + extras.size());
-  for (const ExtraWeight& extra : extras) own.push_back(extra.at(own[extra.i], own[extra.j]));
-  return own;
-}
-
 void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t between_keys, double phase,
                       std::size_t most, PoseList& poses) {
   const WeightTrack& track = driving.track;

@@ -11,15 +11,13 @@
 #include <vector>
 
 #include "chronormal/workflow/hosts.h"
+#include "workflow/bake/extra_curves.h"
 #include "workflow/bake/right_normals.h"
 #include "workflow/bake/tracks.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {
-
-/// The same pose with the weights of extra targets behind it.
-[[nodiscard]] std::vector<double> with_extras(std::vector<double> own, std::span<const ExtraWeight> extras);
 
 /// A track that drives a mesh, with the weights of extra targets.
 struct DrivingTrack {

@@ -20,9 +20,14 @@ RightNormals::RightNormals(const GltfShading& shading, const NormalTerms& terms,
       terms_(terms),
       base_normals_(base_normals),
       largest_(largest),
-      base_lengths_(shading.groups.size()) {
-  parallel_each(base_lengths_.size(), kBlock,
-                [&](std::size_t e) { base_lengths_[e] = length(terms_.base_of(static_cast<std::uint32_t>(e))); });
+      base_(shading.groups.size()),
+      base_lengths_(base_.size()),
+      all_elements_(base_.size()) {
+  parallel_each(base_.size(), kBlock, [&](std::size_t e) {
+    base_[e] = terms_.base_of(static_cast<std::uint32_t>(e));
+    base_lengths_[e] = length(base_[e]);
+    all_elements_[e] = static_cast<std::uint32_t>(e);
+  });
 }
 
 RightNormals::Places::Places(const GltfShading& shading, std::span<const std::uint32_t> vertices) {
@@ -38,7 +43,7 @@ RightNormals::Places::Places(const GltfShading& shading, std::span<const std::ui
 
 RightNormals::Turn::Turn(const RightNormals& rights, std::size_t vertex) noexcept {
   const Vec3d stored = rights.stored(vertex);
-  const Vec3d base = rights.terms_.base_of(rights.shading_.element_of_vertex[vertex]);
+  const Vec3d base = rights.base_[rights.shading_.element_of_vertex[vertex]];
   x_ = shown_direction(stored, base, {1, 0, 0});
   y_ = shown_direction(stored, base, {0, 1, 0});
   z_ = shown_direction(stored, base, {0, 0, 1});
@@ -53,6 +58,10 @@ Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& by_area, const Ve
   const double of_base = base_lengths_[element], size = length(by_area);
   if (!(size > kLeastLength * std::max(of_base, largest_[element]))) return {};
   return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(direction);
+}
+
+std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const {
+  return of_elements(pose, all_elements_);
 }
 
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
@@ -72,7 +81,7 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
 Vec3d RightNormals::of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept {
   if (of_element == Vec3d{}) return {};
   const std::uint32_t element = shading_.element_of_vertex[vertex];
-  return length(of_element) * shown_direction(stored(vertex), terms_.base_of(element), of_element);
+  return length(of_element) * shown_direction(stored(vertex), base_[element], of_element);
 }
 
 }  // namespace chronormal::inline internal

@@ -30,7 +30,8 @@ class RightNormals {
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
   /// The stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Of some elements, before an author's own turn of the base. O(vertices + elements)
+  /// Of all elements or some of them, before an author's own turn of the base. O(vertices + elements)
+  [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
   /// What a vertex should show where that of its element is given.
@@ -86,7 +87,9 @@ class RightNormals {
   const NormalTerms& terms_;
   std::span<const float> base_normals_;
   const std::vector<double>& largest_;
-  std::vector<double> base_lengths_;  // of n(0) of each element
+  std::vector<Vec3d> base_;           // n(0) of each element: many ask for it
+  std::vector<double> base_lengths_;  // and how long it is
+  std::vector<std::uint32_t> all_elements_;
 };
 
 }  // namespace chronormal::inline internal

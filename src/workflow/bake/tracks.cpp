@@ -249,23 +249,31 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeig
 
 ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                              std::span<const std::uint32_t> pieces, std::size_t most_keys) {
+  const auto extras_at = [&](std::size_t, double, std::span<const double> own, std::span<double> weights) {
+    for (std::size_t k = 0; k < extras.size(); ++k) weights[k] = extras[k].at(own[extras[k].i], own[extras[k].j]);
+  };
+  return straight_track(track, extras.size(), extras_at, pieces, most_keys);
+}
+
+ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, const ExtrasAt& extras_at,
+                             std::span<const std::uint32_t> pieces, std::size_t most_keys) {
   ExtendedTrack result;
   result.interpolation = GltfInterpolation::kLinear;
   result.keys = track.size();
   for (const std::uint32_t count : pieces) result.keys += count - 1;
   if (result.keys > most_keys) return result;
   std::vector<float> times;
-  const auto add_key = [&](float time, const std::vector<double>& weights) {
+  std::vector<double> weights(track.targets), of_extras(extra_count);
+  const auto add_key = [&](float time, std::size_t key, double part) {
     times.push_back(time);
     for (const double weight : weights) result.values.push_back(to_file(weight));
-    for (const ExtraWeight& extra : extras)
-      result.values.push_back(to_file(extra.at(weights[extra.i], weights[extra.j])));
+    extras_at(key, part, weights, of_extras);
+    for (const double weight : of_extras) result.values.push_back(to_file(weight));
   };
-  std::vector<double> weights(track.targets);
   for (std::size_t key = 0; key < track.size(); ++key) {
     const double from = track.keys.times[key];
     for (std::size_t i = 0; i < track.targets; ++i) weights[i] = track.value(key, i);
-    add_key(static_cast<float>(from), weights);
+    add_key(static_cast<float>(from), key, 0);
     if (key + 1 == track.size()) break;
     const double to = track.keys.times[key + 1];
     for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
@@ -275,7 +283,7 @@ ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeig
       const double t = (static_cast<double>(time) - from) / (to - from);
       for (std::size_t i = 0; i < track.targets; ++i)
         weights[i] = (1 - t) * track.value(key, i) + t * track.value(key + 1, i);
-      add_key(time, weights);
+      add_key(time, key, t);
     }
   }
   result.keys = times.size();

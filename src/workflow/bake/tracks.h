@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -53,6 +54,15 @@ inline constexpr std::size_t kBytesPerWeight = 48;
 /// keys. Where that takes more than most_keys, the result has no values, but says how many it would have.
 /// pieces must have one number for each pair of neighbouring keys, none of them 0
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
+                                           std::span<const std::uint32_t> pieces,
+                                           std::size_t most_keys = std::numeric_limits<std::size_t>::max());
+
+/// Writes the weights of extra targets at a part of the gap after a key, where those of the mesh's own are given.
+using ExtrasAt =
+    std::function<void(std::size_t key, double part, std::span<const double> own, std::span<double> extras)>;
+
+/// The same with weights that a function gives.
+[[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, const ExtrasAt& extras_at,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 

@@ -105,15 +105,16 @@ void MeshWriter::append_target(const TargetDeltas& deltas) {
   }
 }
 
-void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras) {
-  const auto append = [&](const std::string& pointer, const std::vector<double>& weights) {
-    for (const GltfExtraTarget& extra : extras) edit_.append(pointer, weight_text(extra.weight(weights)));
+void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest) {
+  const auto append = [&](const std::string& pointer, const std::vector<double>& weights, std::size_t pose) {
+    for (std::size_t k = 0; k < extras.size(); ++k)
+      edit_.append(pointer, weight_text(rest.empty() ? extras[k].weight(weights) : rest[pose][k]));
   };
-  if (edit_.has(pointer_ + "/weights")) append(pointer_ + "/weights", mesh_.weights);
-  for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
+  if (edit_.has(pointer_ + "/weights")) append(pointer_ + "/weights", mesh_.weights, 0);
+  for (std::size_t n = 0, pose = 0; n < document_.nodes().size(); ++n) {
     const GltfNode& node = document_.nodes()[n];
     if (node.mesh == shading_.mesh && !node.weights.empty())
-      append(std::string("/nodes/").append(std::to_string(n)).append("/weights"), node.weights);
+      append(std::string("/nodes/").append(std::to_string(n)).append("/weights"), node.weights, ++pose);
   }
   if (mesh_.target_names.empty()) return;
   // Each name once: PlayCanvas finds targets by it.

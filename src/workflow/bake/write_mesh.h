@@ -12,6 +12,7 @@
 
 #include "chronormal/io/gltf_edit.h"
 #include "workflow/bake/deltas.h"
+#include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {
 
@@ -46,8 +47,9 @@ class MeshWriter {
   void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas);
   /// Adds a target that moves no vertex.
   void append_target(const TargetDeltas& deltas);
-  /// Gives weights and names to the targets that were appended.
-  void append_weights(std::span<const GltfExtraTarget> extras);
+  /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,
+  /// as MeshWeights has these, where no formula gives them.
+  void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
   /// Writes down what was done (docs/extras.md): in the mesh, where the next bake and an audit look for it, and where
   /// there are extra targets, in the nodes that carry the mesh, for hosts that hand on the extras of nodes alone. Returns
   /// the nodes whose extras are no object, which stay as they are.

@@ -160,14 +160,6 @@ class TrackWriter {
     return found == place_of_mesh_.end() ? nullptr : &found->second;
   }
 
-  [[nodiscard]] ExtendedTrack extended_by(const GrownMesh& mesh, const TrackName& name, const WeightTrack& track,
-                                          std::size_t most_keys) const {
-    const auto cut = mesh.pieces.find(name);
-    if (cut != mesh.pieces.end()) return straight_track(track, mesh.extras, cut->second, most_keys);
-    const double tolerance = mesh.keeps_kind ? std::numeric_limits<double>::infinity() : tolerance_;
-    return extended_track(track, mesh.extras, tolerance, most_keys);
-  }
-
   Result<Sampler> extended_sampler(std::size_t a, std::size_t t, std::size_t sampler, std::size_t place) {
     const GltfTrack& track = document_.animations()[a].tracks[t];
     const auto [found, is_new] = samplers_.try_emplace({a, track.same_keys_as, place});
@@ -176,11 +168,13 @@ class TrackWriter {
       if (!keys) return keys.error();
       const WeightTrack weights{track.interpolation, std::move(keys).value(),
                                 document_.meshes()[meshes_[place].mesh].target_count};
-      const std::uint64_t bytes_per_key = kBytesPerWeight * (weights.targets + meshes_[place].extras.size());
+      const std::uint64_t bytes_per_key = kBytesPerWeight * (weights.targets + meshes_[place].drivers.size());
       const Expansion expansion = document_.expansion();
       const std::size_t most_keys =
           (expansion.most() - std::min(expansion.most(), edit_.added_bytes())) / bytes_per_key;
-      const ExtendedTrack extended = extended_by(meshes_[place], {a, track.same_keys_as}, weights, most_keys);
+      const double tolerance = meshes_[place].keeps_kind ? std::numeric_limits<double>::infinity() : tolerance_;
+      const ExtendedTrack extended =
+          meshes_[place].drivers.extended({a, track.same_keys_as}, weights, tolerance, most_keys);
       if (extended.keys > most_keys)
         return expansion
             .check(edit_.added_bytes() + bytes_per_key * extended.keys, item(document_.name() + ", /animations", a))

@@ -9,16 +9,14 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_edit.h"
-#include "workflow/bake/chosen_form.h"
-#include "workflow/bake/tracks.h"
+#include "workflow/bake/extra_curves.h"
 
 namespace chronormal::inline internal {
 
 /// A mesh that got extra targets, one at least.
 struct GrownMesh {
   std::size_t mesh = 0;
-  std::vector<ExtraWeight> extras;
-  TrackPieces pieces;       ///< of its LINEAR tracks, where these stay LINEAR
+  ExtraDrivers drivers;
   bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
 };
 

@@ -29,9 +29,9 @@ Json shown_json(const ShownErrors& errors) {
   return {{"mean_degrees", errors.mean}, {"most_degrees", errors.most}, {"worst_degrees", errors.worst}};
 }
 
-Json hosts_json(const BakedMesh& mesh) {
+Json hosts_json(const std::vector<HostChange>& changes) {
   Json hosts = Json::array();
-  for (const HostChange& change : mesh.hosts) {
+  for (const HostChange& change : changes) {
     Json host = {{"host", change.host}};
     for (std::size_t k = 0; k < kPoses.size(); ++k) {
       const auto& [before, after] = change.poses[k];
@@ -41,6 +41,20 @@ Json hosts_json(const BakedMesh& mesh) {
     hosts.push_back(std::move(host));
   }
   return hosts;
+}
+
+Json choices_json(const BakedMesh& mesh) {
+  Json choices = Json::array();
+  for (const BakeChoice& choice : mesh.choices) {
+    choices.push_back({{"form", choice.form},
+                       {"targets", choice.targets},
+                       {"bytes", choice.bytes},
+                       {"played", shown_json(choice.played)},
+                       {"hosts", hosts_json(choice.hosts)},
+                       {"within", choice.within},
+                       {"chosen", choice.chosen}});
+  }
+  return choices;
 }
 
 Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
@@ -68,7 +82,8 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
           {"fitted_normals", mesh.fitted_elements},
           {"kept_normals", mesh.kept},
           {"left_out_targets", mesh.left_out},
-          {"hosts", hosts_json(mesh)},
+          {"hosts", hosts_json(mesh.hosts)},
+          {"choices", choices_json(mesh)},
           {"target_fit_degrees", mesh.largest_error},
           {"track_fit_degrees", mesh.resampling_error},
           {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
@@ -96,6 +111,18 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
   json["warnings"] = bake.warnings;
   json["drivers"] = or_null(report.drivers_file);
   add_audit(report, json);
+  return json_text(json);
+}
+
+std::string plan_json(const GltfBake& bake, const BakeReport& report) {
+  Json json = json_of_command("bake");
+  json["input"] = {{"name", report.input}};
+  json["plan"] = true;
+  Json meshes = Json::array();
+  for (const BakedMesh& mesh : bake.meshes)
+    meshes.push_back({{"mesh", mesh.mesh}, {"name", mesh.name}, {"choices", choices_json(mesh)}});
+  json["meshes"] = std::move(meshes);
+  json["warnings"] = bake.warnings;
   return json_text(json);
 }
 
