@@ -33,6 +33,7 @@
 #include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
+#include "chronormal/io/bake_mark.h"       // what a bake leaves in a glTF file about itself
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
 #include "chronormal/io/expansion.h"       // how much a file may make us hold or write
 #include "chronormal/io/gltf_document.h"   // glTF 2.0 files: what is in them, and their meshes as arrays

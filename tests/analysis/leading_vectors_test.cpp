@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace chronormal {
+namespace chronormal::leading_vectors_test {
 namespace {
 
 // A matrix with these eigenvalues, and its eigenvectors as rows: products of reflections keep them orthonormal.
@@ -76,4 +76,4 @@ TEST(LeadingVectors, of_a_zero_matrix_are_zero_and_of_more_columns_than_it_has_t
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::leading_vectors_test

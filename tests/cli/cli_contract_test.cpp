@@ -190,6 +190,7 @@ const std::map<std::string, std::string> kUses = {
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
     {"--allow-external", "face.glb --allow-external"},
     {"--animation", "face.glb --animation 0"},
+    {"--animations-only", "face.glb --encode smallest --animations-only"},
     {"--base", "--base a.obj b.obj"},
     {"--blend", "--base a.obj b.obj --blend 2"},
     {"--crease", "a.obj b.obj --elements corners --crease 30"},
@@ -203,6 +204,7 @@ const std::map<std::string, std::string> kUses = {
     {"--for", "face.glb --for three"},
     {"--force", "a.obj b.obj --force"},
     {"--format", "a.obj b.obj --format npy"},
+    {"--errors", "a.obj b.obj --errors errors.npz"},
     {"--fps", "a.obj b.obj --fps 24"},
     {"--hard-edges", "a.obj b.obj --elements corners --hard-edges groups"},
     {"--help", "--help"},
@@ -211,11 +213,13 @@ const std::map<std::string, std::string> kUses = {
     {"--length", "a.obj b.obj --length area"},
     {"--max-bytes", "face.glb --max-bytes 100000"},
     {"--max-expansion", "a.obj b.obj --max-expansion 5"},
+    {"--max-targets", "face.glb --encode smallest --max-targets 9"},
     {"--no-audit", "face.glb --no-audit"},
     {"--no-times", "a.obj b.obj --no-times"},
     {"--no-weld", "a.obj b.obj --no-weld"},
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
     {"--output", "a.obj b.obj"},
+    {"--plan", "face.glb --encode smallest --plan"},
     {"--quiet", "a.obj b.obj --quiet"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"--rule", "a.obj b.obj --rule slerp"},
@@ -266,7 +270,7 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
       const ProcessResult result = run(command + " " + use->second + needs_of(command, use->second));
       EXPECT_TRUE(result.exit_code == 0 || (name == "--tolerance" && result.exit_code == 4)) << result.err;
-      for (const char* const file : {"out.txt", "out.glb", "out.npz", "out.npy", "drivers.json"})
+      for (const char* const file : {"out.txt", "out.glb", "out.npz", "out.npy", "drivers.json", "errors.npz"})
         fs::remove(folder_ / file);
     }
   }

@@ -3,9 +3,9 @@
 /// Opening a document maps the file and reads its JSON, nothing else; geometry and tracks are read when they are asked
 /// for, so that the cost is that of what is asked for. All of the format that concerns normals over time is understood:
 /// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
-/// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression and
-/// KHR_draco_mesh_compression, KHR_animation_pointer. What is read is checked, strictly by the specification; what is not read (materials,
-/// textures, skins, the bounds of accessors) is not.
+/// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression,
+/// KHR_draco_mesh_compression and KHR_animation_pointer. What is read is checked, strictly by the specification; what is
+/// not read (materials, textures, skins, the bounds of accessors) is not.
 ///
 /// A file that requires another extension is refused by the name of that, but for those of materials, textures and
 /// lights, which do not touch geometry.
@@ -16,18 +16,17 @@
 #ifndef CHRONORMAL_IO_GLTF_DOCUMENT_H_
 #define CHRONORMAL_IO_GLTF_DOCUMENT_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/bake_mark.h"
 #include "chronormal/io/expansion.h"
 #include "chronormal/normals/transform.h"
 
@@ -56,60 +55,6 @@ struct GltfPrimitive {
   std::vector<Target> targets;
 
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
-};
-
-/// A target that a bake added. It moves no vertex, and its weight follows from those of the mesh's own targets
-/// (docs/extras.md):
-///
-///     weight = sum of a w_i + sum of q w_i w_j
-struct GltfExtraTarget {
-  struct LinearTerm {
-    std::size_t i = 0;  ///< a target that is no extra one
-    double a = 1;
-    friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
-  };
-  struct QuadraticTerm {
-    std::size_t i = 0, j = 0;  ///< targets that are no extra ones
-    double q = 1;
-    friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
-  };
-
-  std::size_t target = 0;  ///< index among the targets of the mesh
-  std::vector<LinearTerm> linear;
-  std::vector<QuadraticTerm> quadratic;
-
-  /// The weight, where those of the mesh's own targets are given; weights has one for each target.
-  [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
-  /// Whether the weight is other than zero where w_i alone is.
-  [[nodiscard]] bool follows(std::size_t i) const noexcept;
-
-  friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
-};
-
-/// How a bake encodes the normals of targets (workflow/bake.h).
-enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest };
-
-/// The encodings by name, for the command line, for JSON and for the mark in a file.
-struct BakeEncodingName {
-  BakeEncoding encoding;
-  std::string_view name;
-};
-inline constexpr std::array<BakeEncodingName, 4> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
-                                                                    {BakeEncoding::kExact, "exact"},
-                                                                    {BakeEncoding::kEndpoint, "endpoint"},
-                                                                    {BakeEncoding::kSmallest, "smallest"}}};
-[[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
-/// Nothing where no encoding has that name.
-[[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
-
-/// What a bake leaves in extras.chronormal of a mesh (docs/extras.md), for instance
-///     {"version": 2, "encode": "exact", "sequence": false,
-///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
-struct GltfBakeMark {
-  BakeEncoding encoding = BakeEncoding::kExact;
-  bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
-  std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
-  bool animations_only = false;         ///< deltas are fitted to the animations of the file, and mean nothing alone
 };
 
 struct GltfMesh {

@@ -176,10 +176,10 @@ struct GatheredPairs {
 
 // Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
 // those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where 99.9 %
-// are now below that half, there is room for these, but not for what grew beyond the worst.
+// are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below.
 void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
   const ShownErrors then = before.spread().errors(), now = after.spread().errors();
-  const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.worst, tolerance);
+  const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.most, tolerance);
   for (std::size_t n = 0; n < noted.size(); ++n) {
     const bool grew = after.worst[n] > before.worst[n] && static_cast<double>(after.worst[n]) > high;
     if (grew || (now.mean > then.mean && after.sum[n] > before.sum[n])) noted[n] = 1;

@@ -13,9 +13,9 @@ namespace {
 
 TEST(Products, are_those_of_three_loops_on_every_instruction_set_and_touch_nothing_else) {
   fixtures::Random random(7);
-  for (const std::size_t rows : {1, 5, 33}) {
-    for (const std::size_t left : {1, 3, 4, 9}) {
-      for (const std::size_t right : {1, 7, 16, 32, 55}) {
+  for (const std::size_t rows : {1U, 5U, 33U}) {
+    for (const std::size_t left : {1U, 3U, 4U, 9U}) {
+      for (const std::size_t right : {1U, 7U, 16U, 32U, 55U}) {
         const std::size_t stride = right + 2;
         std::vector<float> a(rows * left), b(rows * right), before(left * stride);
         for (std::vector<float>* numbers : {&a, &b, &before})
