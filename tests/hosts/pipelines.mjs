@@ -33,10 +33,9 @@ export function webOf(line, head, result, folder) {
   return result;
 }
 
-// Degrees against the positions that the file itself has: {mean, worst}. Files with many and with few keys are looked at
-// alike.
-export function audited(path) {
-  const report = JSON.parse(chronormal('audit', path, '--samples', '41', '--json', '--quiet'));
+// Degrees against the positions that the file itself has: {mean, worst}. `how` are further options of audit.
+export function audited(path, ...how) {
+  const report = JSON.parse(chronormal('audit', path, ...how, '--json', '--quiet'));
   return { mean: report.mean_degrees, worst: report.worst_degrees };
 }
 
