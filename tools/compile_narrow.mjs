@@ -10,7 +10,7 @@ import { promisify } from 'node:util';
 
 const run = promisify(execFile);
 const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(
-  ({ file, command }) => /\/src\//.test(file) && !/_sanitized\.dir/.test(command),
+  ({ file, command }) => /\/src\//.test(file) && !/\/python\//.test(file) && !/_sanitized\.dir/.test(command),
 );
 const failed = [];
 

@@ -150,8 +150,7 @@ GltfBakeMark mark_of(const SequenceTargets& targets) {
 std::vector<float> SequenceVertices::positions(std::span<const float> of_motion) const {
   std::vector<float> result(3 * size());
   for (std::size_t i = 0; i < size(); ++i)
-    std::copy_n(of_motion.begin() + 3 * std::ptrdiff_t{vertex[i]}, 3,
-                result.begin() + 3 * static_cast<std::ptrdiff_t>(i));
+    std::copy_n(of_motion.data() + 3 * std::size_t{vertex[i]}, 3, result.data() + 3 * i);
   return result;
 }
 

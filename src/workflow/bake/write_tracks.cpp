@@ -170,8 +170,10 @@ class TrackWriter {
                                 document_.meshes()[meshes_[place].mesh].target_count};
       const std::uint64_t bytes_per_key = kBytesPerWeight * (weights.targets + meshes_[place].drivers.size());
       const Expansion expansion = document_.expansion();
-      const std::size_t most_keys =
-          (expansion.most() - std::min(expansion.most(), edit_.added_bytes())) / bytes_per_key;
+      const std::uint64_t added = edit_.added_bytes();
+      const std::uint64_t room = (expansion.most() - std::min(expansion.most(), added)) / bytes_per_key;
+      const auto most_keys =
+          static_cast<std::size_t>(std::min<std::uint64_t>(room, std::numeric_limits<std::size_t>::max()));
       const double tolerance = meshes_[place].keeps_kind ? std::numeric_limits<double>::infinity() : tolerance_;
       const ExtendedTrack extended =
           meshes_[place].drivers.extended({a, track.same_keys_as}, weights, tolerance, most_keys);
