@@ -41,7 +41,7 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
-// What was asked for, after the words were understood.
+// The options of the command line, after their texts were parsed.
 struct Request {
   SampleOptions sample;
   AskedMoments asked;

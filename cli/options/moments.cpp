@@ -165,7 +165,7 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
   return weights;
 }
 
-// What is wrong with moments for a motion of this kind.
+// Returns an error where a motion of this kind cannot be sampled at such moments.
 Status check_kind(const Motion& motion, const AskedMoments& asked) {
   const bool has_times = asked.at_keys || !asked.times.empty(), has_weights = !asked.poses.empty();
   if (motion.segments.empty()) {

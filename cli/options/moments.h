@@ -29,7 +29,7 @@ struct MomentArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// What the words mean, as far as that can be known before the input is read.
+/// The moments that the options ask for, parsed as far as that is possible before the input is read.
 struct AskedMoments {
   /// Weights of targets in their order, or by name.
   struct Pose {

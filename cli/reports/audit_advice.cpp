@@ -11,7 +11,7 @@
 namespace chronormal::cli {
 namespace {
 
-// What a person can do about the errors that an audit found; the last line of its report says it.
+// Names what a person can do about the errors that an audit found. The last line of the report says it.
 enum class Remedy {
   kNone,      // no normal is off
   kTangents,  // normals are right, and bake writes no tangents

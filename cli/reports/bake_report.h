@@ -11,11 +11,11 @@ namespace chronormal::cli {
 /// That the result is worse than the input, and by how much.
 [[nodiscard]] std::string worse_text(const BeforeAndAfter& audit);
 
-/// What was added, a line for each mesh.
+/// Says what the bake added: the table has a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// What each form of each mesh would come to, of --encode smallest.
+/// Lists the targets, bytes and errors that each form of each mesh would have, as --encode smallest compares them.
 [[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal::cli

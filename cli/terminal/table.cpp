@@ -91,7 +91,7 @@ std::string Table::text(std::size_t columns) const {
   std::size_t width_of_all = kGap * (columns_.size() - 1);
   for (const std::size_t width : widths) width_of_all += width;
 
-  // What a row is about is said again in every part.
+  // Every part repeats the columns that say what a row is about.
   std::vector<std::size_t> about;
   std::size_t next = 0, width_about = 0;
   for (bool is_name = false; next < columns_.size() && !is_name; ++next) {

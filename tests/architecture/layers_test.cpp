@@ -97,8 +97,6 @@ std::optional<Place> place_of(const std::string& path) {
       room = room_of_public_header(name, parts[1]);
     else if (parts.size() > 2 && parts[1] != "kernels")
       room = parts[1];
-    else if (name == "cli" && fs::path(path).stem().string().ends_with("json"))
-      room = "reports";  // results as JSON, beside those as words
     if (room.empty()) return Place{f, 0};
     const auto found = std::find(rooms.begin(), rooms.end(), room);
     if (found == rooms.end()) return std::nullopt;

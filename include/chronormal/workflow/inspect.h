@@ -126,7 +126,7 @@ struct GltfInspection {
 [[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
                                                       std::span<const GltfPart> parts);
 
-/// What is known of a glTF file beside its motion.
+/// The facts about a glTF file that its motion does not hold.
 struct InspectedGltf {
   const GltfDocument* document = nullptr;  ///< of the input
   GltfInspection inspection;

@@ -59,7 +59,7 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// What each form of each mesh would come to, of --encode smallest.
+/// Lists the targets, bytes and errors that each form of each mesh would have, as --encode smallest compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal

@@ -19,6 +19,19 @@ constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 }  // namespace
 
+std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
+  std::vector<std::uint32_t> triangles;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const std::size_t corners = topology.face(f).size();
+    for (std::size_t c = 2; c < corners; ++c)
+      triangles.insert(triangles.end(),
+                       {vertex_of_corner[first], vertex_of_corner[first + c - 1], vertex_of_corner[first + c]});
+    first += corners;
+  }
+  return triangles;
+}
+
 GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes)
     : document_(Json::object()), most_bytes_(std::min(most_bytes.value_or(kMostBytes), kMostBytes)) {
   document_["asset"] = {{"version", "2.0"}, {"generator", "chronormal " CHRONORMAL_VERSION}};

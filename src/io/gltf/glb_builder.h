@@ -17,12 +17,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_edit.h"
+#include "chronormal/motion/topology.h"
 #include "io/gltf/gltf_edit_arrays.h"
 
 namespace chronormal::inline internal {
+
+/// The triangles of polygons, each as a fan around its first corner. vertex_of_corner has a vertex for each corner of the
+/// topology.
+[[nodiscard]] std::vector<std::uint32_t> fan_triangles(const Topology& topology,
+                                                       std::span<const std::uint32_t> vertex_of_corner);
 
 class GlbBuilder {
  public:

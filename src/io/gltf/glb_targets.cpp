@@ -15,15 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::uint32_t> fan_triangles(const Topology& topology) {
-  std::vector<std::uint32_t> triangles;
-  for (std::size_t f = 0; f < topology.face_count(); ++f) {
-    const auto face = topology.face(f);
-    for (std::size_t c = 2; c < face.size(); ++c) triangles.insert(triangles.end(), {face[0], face[c - 1], face[c]});
-  }
-  return triangles;
-}
-
 std::vector<float> base_normals(const Motion& motion) {
   const Points points = weld_coincident(motion);
   const std::vector<float>& base = motion.keyframes[0].positions;
@@ -52,7 +43,8 @@ Result<std::string> write_glb_targets(const Motion& motion) {
   assert(motion.kind == MotionKind::kTargets);
   GlbBuilder builder;
   const std::vector<float>& base = motion.keyframes[0].positions;
-  const std::size_t triangles = builder.set_triangles(fan_triangles(motion.topology), base.size() / 3);
+  const std::size_t triangles =
+      builder.set_triangles(fan_triangles(motion.topology, motion.topology.corners()), base.size() / 3);
   const Json attributes = {{"POSITION", builder.add_vectors(base, {true, true})},
                            {"NORMAL", builder.add_vectors(base_normals(motion), {false, true})}};
   Json targets = Json::array(), names = Json::array(), weights = Json::array();

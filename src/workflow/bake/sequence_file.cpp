@@ -42,19 +42,6 @@ SequenceVertices make_vertices(const Topology& topology, const NormalGroups& gro
   return result;
 }
 
-std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
-  std::vector<std::uint32_t> triangles;
-  std::size_t first = 0;
-  for (std::size_t f = 0; f < topology.face_count(); ++f) {
-    const std::size_t corners = topology.face(f).size();
-    for (std::size_t c = 2; c < corners; ++c)
-      triangles.insert(triangles.end(),
-                       {vertex_of_corner[first], vertex_of_corner[first + c - 1], vertex_of_corner[first + c]});
-    first += corners;
-  }
-  return triangles;
-}
-
 std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   std::vector<Vec3d> normals;
   normals.reserve(elements.size());
