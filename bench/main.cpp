@@ -15,10 +15,10 @@
 #include <thread>
 
 #include "chronormal/core/parallel.h"
-#include "groups.h"
-#include "machine.h"
-#include "report.h"
-#include "rivals.h"
+#include "groups/groups.h"
+#include "measure/machine.h"
+#include "measure/report.h"
+#include "paths/rivals.h"
 
 namespace chronormal::bench {
 namespace {

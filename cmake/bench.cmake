@@ -5,7 +5,8 @@ if(NOT benchmark_FOUND)
   return()
 endif()
 
-file(GLOB bench_sources CONFIGURE_DEPENDS bench/*.cpp)
+file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS bench/*.cpp)
+list(FILTER bench_sources EXCLUDE REGEX "/bench/peers/")
 add_executable(chronormal_bench ${bench_sources})
 target_include_directories(chronormal_bench PRIVATE bench src)
 target_compile_definitions(chronormal_bench PRIVATE CHRONORMAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

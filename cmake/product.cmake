@@ -30,7 +30,7 @@ set(kernel_sources ${library_sources})
 list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
 file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.cpp)
-set_source_files_properties(src/io/gltf/glb_builder.cpp src/workflow/json/json.cpp
+set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/json.cpp
                             PROPERTIES COMPILE_DEFINITIONS CHRONORMAL_VERSION="${PROJECT_VERSION}")
 # What the parser of the command line makes of options compiles four times as fast when it is not optimised.
 set_source_files_properties(cli/options/options.cpp PROPERTIES COMPILE_OPTIONS -O0)

@@ -8,11 +8,11 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
-#include "io/gltf/glb.h"
-#include "io/gltf/gltf_bytes.h"
+#include "io/gltf/decode/gltf_bytes.h"
+#include "io/gltf/decode/gltf_draco.h"
+#include "io/gltf/glb/glb.h"
 #include "io/gltf/gltf_document_state.h"
-#include "io/gltf/gltf_draco.h"
-#include "io/gltf/gltf_model.h"
+#include "io/gltf/model/gltf_model.h"
 
 namespace chronormal {
 

@@ -10,9 +10,9 @@
 
 #include "chronormal/io/gltf_document.h"
 #include "io/bytes/file.h"
-#include "io/gltf/glb.h"
-#include "io/gltf/gltf_bytes.h"
-#include "io/gltf/gltf_model.h"
+#include "io/gltf/decode/gltf_bytes.h"
+#include "io/gltf/glb/glb.h"
+#include "io/gltf/model/gltf_model.h"
 
 namespace chronormal {
 

@@ -8,9 +8,9 @@
 
 #include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
+#include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/edit/gltf_edit_layout.h"
 #include "io/gltf/gltf_document_state.h"
-#include "io/gltf/gltf_edit_arrays.h"
-#include "io/gltf/gltf_edit_layout.h"
 #include "io/json/json.h"
 #include "io/json/json_text.h"
 #include "io/json/json_writer.h"

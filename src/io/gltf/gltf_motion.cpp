@@ -9,8 +9,8 @@
 
 #include "chronormal/motion/motion.h"
 #include "io/bytes/binary.h"
-#include "io/gltf/gltf_model.h"
 #include "io/gltf/gltf_weights.h"
+#include "io/gltf/model/gltf_model.h"
 
 namespace chronormal::inline internal {
 namespace {

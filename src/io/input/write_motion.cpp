@@ -7,8 +7,8 @@
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
-#include "io/gltf/glb.h"
-#include "io/gltf/glb_targets.h"
+#include "io/gltf/glb/glb.h"
+#include "io/gltf/glb/glb_targets.h"
 #include "io/input/formats.h"
 
 namespace chronormal {

@@ -16,15 +16,15 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
-#include "workflow/bake/chosen_form.h"
-#include "workflow/bake/deltas.h"
+#include "workflow/bake/exact/deltas.h"
+#include "workflow/bake/exact/plan.h"
+#include "workflow/bake/forms/chosen_form.h"
+#include "workflow/bake/forms/smallest_form.h"
 #include "workflow/bake/mesh_weights.h"
-#include "workflow/bake/messages.h"
-#include "workflow/bake/plan.h"
-#include "workflow/bake/smallest_form.h"
 #include "workflow/bake/terms.h"
-#include "workflow/bake/write_mesh.h"
-#include "workflow/bake/write_tracks.h"
+#include "workflow/bake/write/messages.h"
+#include "workflow/bake/write/write_mesh.h"
+#include "workflow/bake/write/write_tracks.h"
 #include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
 

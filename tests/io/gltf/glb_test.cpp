@@ -1,5 +1,5 @@
 // The container of GLB files: its header and its chunks.
-#include "io/gltf/glb.h"
+#include "io/gltf/glb/glb.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Octahedral normals of EXT_meshopt_compression: by the formula of its specification in double, and bit for bit as
 // npm meshoptimizer decodes them in browsers.
-#include "io/gltf/gltf_octahedral.h"
+#include "io/gltf/decode/gltf_octahedral.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workflow/bake/tracks.h"
+#include "workflow/bake/write/tracks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,25 @@
+// Unit normals of faces: loops, libraries, and ours.
+
+#include <cmath>
+#include <memory>
+
+#include "groups/groups.h"
+#include "paths/rivals.h"
+
+namespace chronormal::bench {
+
+void run_faces(Suite& suite, const Size& size) {
+  const std::string group = "faces";
+  CaseList list(suite, group, size);
+  suite.say(group + ", " + size.name + ", " + size.order() + ": mesh");
+  const Mesh mesh(Elements::kFaces, size.elements, size.shuffled);
+  const Oracle oracle(mesh.segment(), Elements::kFaces);
+  const std::size_t faces = mesh.topology().face_count(), vertices = mesh.topology().vertex_count();
+  add_loops(list, mesh, Elements::kFaces);
+  add_libraries(list, mesh, Elements::kFaces);
+  // Positions at both ends once, and corners; in random order whole cache lines of them come again and again.
+  add_ours(list, mesh.segment(), nullptr, size.shuffled ? 0 : 24 * vertices + 12 * faces);
+  suite.run(group, size, faces, oracle, list.take());
+}
+
+}  // namespace chronormal::bench

@@ -1,0 +1,43 @@
+/// The groups of rows, a file each.
+#ifndef BENCH_GROUPS_GROUPS_H_
+#define BENCH_GROUPS_GROUPS_H_
+
+#include <string>
+#include <vector>
+
+#include "measure/suite.h"
+#include "paths/ours.h"
+
+namespace chronormal::bench {
+
+void run_faces(Suite& suite, const Size& size);
+void run_vertices(Suite& suite, const Size& size);
+/// Every scheme, at random access and played.
+void run_schemes(Suite& suite, const Size& size);
+
+/// Blend shapes, a few active at once.
+void run_blend(Suite& suite, const Size& size);
+
+/// How good a scheme is, to be held against what it costs.
+struct SchemeQuality {
+  std::string scheme, mesh;
+  double mean_degrees = 0, max_degrees = 0;
+  double bytes = 0;  ///< an element
+};
+[[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
+[[nodiscard]] std::vector<std::string> benchmark_schemes();
+
+/// How far a path is off, over all elements and many t.
+struct Accuracy {
+  std::string path, mesh, elements;
+  double bound = 0;  ///< what is promised, radians
+  double mean = 0, share_9999 = 0, max = 0;
+  std::size_t samples = 0;  ///< (element, t) pairs
+  double bytes = 0;         ///< an element; 0: none are kept
+};
+/// Throws std::runtime_error where a path breaks its promise.
+[[nodiscard]] std::vector<Accuracy> measure_accuracy(const Suite& suite);
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_GROUPS_GROUPS_H_

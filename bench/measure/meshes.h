@@ -1,0 +1,42 @@
+/// The meshes that are measured: a closed grid on a torus, in the order of the grid or shuffled.
+///
+/// Every vertex has six faces. The first keyframe is a torus with ripples; in the second one it is turned by 60
+/// degrees, stretched, and twisted around its own tube by up to a radian, so that no face merely moves along, and none
+/// collapses. Of n vertices and 2 n faces, the one of which there are to be about as many as wanted.
+#ifndef BENCH_MEASURE_MESHES_H_
+#define BENCH_MEASURE_MESHES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/motion/motion.h"
+#include "core/memory.h"
+
+namespace chronormal::bench {
+
+enum class Elements { kFaces, kVertices };
+
+class Mesh {
+ public:
+  /// About element_count of the elements. Shuffled: vertices and faces in a random order, the same one on every run.
+  Mesh(Elements elements, std::size_t element_count, bool shuffled);
+
+  /// Packed positions; the mesh must outlive it.
+  [[nodiscard]] Segment segment() const noexcept;
+  [[nodiscard]] const Topology& topology() const noexcept { return topology_; }
+  [[nodiscard]] std::span<const float> from() const noexcept { return {from_.data(), from_.size()}; }
+  [[nodiscard]] std::span<const float> to() const noexcept { return {to_.data(), to_.size()}; }
+
+  [[nodiscard]] std::size_t count(Elements elements) const noexcept {
+    return elements == Elements::kFaces ? topology_.face_count() : topology_.vertex_count();
+  }
+
+ private:
+  Topology topology_;
+  AlignedArray<float> from_, to_;  // (V, 3)
+};
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEASURE_MESHES_H_

@@ -1,0 +1,67 @@
+/// What every benchmark is held against before it is timed: eq. 1 on interpolated vertices, in double.
+///
+/// Nothing here calls the library: not its vectors, nor its control normals. Edges of float32 positions are exact in
+/// double but for a last bit, so that directions are right to 1e-15 times the length of the edges over the height of
+/// the triangle.
+#ifndef BENCH_MEASURE_ORACLE_H_
+#define BENCH_MEASURE_ORACLE_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/motion/motion.h"
+#include "measure/meshes.h"
+
+namespace chronormal::bench {
+
+using Vector = std::array<double, 3>;
+
+/// How faces are added up to a vertex: by area, or each the same.
+enum class Rule { kArea, kUniform };
+
+/// The angle between two vectors, in radians; pi where one of them is zero or no number.
+[[nodiscard]] double angle(const Vector& a, const Vector& b);
+
+/// What an approximation is off over many elements, in radians.
+struct Errors {
+  std::vector<double> sorted;
+
+  [[nodiscard]] double mean() const;
+  [[nodiscard]] double quantile(double share) const;
+  [[nodiscard]] double max() const { return sorted.empty() ? 0 : sorted.back(); }
+};
+
+class Oracle {
+ public:
+  /// Of a segment of triangles or polygons, which must outlive it. All elements where there are at most 100,000 of
+  /// them, else 4,096 chosen at random, the same on every run.
+  Oracle(const Segment& segment, Elements elements);
+
+  /// Which elements it knows.
+  [[nodiscard]] std::span<const std::uint32_t> elements() const { return elements_; }
+  /// n(t) of each of them, of any length.
+  [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;
+  /// The angles between them and what normal_of(element) gives. Those without a direction are left out: n(t) below
+  /// 1e-7 of the areas that it is made of, which is where an element collapses.
+  [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
+  /// The same where the normals are at hand; those without a direction are left out where `exact` are sums by area.
+  [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
+
+ private:
+  [[nodiscard]] Vector face_normal(std::size_t face, double t) const;
+
+  Segment segment_;
+  Elements kind_;
+  std::vector<std::uint32_t> elements_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // of sums: which of elements_, face
+  std::vector<double> areas_;                                   // that each is made of, at both ends
+};
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEASURE_ORACLE_H_

@@ -1,0 +1,30 @@
+/// What a run says: tables for people, one JSON object for tools/make_benchmarks.
+#ifndef BENCH_MEASURE_REPORT_H_
+#define BENCH_MEASURE_REPORT_H_
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "groups/groups.h"
+
+namespace chronormal::bench {
+
+struct Report {
+  bool quick = false;
+  std::vector<std::pair<std::string, std::string>> machine;
+  std::map<std::string, std::string> rivals;  ///< with their versions
+  std::vector<Bandwidth> bandwidths;
+  std::vector<Row> rows;
+  std::vector<SchemeQuality> qualities;
+  std::vector<Accuracy> accuracies;
+};
+
+[[nodiscard]] std::string tables_of(const Report& report);
+/// Four significant digits: no more of them mean anything.
+[[nodiscard]] std::string json_of(const Report& report);
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEASURE_REPORT_H_

@@ -1,0 +1,126 @@
+/// Runs groups of cases: each is held against the oracle, then all of them are timed against each other and against
+/// the memory, and become rows.
+#ifndef BENCH_MEASURE_SUITE_H_
+#define BENCH_MEASURE_SUITE_H_
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "measure/oracle.h"
+#include "measure/timing.h"
+#include "memory/bandwidth.h"
+
+namespace chronormal::bench {
+
+struct Size {
+  std::string name;  ///< as on the command line: 15k, 1M
+  std::size_t elements = 0;
+  bool shuffled = false;
+
+  [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
+};
+
+/// A result at one t, to be looked at after a run.
+struct Check {
+  double t = 0;
+  std::function<Vector(std::size_t element)> normal_of;
+  /// What it should be, for the elements of the oracle; empty: the exact normal.
+  std::function<std::vector<Vector>(const Oracle&)> expected = {};
+};
+
+struct Case {
+  std::string name;
+  std::string library = {};  ///< with its version; empty: ours
+  std::string note = {};     ///< what is timed or held against what, where it is not plain
+  std::size_t threads = 1;
+  std::size_t evaluations = 1;  ///< of each element in a run
+  std::function<void()> run = {};
+  std::vector<Check> checks = {};
+  double limit = 0;  ///< radians
+  Rule rule = Rule::kArea;
+  std::size_t bytes_read = 0;     ///< in a run, at least; 0: not known
+  std::size_t bytes_written = 0;  ///< likewise
+};
+
+struct Row {
+  std::string group, name, library, note, size, order;
+  std::size_t elements = 0, threads = 1, evaluations = 1;
+  double median_ns = 0, least_ns = 0, spread = 0;  ///< per element and evaluation; spread: quartiles / median
+  std::size_t repetitions = 0;
+  double bytes_read = 0, bytes_written = 0;  ///< per element and evaluation
+  double share_of_bandwidth = 0;             ///< what the memory would take / least_ns; 0: not known
+  double verified_error = 0, limit = 0;      ///< radians
+  std::size_t verified_elements = 0;
+};
+
+struct SuiteOptions {
+  bool quick = false;
+  std::string filter;  ///< a POSIX regular expression for "GROUP/SIZE/ORDER/NAME"; empty: everything
+  std::size_t threads = 2;
+};
+
+class Suite {
+ public:
+  explicit Suite(SuiteOptions options);
+  ~Suite();
+  Suite(const Suite&) = delete;
+  Suite& operator=(const Suite&) = delete;
+
+  [[nodiscard]] const SuiteOptions& options() const { return options_; }
+  [[nodiscard]] bool wants(const std::string& group, const Size& size, const std::string& name) const;
+
+  /// Throws std::runtime_error where a result is off by more than its limit.
+  void run(const std::string& group, const Size& size, std::size_t element_count, const Oracle& oracle,
+           std::vector<Case> cases);
+
+  /// A line on what is being done, on standard error, behind the seconds since the start.
+  void say(const std::string& text) const;
+
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  [[nodiscard]] std::vector<Bandwidth> bandwidths() const { return meter_.all(); }
+
+ private:
+  struct Filter;
+
+  SuiteOptions options_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::unique_ptr<Filter> filter_;
+  std::vector<Row> rows_;
+  BandwidthMeter meter_;
+};
+
+/// The cases of one group and size that are wanted; the others are not even prepared.
+class CaseList {
+ public:
+  CaseList(const Suite& suite, std::string group, Size size)
+      : suite_(suite), group_(std::move(group)), size_(std::move(size)) {}
+
+  void add(const std::string& name, const std::function<Case()>& make) {
+    if (!suite_.wants(group_, size_, name)) return;
+    suite_.say(group_ + ", " + size_.name + ", " + size_.order() + ": " + name);
+    cases_.push_back(make());
+    cases_.back().name = name;
+  }
+  [[nodiscard]] bool wants(const std::string& name) const { return suite_.wants(group_, size_, name); }
+  [[nodiscard]] std::vector<Case> take() { return std::move(cases_); }
+  [[nodiscard]] const Suite& suite() const { return suite_; }
+  [[nodiscard]] const Size& size() const { return size_; }
+
+ private:
+  const Suite& suite_;
+  std::string group_;
+  Size size_;
+  std::vector<Case> cases_;
+};
+
+/// Where everything is verified: no number of few bits, so that weights have to be rounded.
+inline constexpr float kTime = 0.3f;
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEASURE_SUITE_H_

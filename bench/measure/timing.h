@@ -1,0 +1,41 @@
+/// Times many functions against each other, on a machine that has other work to do.
+///
+/// Google Benchmark runs the loops. Each function is run in short repetitions, and the repetitions of all of them in
+/// random order, so that what disturbs the machine for a while disturbs all alike.
+#ifndef BENCH_MEASURE_TIMING_H_
+#define BENCH_MEASURE_TIMING_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace chronormal::bench {
+
+struct Effort {
+  double repetition = 0.006;  ///< seconds that a repetition takes at least
+  double total = 0.5;         ///< seconds for one function; slow ones take more
+  int most = 25;              ///< repetitions
+  int least = 3;
+};
+inline constexpr Effort kFullEffort{};
+inline constexpr Effort kQuickEffort{0.001, 0.01, 5, 3};
+
+struct Timed {
+  std::function<void()> run;
+  double seconds = 0;                    ///< of a call that was seen; 0: none was
+  std::vector<double> nanoseconds = {};  ///< of a call, one value for each repetition
+};
+
+/// Seconds of a call, roughly, from a few of them.
+[[nodiscard]] double roughly_timed(const std::function<void()>& run);
+
+/// Fills `nanoseconds`.
+void time_all(std::vector<Timed>& functions, const Effort& effort);
+
+[[nodiscard]] double median(std::vector<double> values);
+/// The distance between the quartiles over the median.
+[[nodiscard]] double spread(std::vector<double> values);
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEASURE_TIMING_H_

@@ -1,0 +1,49 @@
+/// How fast this machine reads memory and streams through it, at the working set of a benchmark.
+///
+/// Both are the best of several ways to do it, on one thread, with the widest vectors that there are:
+///
+///     read     all bytes are added up; with software prefetch and without
+///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with those that go
+///              past the caches, and with prefetch; all bytes read and written count
+///
+/// A working set is rounded to a step of 1.2, and counts as 256 MiB where it is larger: it is in DRAM then.
+#ifndef BENCH_MEMORY_BANDWIDTH_H_
+#define BENCH_MEMORY_BANDWIDTH_H_
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "core/memory.h"
+#include "measure/timing.h"
+
+namespace chronormal::bench {
+
+struct Bandwidth {
+  std::size_t bytes = 0;  ///< working set
+  double read = 0;        ///< GB/s
+  double stream = 0;      ///< GB/s
+  double copy = 0;        ///< GB/s, the best copy, which stream may be above
+};
+
+class BandwidthMeter {
+ public:
+  /// Asks for the bandwidth at the working set, to be measured with whatever else is timed.
+  void want(std::size_t working_set);
+  /// Appends what is to be timed.
+  void append(std::vector<Timed>& functions);
+  /// Takes the times of the functions that were appended last, which begin at `first`.
+  void take(const std::vector<Timed>& functions, std::size_t first);
+
+  /// Of a working set that was measured.
+  [[nodiscard]] Bandwidth at(std::size_t working_set) const;
+  [[nodiscard]] std::vector<Bandwidth> all() const;
+
+ private:
+  AlignedBytes arena_;
+  std::map<std::size_t, Bandwidth> measured_;  // by rounded working set; without a value: wanted
+};
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_MEMORY_BANDWIDTH_H_

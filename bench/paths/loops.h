@@ -1,0 +1,34 @@
+/// Unit normals as anyone would write them: a loop over plain arrays, and the same with Eigen.
+///
+/// Both interpolate all positions first, and both add face normals up to vertices by area.
+#ifndef BENCH_PATHS_LOOPS_H_
+#define BENCH_PATHS_LOOPS_H_
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace chronormal::bench {
+
+/// Arrays (V, 3) of positions at both ends, (F, 3) of corners, and (V, 3) to work in.
+struct LoopMesh {
+  std::span<const float> from, to;
+  std::span<const std::uint32_t> corners;
+  std::span<float> positions;
+};
+
+/// positions = (1 - t) from + t to: what every rival has to do before it begins.
+void interpolate(const LoopMesh& mesh, float t);
+
+void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< (F, 3)
+void plain_vertices(const LoopMesh& mesh, float t, std::span<float> normals);  ///< (V, 3)
+
+#ifdef CHRONORMAL_HAVE_EIGEN
+void eigen_faces(const LoopMesh& mesh, float t, std::span<float> normals);
+void eigen_vertices(const LoopMesh& mesh, float t, std::span<float> normals);
+[[nodiscard]] std::string eigen_version();
+#endif
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_PATHS_LOOPS_H_

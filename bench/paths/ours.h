@@ -1,0 +1,20 @@
+/// Our own paths, which are the same for faces and for vertices.
+#ifndef BENCH_PATHS_OURS_H_
+#define BENCH_PATHS_OURS_H_
+
+#include "chronormal/normals/normal_groups.h"
+#include "measure/suite.h"
+
+namespace chronormal::bench {
+
+/// Adds all of them: preparing, evaluating, many t, playing, on one thread and on all. No groups: of faces. The segment
+/// and the groups must outlive the cases.
+/// recompute_bytes: what recomputing all normals has to read at least, 0 where it is not known
+void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes);
+
+/// Looks at a packed array (n, 3).
+[[nodiscard]] Check packed_check(double t, const float* normals);
+
+}  // namespace chronormal::bench
+
+#endif  // BENCH_PATHS_OURS_H_

@@ -1,0 +1,152 @@
+#include "io/gltf/decode/gltf_draco.h"
+
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <utility>
+
+// The library's headers do not pass our warnings.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#include <draco/compression/decode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
+#pragma GCC diagnostic pop
+
+#include "io/gltf/decode/gltf_bytes.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+draco::DataType data_type(Component component) {
+  switch (component) {
+    case Component::kInt8:
+      return draco::DT_INT8;
+    case Component::kUint8:
+      return draco::DT_UINT8;
+    case Component::kInt16:
+      return draco::DT_INT16;
+    case Component::kUint16:
+      return draco::DT_UINT16;
+    case Component::kUint32:
+      return draco::DT_UINT32;
+    case Component::kFloat:
+      return draco::DT_FLOAT32;
+  }
+  return draco::DT_INVALID;
+}
+
+// The bytes are read here and not by the library's conversion, which believes flags of the file.
+Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
+                      std::vector<float>& result) {
+  const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+  const std::size_t components = accessor.components, size = component_size(accessor.component);
+  if (attribute == nullptr || attribute->buffer() == nullptr ||
+      static_cast<std::size_t>(attribute->num_components()) != components ||
+      attribute->data_type() != data_type(accessor.component) ||
+      (!attribute->is_mapping_identity() && attribute->indices_map_size() < mesh.num_points()))
+    return invalid_input(place, "the compressed mesh has not the attribute that the primitive declares");
+  const auto offset = static_cast<std::uint64_t>(attribute->byte_offset());
+  const auto stride = static_cast<std::uint64_t>(attribute->byte_stride());
+  const std::size_t available = attribute->buffer()->data_size();
+  result.resize(std::size_t{mesh.num_points()} * components);
+  for (std::uint32_t v = 0; v < mesh.num_points(); ++v) {
+    const std::uint64_t value = attribute->mapped_index(draco::PointIndex(v)).value();  // 32 bits
+    bool ok = stride <= available && offset <= available && value * stride + components * size <= available - offset;
+    const char* const at =
+        reinterpret_cast<const char*>(attribute->buffer()->data()) + (ok ? offset + value * stride : 0);
+    for (std::size_t c = 0; ok && c < components; ++c) {
+      const double number = load_number(at + c * size, accessor.component, accessor.normalized);
+      ok = std::isfinite(number);
+      result[v * components + c] = static_cast<float>(number);
+    }
+    if (!ok) return invalid_input(place, "vertex " + std::to_string(v) + " of the compressed mesh is broken");
+  }
+  return Success{};
+}
+
+// How many faces the compressed mesh says that it has: the library takes memory for them before it reads any. Nothing
+// where that cannot be found out.
+std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
+  draco::DracoHeader header;
+  if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
+  const auto version = static_cast<std::uint16_t>(DRACO_BITSTREAM_VERSION(header.version_major, header.version_minor));
+  buffer.set_bitstream_version(version);
+  draco::GeometryMetadata metadata;
+  if ((header.flags & METADATA_FLAG_MASK) != 0 && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
+    return std::nullopt;
+  const auto count = [&](bool is_varint) {
+    std::uint32_t number = 0;
+    const bool ok = is_varint ? draco::DecodeVarint(&number, &buffer) : buffer.Decode(&number);
+    return ok ? std::optional(number) : std::nullopt;
+  };
+  if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) return count(version >= DRACO_BITSTREAM_VERSION(2, 2));
+  // Before the faces stand how they are walked, new vertices (up to 2.1), and vertices.
+  const bool is_varint = version >= DRACO_BITSTREAM_VERSION(2, 0);
+  std::uint8_t traversal = 0;
+  if (!buffer.Decode(&traversal)) return std::nullopt;
+  if (version < DRACO_BITSTREAM_VERSION(2, 2) && !count(is_varint)) return std::nullopt;
+  return count(is_varint) ? count(is_varint) : std::nullopt;
+}
+
+}  // namespace
+
+Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, const PrimitiveSource& source,
+                                  bool with_shading, const Expansion& expansion, const std::string& place) {
+  constexpr std::uint64_t kBytesPerFace = 64;  // of the library's tables, and ours
+  const std::size_t vertex_count = model.accessors[*source.base.position].count;
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  std::unique_ptr<draco::Mesh> mesh;
+  std::string reason = "it holds no mesh";
+  try {
+    if (const auto faces = declared_faces(buffer)) {
+      if (Status status = expansion.check(kBytesPerFace * *faces, place); !status) return status.error();
+    }
+    const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
+    if (type.ok() && type.value() == draco::TRIANGULAR_MESH) {
+      draco::Decoder decoder;
+      auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+      if (decoded.ok())
+        mesh = std::move(decoded).value();
+      else
+        reason = decoded.status().error_msg_string();
+    }
+  } catch (const std::exception& exception) {  // lengths that it believed
+    reason = exception.what();
+  }
+  if (!mesh) return invalid_input(place, std::string("the compressed mesh is broken: ").append(reason));
+  if (mesh->num_points() != vertex_count)
+    return invalid_input(place, "the compressed mesh has " + std::to_string(mesh->num_points()) +
+                                    " vertices, but its accessors declare " + std::to_string(vertex_count));
+
+  GltfGeometry geometry;
+  geometry.corners.reserve(std::size_t{3} * mesh->num_faces());
+  for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
+    for (const draco::PointIndex& corner : mesh->face(draco::FaceIndex(f))) {
+      if (corner.value() >= vertex_count)
+        return invalid_input(place, "face " + std::to_string(f) + " of the compressed mesh names vertex " +
+                                        std::to_string(corner.value()));
+      geometry.corners.push_back(corner.value());
+    }
+  }
+  const Attributes& ids = source.draco->attributes;
+  const auto read = [&](const std::optional<std::size_t>& id, const std::optional<std::size_t>& accessor,
+                        std::vector<float>& result) -> Status {
+    if (!id || !accessor) return Success{};
+    return read_attribute(*mesh, *id, model.accessors[*accessor], place, result);
+  };
+  if (Status status = read(ids.position, source.base.position, geometry.positions); !status) return status.error();
+  if (!with_shading) return geometry;
+  if (Status status = read(ids.normal, source.base.normal, geometry.normals); !status) return status.error();
+  if (Status status = read(ids.tangent, source.base.tangent, geometry.tangents); !status) return status.error();
+  return geometry;
+}
+
+}  // namespace chronormal::inline internal::gltf

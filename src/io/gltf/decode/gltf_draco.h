@@ -1,0 +1,25 @@
+/// Primitives that KHR_draco_mesh_compression keeps compressed. Private to io.
+#ifndef CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
+#define CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
+
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
+#include "chronormal/io/gltf_document.h"
+#include "io/gltf/model/gltf_model.h"
+
+namespace chronormal::inline internal::gltf {
+
+/// Decodes triangles, positions and, where they are wanted and there, normals and tangents; what the numbers mean is
+/// said by the accessors of the primitive, which must have draco.
+/// Errors: kInvalidInput at place: broken bytes, no triangles, another number of vertices than the accessors declare,
+/// an attribute that is not there or of another type; more faces than expansion allows, which is asked first.
+[[nodiscard]] Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model,
+                                                const PrimitiveSource& source, bool with_shading,
+                                                const Expansion& expansion, const std::string& place);
+
+}  // namespace chronormal::inline internal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_

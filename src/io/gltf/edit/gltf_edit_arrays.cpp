@@ -1,0 +1,187 @@
+#include "io/gltf/edit/gltf_edit_arrays.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "io/bytes/binary.h"
+#include "io/json/json_writer.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
+// What the JSON of a sparse accessor has more than that of a dense one, about.
+constexpr std::size_t kSparseJson = 130;
+
+void pad(std::string& bytes) { bytes.resize((bytes.size() + 3) / 4 * 4, '\0'); }
+
+std::string bytes_of(std::span<const float> values) {
+  std::string bytes;
+  bytes.reserve(values.size() * sizeof(float));
+  for (const float value : values) binary::append(bytes, value, std::endian::little);
+  return bytes;
+}
+
+// The smallest or the largest number of each component, as JSON. Readers compare it in double with what they find in the
+// array, so that its digits have to read back as a double.
+template <class Choose>
+std::string bound_of(std::span<const float> values, std::size_t components, const Choose& choose) {
+  std::string json = "[";
+  for (std::size_t c = 0; c < components; ++c) {
+    float bound = values[c];
+    for (std::size_t i = c; i < values.size(); i += components) bound = choose(bound, values[i]);
+    json.append(c > 0 ? "," : "").append(json_number(bound == 0 ? 0.0 : double{bound}));  // no -0
+  }
+  return json + "]";
+}
+
+// "bufferView":3,"byteOffset":16
+void add_place(std::size_t view, std::size_t offset, JsonObject& object) {
+  object.add("bufferView", view);
+  if (offset > 0) object.add("byteOffset", offset);
+}
+
+}  // namespace
+
+NewArrays::Array NewArrays::encode(std::span<const float> values, std::size_t components, const GltfVectors& options) {
+  Array array;
+  array.components = components;
+  array.count = values.size() / components;
+  if (options.bounds) {
+    array.least = bound_of(values, components, [](float a, float b) { return std::min(a, b); });
+    array.most = bound_of(values, components, [](float a, float b) { return std::max(a, b); });
+  }
+
+  std::size_t used = 0, last_used = 0;
+  const auto element = [&](std::size_t i) { return values.subspan(i * components, components); };
+  const auto is_zero = [&](std::size_t i) {
+    return std::all_of(element(i).begin(), element(i).end(), [](float value) { return value == 0; });
+  };
+  for (std::size_t i = 0; i < array.count; ++i) {
+    if (is_zero(i)) continue;
+    ++used;
+    last_used = i;
+  }
+  const std::size_t index_size = last_used < 256 ? 1 : last_used < 65536 ? 2 : 4;
+  const std::size_t sparse_bytes = used * (index_size + components * sizeof(float)) + kSparseJson;
+  if (options.dense || (used > 0 && sparse_bytes >= values.size_bytes())) {
+    array.dense = bytes_of(values);
+    return array;
+  }
+  if (used == 0) return array;
+  array.sparse_count = used;
+  array.index_type = index_size == 1 ? 5121 : index_size == 2 ? 5123 : 5125;
+  array.indices.reserve(used * index_size + 3);
+  array.values.reserve(used * components * sizeof(float));
+  for (std::size_t i = 0; i < array.count; ++i) {
+    if (is_zero(i)) continue;
+    if (index_size == 1)
+      binary::append(array.indices, static_cast<std::uint8_t>(i), std::endian::little);
+    else if (index_size == 2)
+      binary::append(array.indices, static_cast<std::uint16_t>(i), std::endian::little);
+    else
+      binary::append(array.indices, static_cast<std::uint32_t>(i), std::endian::little);
+    for (const float value : element(i)) binary::append(array.values, value, std::endian::little);
+  }
+  pad(array.indices);
+  return array;
+}
+
+std::size_t NewArrays::add(std::span<const float> values, std::size_t components, const GltfVectors& options) {
+  assert(!values.empty() && values.size() % components == 0);
+  assert(std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }));
+  Array array = encode(values, components, options);
+  const std::hash<std::string_view> hash_of;
+  std::size_t hash = array.count;
+  for (const std::string* const part : {&array.dense, &array.indices, &array.values, &array.least, &array.most})
+    hash = hash * 1000003 ^ hash_of(*part);
+  const auto [first, end] = by_hash_.equal_range(hash);
+  const auto found = std::find_if(first, end, [&](const auto& entry) { return arrays_[entry.second] == array; });
+  if (found != end) return found->second;
+  by_hash_.emplace(hash, arrays_.size());
+  arrays_.push_back(std::move(array));
+  return arrays_.size() - 1;
+}
+
+NewArrays::Sizes NewArrays::sizes() const noexcept {
+  Sizes result;
+  for (const Array& array : arrays_) {
+    (array.components == 1 ? result.scalars : result.vectors) += array.dense.size();
+    result.sparse += array.indices.size() + array.values.size();
+  }
+  return result;
+}
+
+std::size_t NewArrays::byte_count() const noexcept {
+  const Sizes all = sizes();
+  return all.vectors + all.scalars + all.sparse;
+}
+
+std::size_t NewArrays::view_count() const noexcept {
+  const Sizes all = sizes();
+  return (all.vectors > 0 ? 1U : 0U) + (all.scalars > 0 ? 1U : 0U) + (all.sparse > 0 ? 1U : 0U);
+}
+
+std::vector<std::string_view> NewArrays::pieces() const {
+  std::vector<std::string_view> result;
+  for (const std::size_t components : {std::size_t{3}, std::size_t{1}}) {
+    for (const Array& array : arrays_) {
+      if (array.components == components) result.push_back(array.dense);
+    }
+  }
+  for (const Array& array : arrays_) result.insert(result.end(), {array.indices, array.values});
+  return result;
+}
+
+NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::size_t first_view) const {
+  Json result;
+  const Sizes all = sizes();
+  const auto add_view = [&](std::size_t size, bool of_vertices) {
+    const std::size_t index = first_view + result.views.size();
+    if (size == 0) return index;
+    JsonObject view;
+    view.add("buffer", buffer);
+    if (offset > 0) view.add("byteOffset", offset);
+    view.add("byteLength", size);
+    // Vertex attributes that share a view need a stride, and other arrays must have none.
+    if (of_vertices) view.add("byteStride", 3 * sizeof(float)).add("target", kArrayBuffer);
+    result.views.push_back(view.text());
+    offset += size;
+    return index;
+  };
+  const std::size_t vectors_view = add_view(all.vectors, true), scalars_view = add_view(all.scalars, false),
+                    sparse_view = add_view(all.sparse, false);
+
+  Sizes at;
+  for (const Array& array : arrays_) {
+    JsonObject accessor;
+    if (!array.dense.empty()) {
+      std::size_t& place = array.components == 1 ? at.scalars : at.vectors;
+      add_place(array.components == 1 ? scalars_view : vectors_view, place, accessor);
+      place += array.dense.size();
+    }
+    accessor.add("componentType", kFloat).add("count", array.count);
+    accessor.add("type", quote_json(array.components == 1 ? "SCALAR" : "VEC3"));
+    if (!array.least.empty()) accessor.add("min", array.least).add("max", array.most);
+    if (array.sparse_count > 0) {
+      JsonObject sparse, indices, values;
+      add_place(sparse_view, at.sparse, indices);
+      indices.add("componentType", array.index_type);
+      at.sparse += array.indices.size();
+      add_place(sparse_view, at.sparse, values);
+      at.sparse += array.values.size();
+      sparse.add("count", array.sparse_count).add("indices", indices.text()).add("values", values.text());
+      accessor.add("sparse", sparse.text());
+    }
+    result.accessors.push_back(accessor.text());
+  }
+  return result;
+}
+
+}  // namespace chronormal::inline internal::gltf

@@ -1,0 +1,95 @@
+/// Lays an edited glTF document out as a file: which bytes go where, and what its JSON says about that. Private to io.
+#ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
+#define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "io/bytes/file.h"
+#include "io/gltf/decode/gltf_bytes.h"
+#include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/glb/glb.h"
+#include "io/gltf/model/gltf_model.h"
+#include "io/json/json_text.h"
+
+namespace chronormal::inline internal::gltf {
+
+/// What is written. All of it must outlive the layout.
+struct EditedDocument {
+  const Model& model;
+  Bytes& bytes;
+  const GlbChunks& chunks;
+  bool is_glb;
+  JsonText& source;  ///< the JSON as it was
+  const NewArrays& arrays;
+};
+
+struct LayoutTarget {
+  std::string name;           ///< for messages
+  bool glb = false;           ///< the container
+  bool stands_alone = false;  ///< references to files beside the source would lead nowhere
+  bool with_bytes = true;     ///< false where only pointers are wanted: data URIs are left empty
+};
+
+class EditLayout {
+ public:
+  /// changed: the JSON of the document with its changes, which this adds to.
+  EditLayout(const EditedDocument& document, LayoutTarget target, JsonText changed)
+      : document_(document), target_(std::move(target)), json_(std::move(changed)) {}
+  EditLayout(EditLayout&&) noexcept = default;
+
+  /// Decides all. Errors: a buffer or an image that cannot be read, too much for a GLB, a change that is not possible.
+  [[nodiscard]] Status run();
+
+  /// After run().
+  [[nodiscard]] const JsonText& json() const noexcept { return json_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// The file, in pieces that live as long as this.
+  [[nodiscard]] Result<GlbPieces> file() const;
+
+ private:
+  struct Image {
+    std::size_t index = 0;
+    const char* media_type = "";
+    std::string_view bytes;
+  };
+  // Where a buffer of the source is now.
+  struct Moved {
+    std::size_t buffer = 0, offset = 0;
+  };
+
+  [[nodiscard]] bool is_bin(std::size_t buffer) const;
+  [[nodiscard]] bool refers_to_file(std::size_t buffer) const;
+  [[nodiscard]] Result<std::string_view> declared_bytes(std::size_t buffer);
+  [[nodiscard]] std::size_t add_to_bin(std::string_view bytes, std::size_t alignment);
+  [[nodiscard]] Status find_images();
+  [[nodiscard]] Status add_arrays(std::size_t buffer, std::size_t offset);
+  [[nodiscard]] Status lay_out_glb();
+  [[nodiscard]] Status move_buffers();
+  [[nodiscard]] Status move_view(const std::string& pointer, const std::vector<Moved>& moved);
+  [[nodiscard]] Status lay_out_gltf();
+  [[nodiscard]] Status set(const std::string& pointer, std::string json);
+  [[nodiscard]] Status append(const std::string& pointer, std::string json);
+  [[nodiscard]] std::string data_uri(std::string_view media_type, const std::vector<std::string_view>& pieces) const;
+
+  EditedDocument document_;
+  LayoutTarget target_;
+  JsonText json_;
+  std::optional<std::vector<std::string_view>> bin_;
+  std::size_t bin_size_ = 0;
+  std::vector<JsonMember> first_buffer_;  // after move_buffers(): what buffer 0 was
+  std::string other_buffers_;             // after move_buffers(): each with a comma before it
+  std::vector<Image> images_;
+  std::deque<FileBytes> files_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace chronormal::inline internal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_

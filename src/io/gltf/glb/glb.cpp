@@ -1,0 +1,99 @@
+#include "io/gltf/glb/glb.h"
+
+#include <bit>
+#include <cstdint>
+#include <utility>
+
+#include "io/bytes/binary.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;
+constexpr std::uint32_t kJson = 0x4E4F534A, kBin = 0x004E4942;
+
+}  // namespace
+
+Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
+  const auto error = [&](std::size_t at, std::string message) {
+    return invalid_input(binary::place(name, at), std::move(message));
+  };
+  const auto word = [&](std::size_t at) { return binary::load<std::uint32_t>(bytes.data() + at, std::endian::little); };
+  if (!is_glb(bytes)) return error(0, "this is not a GLB file: its first word is not glTF");
+  if (bytes.size() < kHeaderSize + kChunkHeaderSize)
+    return error(bytes.size(), "the file ends inside its header of 20 bytes");
+  if (word(4) != 2) return error(4, "version " + std::to_string(word(4)) + " of GLB is unknown; there is only 2");
+  if (word(8) != bytes.size())
+    return error(8, "the header declares " + std::to_string(word(8)) + " bytes, but the file has " +
+                        std::to_string(bytes.size()));
+
+  GlbChunks chunks;
+  for (std::size_t at = kHeaderSize, chunk = 0; at < bytes.size(); ++chunk) {
+    if (bytes.size() - at < kChunkHeaderSize) return error(at, "the file ends inside the header of a chunk");
+    const std::size_t size = word(at), begin = at + kChunkHeaderSize;
+    const std::uint32_t type = word(at + 4);
+    if (size > bytes.size() - begin)
+      return error(at, "chunk " + std::to_string(chunk) + " declares " + std::to_string(size) + " bytes, but only " +
+                           std::to_string(bytes.size() - begin) + " are left");
+    if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " is no multiple of 4");
+    if ((chunk == 0) != (type == kJson))
+      return error(at + 4, chunk == 0 ? "the first chunk is not JSON" : "there is a second JSON chunk");
+    if (type == kJson) {
+      chunks.json = bytes.substr(begin, size);
+      chunks.json_offset = begin;
+      chunks.rest = bytes.substr(begin + size);
+    } else if (type == kBin) {
+      if (chunk != 1) return error(at + 4, "the BIN chunk must be the second");
+      chunks.bin = bytes.substr(begin, size);
+      chunks.rest = bytes.substr(begin + size);
+    }
+    at = begin + size;
+  }
+  return chunks;
+}
+
+Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
+                              const std::optional<std::vector<std::string_view>>& bin, std::string_view rest,
+                              const std::string& name) {
+  const auto size_of = [](std::span<const std::string_view> pieces) {
+    std::uint64_t size = 0;
+    for (const std::string_view piece : pieces) size += piece.size();
+    return size;
+  };
+  const auto padding_of = [](std::uint64_t size) { return (4 - size % 4) % 4; };
+  const std::uint64_t json_size = size_of(json), bin_size = bin ? size_of(*bin) : 0;
+  const std::uint64_t json_padding = padding_of(json_size), bin_padding = padding_of(bin_size);
+  const std::uint64_t total = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
+                              (bin ? kChunkHeaderSize + bin_size + bin_padding : 0) + rest.size();
+  if (total > ~std::uint32_t{0})
+    return invalid_input(name, "the GLB file would have " + std::to_string(total) +
+                                   " bytes, but its header can not say more than 4294967295; a .gltf file can");
+
+  GlbPieces result;
+  const auto add_frame = [&](std::string bytes) {
+    result.pieces.push_back(result.frame.emplace_back(std::move(bytes)));
+  };
+  const auto add_word = [](std::string& bytes, std::uint64_t word) {
+    binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
+  };
+  std::string head = "glTF";
+  add_word(head, 2);
+  add_word(head, total);
+  add_word(head, json_size + json_padding);
+  add_word(head, kJson);
+  add_frame(std::move(head));
+  result.pieces.insert(result.pieces.end(), json.begin(), json.end());
+  add_frame(std::string(static_cast<std::size_t>(json_padding), ' '));
+  if (bin) {
+    std::string bin_head;
+    add_word(bin_head, bin_size + bin_padding);
+    add_word(bin_head, kBin);
+    add_frame(std::move(bin_head));
+    result.pieces.insert(result.pieces.end(), bin->begin(), bin->end());
+    add_frame(std::string(static_cast<std::size_t>(bin_padding), '\0'));
+  }
+  result.pieces.push_back(rest);
+  return result;
+}
+
+}  // namespace chronormal::inline internal

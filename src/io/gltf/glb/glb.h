@@ -1,0 +1,56 @@
+/// GLB, the binary container of glTF 2.0 (section 4 of its specification). Little endian:
+///
+///     byte 0   "glTF"   4   version: 2   8   bytes of the file
+///         12   bytes of the JSON chunk, "JSON", its text, padded to a multiple of 4 with blanks
+///              bytes of the BIN chunk, "BIN\0", its bytes, padded with zeros       (at most one, and second)
+///              further chunks, of which nothing is known
+///
+/// Private to io.
+#ifndef CHRONORMAL_IO_GLTF_GLB_GLB_H_
+#define CHRONORMAL_IO_GLTF_GLB_GLB_H_
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+
+namespace chronormal::inline internal {
+
+/// Views of the file.
+struct GlbChunks {
+  std::string_view json;
+  std::size_t json_offset = 0;          ///< where the JSON begins, in bytes
+  std::optional<std::string_view> bin;  ///< nothing where there is no BIN chunk
+  std::string_view rest;                ///< further chunks, with their headers
+};
+
+[[nodiscard]] inline bool is_glb(std::string_view bytes) noexcept { return bytes.starts_with("glTF"); }
+/// Whether files with this extension, in lower case, are GLB files: avatars are too.
+[[nodiscard]] inline bool is_glb_extension(std::string_view extension) noexcept {
+  return extension == ".glb" || extension == ".vrm";
+}
+
+/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a length that is not that of
+/// the file, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
+[[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
+
+/// A file in pieces: what the headers and the padding need, and views of that and of the chunks.
+struct GlbPieces {
+  std::deque<std::string> frame;
+  std::vector<std::string_view> pieces;
+};
+
+/// Lays chunks out as a file. bin: nothing for no BIN chunk. rest: further chunks, with their headers.
+/// Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
+[[nodiscard]] Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
+                                            const std::optional<std::vector<std::string_view>>& bin,
+                                            std::string_view rest, const std::string& name);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_GLTF_GLB_GLB_H_

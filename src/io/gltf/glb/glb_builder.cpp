@@ -1,0 +1,96 @@
+#include "io/gltf/glb/glb_builder.h"
+
+#include <algorithm>
+#include <bit>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/bytes/binary.h"
+#include "io/gltf/glb/glb.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Accessor 0 and buffer view 0 are those of the triangles; arrays follow.
+constexpr std::size_t kTriangles = 0, kFirstArray = 1;
+
+}  // namespace
+
+std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
+  std::vector<std::uint32_t> triangles;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const std::size_t corners = topology.face(f).size();
+    for (std::size_t c = 2; c < corners; ++c)
+      triangles.insert(triangles.end(),
+                       {vertex_of_corner[first], vertex_of_corner[first + c - 1], vertex_of_corner[first + c]});
+    first += corners;
+  }
+  return triangles;
+}
+
+GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes)
+    : document_(Json::object()), most_bytes_(std::min(most_bytes.value_or(kMostBytes), kMostBytes)) {
+  document_["asset"] = {{"version", "2.0"}, {"generator", "chronormal " CHRONORMAL_VERSION}};
+}
+
+std::size_t GlbBuilder::set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count) {
+  constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125;
+  // 65535 itself is no index: it restarts primitives (section 3.7.2.1 of the specification).
+  const bool is_short = vertex_count <= 0xFFFF;
+  indices_.clear();
+  indices_.reserve((is_short ? 2 : 4) * corners.size() + 2);
+  for (const std::uint32_t corner : corners) {
+    if (is_short)
+      binary::append(indices_, static_cast<std::uint16_t>(corner), std::endian::little);
+    else
+      binary::append(indices_, corner, std::endian::little);
+  }
+  index_accessor_ = {{"bufferView", kTriangles},
+                     {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
+                     {"count", corners.size()},
+                     {"type", "SCALAR"}};
+  return kTriangles;
+}
+
+std::size_t GlbBuilder::add_vectors(std::span<const float> vectors, const GltfVectors& options) {
+  return kFirstArray + arrays_.add(vectors, 3, options);
+}
+
+std::size_t GlbBuilder::add_scalars(std::span<const float> scalars, const GltfVectors& options) {
+  return kFirstArray + arrays_.add(scalars, 1, options);
+}
+
+Result<std::string> GlbBuilder::finish() {
+  constexpr int kElementArrayBuffer = 34963;
+  const std::size_t index_bytes = indices_.size();
+  indices_.resize((index_bytes + 3) / 4 * 4, '\0');
+  document_["buffers"] = Json::array({{{"byteLength", indices_.size() + arrays_.byte_count()}}});
+  Json views = Json::array({{{"buffer", 0}, {"byteLength", index_bytes}, {"target", kElementArrayBuffer}}});
+  Json accessors = Json::array({index_accessor_});
+  const gltf::NewArrays::Json arrays = arrays_.json(0, indices_.size(), kFirstArray);
+  for (const std::string& view : arrays.views) views.push_back(Json::parse(view));
+  for (const std::string& accessor : arrays.accessors) accessors.push_back(Json::parse(accessor));
+  document_["bufferViews"] = std::move(views);
+  document_["accessors"] = std::move(accessors);
+
+  const std::string text = document_.dump();
+  std::vector<std::string_view> bin = arrays_.pieces();
+  bin.insert(bin.begin(), indices_);
+  const Result<GlbPieces> laid_out = lay_out_glb(std::vector<std::string_view>{text}, bin, {}, "");
+  if (!laid_out) return laid_out.error();
+  std::size_t size = 0;
+  for (const std::string_view piece : laid_out.value().pieces) size += piece.size();
+  if (size > most_bytes_)
+    return invalid_input(
+        "", "the file would have " + std::to_string(size) + " bytes, but may have " + std::to_string(most_bytes_));
+  std::string file;
+  file.reserve(size);
+  for (const std::string_view piece : laid_out.value().pieces) file += piece;
+  return file;
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,66 @@
+/// A new GLB file of one primitive, made of arrays and a JSON document.
+///
+///     GlbBuilder builder(most_bytes);
+///     const std::size_t triangles = builder.set_triangles(corners, vertex_count);
+///     const std::size_t positions = builder.add_vectors(xyz, {.bounds = true});
+///     builder.document()["meshes"] = ...;         // names accessors by index
+///     Result<std::string> file = builder.finish();
+///
+/// The builder writes the members asset, buffers, bufferViews and accessors; the rest is up to the caller. Memory: that
+/// of the file, and once more at the end. Private to io and workflow.
+#ifndef CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
+#define CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_edit.h"
+#include "chronormal/motion/topology.h"
+#include "io/gltf/edit/gltf_edit_arrays.h"
+
+namespace chronormal::inline internal {
+
+/// The triangles of polygons, each as a fan around its first corner. vertex_of_corner has a vertex for each corner of the
+/// topology.
+[[nodiscard]] std::vector<std::uint32_t> fan_triangles(const Topology& topology,
+                                                       std::span<const std::uint32_t> vertex_of_corner);
+
+class GlbBuilder {
+ public:
+  /// A GLB counts its bytes in 32 bits.
+  static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
+
+  /// The file may have this many bytes, and not more than kMostBytes.
+  explicit GlbBuilder(std::optional<std::size_t> most_bytes = {});
+
+  /// Sets the corners of the triangles, in 16 bits where that is enough for the vertices. Returns their accessor.
+  std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
+  /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index; the same array only once.
+  /// Preconditions: those of GltfEdit
+  std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
+  std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
+
+  /// Bytes of the arrays so far.
+  [[nodiscard]] std::size_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
+  [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
+  [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
+
+  /// Puts the file together. Errors: kInvalidInput where it would be too large.
+  [[nodiscard]] Result<std::string> finish();
+
+ private:
+  nlohmann::ordered_json document_, index_accessor_;
+  std::string indices_;
+  gltf::NewArrays arrays_;
+  std::size_t most_bytes_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_

@@ -1,0 +1,20 @@
+/// Morph targets over a base as a new GLB file: a mesh with a target each and their names. Private to io.
+#ifndef CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
+#define CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
+
+#include <string>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::inline internal {
+
+/// Makes a GLB of one mesh. Its base has the area-weighted normals of the polygons, which vertices at one point of the base
+/// and of all targets share; (0, 0, 1) where there is no area. Polygons become fans of triangles. Targets have deltas of
+/// positions alone, sparse where that is smaller, and the names of their keyframes: bake gives them normals.
+/// The motion must be valid, and have the kind kTargets. Errors: kInvalidInput where the file would be too large.
+[[nodiscard]] Result<std::string> write_glb_targets(const Motion& motion);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_

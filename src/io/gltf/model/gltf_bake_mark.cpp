@@ -1,0 +1,207 @@
+#include "io/gltf/model/gltf_bake_mark.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "io/json/json.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+using Json = nlohmann::json;
+
+// Version 1 had two factors for each extra target: the indices of targets, or "base", which is 1 minus the sum of the
+// weights of all targets that are no extra ones.
+constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
+
+// The items of an array that may be missing or empty; none after a complaint.
+std::vector<JsonView> items_of(const JsonView& view, const Json& value, const char* key) {
+  const auto found = value.find(key);
+  if (found == value.end() || (found->is_array() && found->empty())) return {};
+  std::vector<JsonView> items;
+  if (const std::optional<JsonView> list = view.array(key)) {
+    for (std::size_t n = 0; n < list->size(); ++n) items.push_back(list->item(n));
+  }
+  return items;
+}
+
+// Whether a term is an array of so many items; complains otherwise.
+bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
+  if (value.is_array() && value.size() == size) return true;
+  term.complain(std::string("a term is ") + form);
+  return false;
+}
+
+void read_terms(const JsonView& item, const Json& value, std::size_t target_count, GltfExtraTarget& extra) {
+  const auto index = [&](const JsonView& term, std::size_t n) {
+    return term.item(n).as_index(target_count, "targets").value_or(0);
+  };
+  const std::vector<JsonView> linear = items_of(item, value, "linear"), quadratic = items_of(item, value, "quadratic");
+  for (std::size_t n = 0; n < linear.size(); ++n) {
+    if (is_term(linear[n], value["linear"][n], 2, "[target, factor]"))
+      extra.linear.push_back({index(linear[n], 0), linear[n].item(1).as_number()});
+  }
+  for (std::size_t n = 0; n < quadratic.size(); ++n) {
+    if (is_term(quadratic[n], value["quadratic"][n], 3, "[target, target, factor]"))
+      extra.quadratic.push_back({index(quadratic[n], 0), index(quadratic[n], 1), quadratic[n].item(2).as_number()});
+  }
+}
+
+// The terms of two factors, where own are the targets that are no extra ones.
+void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
+                  const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
+  const std::optional<JsonView> factors = item.array("factors");
+  if (!factors || factors->size() != 2) return item.complain("factors", "there must be two factors");
+  std::array<std::optional<std::size_t>, 2> targets;  // nothing: the base
+  for (std::size_t n = 0; n < 2; ++n) {
+    const Json& factor = value["factors"][n];
+    if (!factor.is_string())
+      targets[n] = factors->item(n).as_index(target_count, "targets").value_or(0);
+    else if (factor.get_ref<const std::string&>() != "base")
+      return factors->item(n).complain("a factor is the index of a target or \"base\"");
+  }
+  if (targets[0] && targets[1]) {
+    extra.quadratic.push_back({*targets[0], *targets[1], 1});
+  } else if (targets[0] || targets[1]) {
+    const std::size_t j = targets[0].value_or(targets[1].value_or(0));
+    extra.linear.push_back({j, 1});
+    for (const std::size_t i : own) extra.quadratic.push_back({i, j, -1});
+  } else {
+    factors->complain("the base cannot be both factors");
+  }
+}
+
+// Extra targets ascend, and follow from none of them.
+void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtraTarget>& extras) {
+  const auto is_extra = [&](std::size_t i) {
+    const auto found = std::lower_bound(extras.begin(), extras.end(), i,
+                                        [](const GltfExtraTarget& extra, std::size_t t) { return extra.target < t; });
+    return found != extras.end() && found->target == i;
+  };
+  for (std::size_t n = 1; n < extras.size(); ++n) {
+    if (extras[n].target <= extras[n - 1].target) return list[n].complain("target", "the extra targets must ascend");
+  }
+  for (std::size_t n = 0; n < extras.size(); ++n) {
+    const bool follows_extras =
+        std::any_of(extras[n].linear.begin(), extras[n].linear.end(), [&](const auto& t) { return is_extra(t.i); }) ||
+        std::any_of(extras[n].quadratic.begin(), extras[n].quadratic.end(),
+                    [&](const auto& t) { return is_extra(t.i) || is_extra(t.j); });
+    if (follows_extras) return list[n].complain("an extra target cannot follow from another one");
+  }
+}
+
+// The targets that no extra target names as its own.
+std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras, std::size_t target_count) {
+  std::vector<bool> is_extra(target_count);
+  for (const GltfExtraTarget& extra : extras) is_extra[extra.target] = true;
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < target_count; ++i)
+    if (!is_extra[i]) own.push_back(i);
+  return own;
+}
+
+// A flag that may be 0 or 1: editors that keep extras as custom properties know no booleans (Blender 3.4).
+bool read_flag(const JsonView& view, const Json& value, const char* key) {
+  const auto found = value.find(key);
+  if (found != value.end() && (*found == 0 || *found == 1)) return *found == 1;
+  return view.flag(key);
+}
+
+GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t target_count) {
+  GltfBakeMark mark;
+  const std::size_t version = view.required_count("version", std::size_t{1} << 31);
+  if (version != kVersion && version != kVersionOfFactors)
+    view.complain("version", "it was written by another version of chronormal");
+  const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
+  if (!encoding) view.complain("encode", "it is none of harmless, exact, endpoint and smallest");
+  mark.encoding = encoding.value_or(BakeEncoding::kExact);
+  mark.sequence = read_flag(view, value, "sequence");
+  mark.animations_only = read_flag(view, value, "animations_only");
+  const std::vector<JsonView> extras = items_of(view, value, "extras");
+  if (extras.size() > target_count) {
+    view.complain("extras", "there are more of them than targets");
+    return mark;
+  }
+  for (const JsonView& item : extras) {
+    if (!item.is_object()) return mark;
+    mark.extras.emplace_back().target = item.required_index("target", target_count, "targets").value_or(0);
+  }
+  const std::vector<std::size_t> own = own_targets(mark.extras, target_count);
+  for (std::size_t n = 0; n < extras.size(); ++n) {
+    if (version == kVersionOfFactors)
+      read_factors(extras[n], value["extras"][n], target_count, own, mark.extras[n]);
+    else
+      read_terms(extras[n], value["extras"][n], target_count, mark.extras[n]);
+  }
+  check_extras(extras, mark.extras);
+  return mark;
+}
+
+}  // namespace
+
+void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
+                    GltfMesh& mesh) {
+  const std::string extras = pointer + "/extras";
+  const nlohmann::json::json_pointer at(extras);
+  if (!document.contains(at) || !document.at(at).is_object()) return;
+  const nlohmann::json& members = document.at(at);
+  const auto found = members.find("chronormal");
+  if (found == members.end()) return;
+  JsonComplaint complaint(name);
+  const JsonView view(*found, extras + "/chronormal", complaint);
+  GltfBakeMark mark;
+  if (view.is_object()) mark = read_mark(view, *found, mesh.target_count);
+  if (complaint.first())
+    mesh.mark_fault = complaint.first();
+  else
+    mesh.mark = std::move(mark);
+}
+
+nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark) {
+  using Ordered = nlohmann::ordered_json;
+  Ordered extras = Ordered::array();
+  for (const GltfExtraTarget& extra : mark.extras) {
+    Ordered linear = Ordered::array(), quadratic = Ordered::array();
+    for (const auto& term : extra.linear) linear.push_back(Ordered::array({term.i, term.a}));
+    for (const auto& term : extra.quadratic) quadratic.push_back(Ordered::array({term.i, term.j, term.q}));
+    extras.push_back({{"target", extra.target}, {"linear", std::move(linear)}, {"quadratic", std::move(quadratic)}});
+  }
+  Ordered result = {{"version", kVersion}, {"encode", name_of(mark.encoding)}, {"sequence", mark.sequence}};
+  if (mark.animations_only) result["animations_only"] = true;
+  result["extras"] = std::move(extras);
+  return result;
+}
+
+}  // namespace chronormal::inline internal::gltf
+
+namespace chronormal {
+
+double GltfExtraTarget::weight(std::span<const double> weights) const noexcept {
+  double sum = 0;
+  for (const LinearTerm& term : linear) sum += term.a * weights[term.i];
+  for (const QuadraticTerm& term : quadratic) sum += term.q * (weights[term.i] * weights[term.j]);
+  return sum;
+}
+
+bool GltfExtraTarget::follows(std::size_t i) const noexcept {
+  return std::any_of(linear.begin(), linear.end(), [i](const LinearTerm& term) { return term.i == i; }) ||
+         std::any_of(quadratic.begin(), quadratic.end(),
+                     [i](const QuadraticTerm& term) { return term.i == i && term.j == i; });
+}
+
+std::string_view name_of(BakeEncoding encoding) noexcept {
+  return std::find_if(kBakeEncodings.begin(), kBakeEncodings.end(),
+                      [&](const BakeEncodingName& known) { return known.encoding == encoding; })
+      ->name;
+}
+
+std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept {
+  for (const BakeEncodingName& known : kBakeEncodings)
+    if (known.name == name) return known.encoding;
+  return std::nullopt;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,372 @@
+// Assets, buffers, buffer views, accessors and nodes; meshes and animations are in gltf_model_meshes.cpp.
+#include "io/gltf/model/gltf_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "chronormal/io/expansion.h"
+#include "io/gltf/model/gltf_bake_mark.h"
+#include "io/gltf/model/gltf_model_parser.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // what a JSON number holds exactly
+
+constexpr std::array<std::string_view, 4> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+                                                         "KHR_draco_mesh_compression", "KHR_animation_pointer"};
+// Extensions of these families say how a surface looks, not where it is.
+constexpr std::array<std::string_view, 4> kHarmlessFamilies = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                                               "KHR_lights_punctual"};
+
+bool is_acceptable(std::string_view extension) {
+  return std::find(kUnderstood.begin(), kUnderstood.end(), extension) != kUnderstood.end() ||
+         std::any_of(kHarmlessFamilies.begin(), kHarmlessFamilies.end(),
+                     [&](std::string_view family) { return extension.starts_with(family); });
+}
+
+std::optional<Component> to_component(std::size_t value) {
+  for (const Component component : {Component::kInt8, Component::kUint8, Component::kInt16, Component::kUint16,
+                                    Component::kUint32, Component::kFloat}) {
+    if (static_cast<std::size_t>(component) == value) return component;
+  }
+  return std::nullopt;
+}
+
+std::optional<Component> read_component(const JsonView& object) {
+  const std::size_t value = object.required_count("componentType", kMostBytes);
+  const std::optional<Component> component = to_component(value);
+  if (!component)
+    object.complain("componentType", "component type " + std::to_string(value) + " is unknown to glTF 2.0");
+  return component;
+}
+
+struct ElementType {
+  std::string_view name;
+  std::size_t components;
+  bool is_matrix;
+};
+constexpr std::array<ElementType, 7> kElementTypes = {{{"SCALAR", 1, false},
+                                                       {"VEC2", 2, false},
+                                                       {"VEC3", 3, false},
+                                                       {"VEC4", 4, false},
+                                                       {"MAT2", 4, true},
+                                                       {"MAT3", 9, true},
+                                                       {"MAT4", 16, true}}};
+
+std::string node_pointer(std::size_t index) { return std::string("/nodes/").append(std::to_string(index)); }
+
+}  // namespace
+
+Result<Model> Parser::parse(const nlohmann::json& document) {
+  document_ = &document;
+  const JsonView root(document, "", complaint_);
+  if (root.is_object()) {
+    parse_asset(root);
+    for_each_item(root, "buffers", [&](const JsonView& item) { parse_buffer(item); });
+    for_each_item(root, "bufferViews", [&](const JsonView& item) { parse_view(item); });
+    for_each_item(root, "accessors", [&](const JsonView& item) { parse_accessor(item); });
+    for_each_item(root, "meshes", [&](const JsonView& item) { parse_mesh(item); });
+    check_nodes(root);
+    for_each_item(root, "animations", [&](const JsonView& item) { parse_animation(item); });
+    parse_expressions(document);
+  }
+  if (complaint_.first()) return *complaint_.first();
+  return std::move(model_);
+}
+
+void Parser::parse_asset(const JsonView& root) {
+  const std::optional<JsonView> asset = root.object("asset");
+  if (!asset) return root.complain("asset", "there is no asset: this is not a glTF 2.0 file");
+  // A file may ask for a later minor version than that it was written for; only 2.0 is known.
+  const std::string version = asset->required_text("version"), least = asset->text("minVersion");
+  if (!version.starts_with("2.")) asset->complain("version", "only glTF 2.0 can be read");
+  if (!least.empty() && least != "2.0") asset->complain("minVersion", "only glTF 2.0 can be read");
+  if (const std::optional<JsonView> used = root.array("extensionsUsed")) {
+    for (std::size_t i = 0; i < used->size(); ++i) model_.extensions.push_back(used->item(i).as_text());
+  }
+  quantized_ = std::find(model_.extensions.begin(), model_.extensions.end(), kUnderstood[0]) != model_.extensions.end();
+  if (const std::optional<JsonView> required = root.array("extensionsRequired")) {
+    for (std::size_t i = 0; i < required->size(); ++i) {
+      const std::string extension = required->item(i).as_text();
+      if (!is_acceptable(extension))
+        required->item(i).complain(std::string("the file requires the extension ").append(extension) +
+                                   ", which cannot be read");
+    }
+  }
+}
+
+void Parser::parse_buffer(const JsonView& item) {
+  Buffer buffer;
+  if (item.has("uri")) buffer.uri = item.text("uri");
+  buffer.byte_length = item.required_count("byteLength", kMostBytes);
+  if (buffer.byte_length == 0) item.complain("byteLength", "a buffer has at least one byte");
+  model_.buffers.push_back(std::move(buffer));
+}
+
+void Parser::parse_view(const JsonView& item) {
+  BufferView view;
+  view.buffer = item.required_index("buffer", model_.buffers.size(), "buffers").value_or(0);
+  view.offset = item.count("byteOffset", kMostBytes, 0);
+  view.length = item.required_count("byteLength", kMostBytes);
+  view.stride = item.find_count("byteStride", 252);
+  if (view.stride && (*view.stride < 4 || *view.stride % 4 != 0))
+    item.complain("byteStride", "the stride must be a multiple of 4 from 4 to 252");
+  if (complaint_.first()) return;
+  if (view.length == 0) return item.complain("byteLength", "a buffer view has at least one byte");
+  const std::size_t available = model_.buffers[view.buffer].byte_length;
+  if (view.offset > available || view.length > available - view.offset)
+    return item.complain("the view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
+                         std::to_string(view.buffer) + " has " + std::to_string(available));
+  if (const std::optional<JsonView> extensions = item.object("extensions")) {
+    if (const std::optional<JsonView> meshopt = extensions->object("EXT_meshopt_compression"))
+      view.compression = parse_compression(*meshopt, view);
+  }
+  model_.views.push_back(view);
+}
+
+std::optional<Compression> Parser::parse_compression(const JsonView& item, const BufferView& view) {
+  using Mode = Compression::Mode;
+  using Filter = Compression::Filter;
+  constexpr std::array<std::pair<std::string_view, Mode>, 3> kModes = {
+      {{"ATTRIBUTES", Mode::kAttributes}, {"TRIANGLES", Mode::kTriangles}, {"INDICES", Mode::kIndices}}};
+  constexpr std::array<std::pair<std::string_view, Filter>, 5> kFilters = {{{"", Filter::kNone},
+                                                                            {"NONE", Filter::kNone},
+                                                                            {"OCTAHEDRAL", Filter::kOctahedral},
+                                                                            {"QUATERNION", Filter::kQuaternion},
+                                                                            {"EXPONENTIAL", Filter::kExponential}}};
+  Compression result;
+  result.buffer = item.required_index("buffer", model_.buffers.size(), "buffers").value_or(0);
+  result.offset = item.count("byteOffset", kMostBytes, 0);
+  result.length = item.required_count("byteLength", kMostBytes);
+  result.stride = item.required_count("byteStride", 256);
+  result.count = item.required_count("count", kMostBytes);
+  const std::string mode = item.required_text("mode"), filter = item.text("filter");
+  const auto* const found_mode = std::find_if(kModes.begin(), kModes.end(), [&](auto& m) { return m.first == mode; });
+  const auto* const found_filter =
+      std::find_if(kFilters.begin(), kFilters.end(), [&](auto& f) { return f.first == filter; });
+  if (found_mode == kModes.end()) item.complain("mode", "the mode is none of ATTRIBUTES, TRIANGLES, INDICES");
+  if (found_filter == kFilters.end())
+    item.complain("filter", "the filter is none of NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL");
+  if (complaint_.first()) return std::nullopt;
+  result.mode = found_mode->second;
+  result.filter = found_filter->second;
+
+  const std::size_t available = model_.buffers[result.buffer].byte_length;
+  if (result.offset > available || result.length > available - result.offset)
+    item.complain("the compressed bytes end at byte " + std::to_string(result.offset + result.length) +
+                  ", but buffer " + std::to_string(result.buffer) + " has " + std::to_string(available));
+  const bool of_attributes = result.mode == Mode::kAttributes;
+  const bool stride_ok =
+      of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
+  if (view.stride && *view.stride != result.stride)
+    item.complain("byteStride", "the stride is not the " + std::to_string(*view.stride) + " of the view");
+  if (!stride_ok)
+    item.complain("byteStride", of_attributes ? "the stride of attributes must be a multiple of 4 from 4 to 256"
+                                              : "indices have 2 or 4 bytes");
+  const bool filter_ok = result.filter == Filter::kNone ||
+                         (of_attributes && (result.filter == Filter::kExponential || result.stride == 8 ||
+                                            (result.filter == Filter::kOctahedral && result.stride == 4)));
+  if (!filter_ok) item.complain("filter", "the filter does not go with this mode and stride");
+  if (result.mode == Mode::kTriangles && result.count % 3 != 0)
+    item.complain("count", "the indices of triangles come in threes");
+  if (complaint_.first()) return std::nullopt;
+  if (result.count > view.length / result.stride || result.count * result.stride != view.length)
+    item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
+                               " bytes are not the " + std::to_string(view.length) + " bytes of the view");
+  // The encoding spends at least a bit per 8 bytes; a little file must not ask for a lot of memory.
+  if (view.length / 256 > result.length)
+    item.complain("byteLength", "the compressed bytes are too few for " + std::to_string(view.length) + " bytes");
+  return result;
+}
+
+void Parser::parse_accessor(const JsonView& item) {
+  Accessor accessor;
+  accessor.view = item.find_index("bufferView", model_.views.size(), "buffer views");
+  accessor.offset = item.count("byteOffset", kMostBytes, 0);
+  accessor.count = item.required_count("count", kMostBytes);
+  accessor.component = read_component(item).value_or(Component::kFloat);
+  accessor.normalized = item.flag("normalized");
+  const std::string type = item.required_text("type");
+  const auto* const found =
+      std::find_if(kElementTypes.begin(), kElementTypes.end(), [&](const auto& t) { return t.name == type; });
+  if (found == kElementTypes.end()) {
+    item.complain("type", "the type is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4");
+  } else {
+    accessor.components = found->components;
+    accessor.is_matrix = found->is_matrix;
+  }
+  if (accessor.count == 0) item.complain("count", "an accessor has at least one element");
+  if (item.has("byteOffset") && !item.has("bufferView")) item.complain("byteOffset", "an offset needs a buffer view");
+  if (accessor.normalized && (accessor.component == Component::kFloat || accessor.component == Component::kUint32))
+    item.complain("normalized", "only integers of 8 and 16 bits can be normalised");
+  if (const std::optional<JsonView> sparse = item.object("sparse")) parse_sparse(*sparse, accessor);
+  model_.accessors.push_back(accessor);
+}
+
+void Parser::parse_sparse(const JsonView& item, Accessor& accessor) {
+  Sparse sparse;
+  sparse.count = item.required_count("count", kMostBytes);
+  if (sparse.count == 0 || sparse.count > accessor.count)
+    item.complain("count", "a sparse accessor replaces from 1 to all of its " + std::to_string(accessor.count) +
+                               " elements, not " + std::to_string(sparse.count));
+  const std::optional<JsonView> indices = item.object("indices"), values = item.object("values");
+  if (!indices || !values) return item.complain("a sparse accessor has indices and values");
+  sparse.indices_view = indices->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
+  sparse.indices_offset = indices->count("byteOffset", kMostBytes, 0);
+  sparse.indices_component = read_component(*indices).value_or(Component::kUint16);
+  if (sparse.indices_component != Component::kUint8 && sparse.indices_component != Component::kUint16 &&
+      sparse.indices_component != Component::kUint32)
+    indices->complain("componentType", "indices are unsigned integers");
+  sparse.values_view = values->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
+  sparse.values_offset = values->count("byteOffset", kMostBytes, 0);
+  accessor.sparse = sparse;
+}
+
+void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
+  constexpr std::size_t kMostNodes = ~std::uint32_t{0};
+  if (complaint_.first()) return;
+  const JsonView item(value, node_pointer(index), complaint_);
+  if (index >= kMostNodes) return item.complain("there are too many nodes");
+  GltfNode& node = model_.nodes.emplace_back();
+  node.name = item.text("name");
+  node.has_skin = item.has("skin");
+  if (const auto mesh = item.find_index("mesh", kMostNodes, "meshes")) node.mesh = static_cast<std::uint32_t>(*mesh);
+  node.weights = parse_weights(item);
+  parse_transform(item, index);
+  if (const auto extras = value.find("extras"); extras != value.end() && extras->is_object()) {
+    if (const auto mark = extras->find("chronormal"); mark != extras->end())
+      marked_["nodes"][std::to_string(index)]["extras"]["chronormal"] = *mark;
+  }
+  const std::optional<JsonView> children = item.array("children");
+  for (std::size_t c = 0; children && c < children->size(); ++c) {
+    const std::optional<std::size_t> child = children->item(c).as_index(kMostNodes, "nodes");
+    if (!child) return;
+    children_.emplace_back(static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(*child));
+  }
+}
+
+void Parser::parse_transform(const JsonView& item, std::size_t index) {
+  // The numbers of an array that must have `count` of them; false where there is none.
+  const auto read = [&](const char* key, std::size_t count, double* result) {
+    const std::optional<JsonView> array = item.array(key);
+    if (!array) return false;
+    if (array->size() != count) {
+      array->complain("this must be " + std::to_string(count) + " numbers, not " + std::to_string(array->size()));
+      return false;
+    }
+    for (std::size_t i = 0; i < count; ++i) result[i] = array->item(i).as_number();
+    return true;
+  };
+  std::array<double, 16> matrix{};
+  std::array<double, 3> translation = {0, 0, 0}, scale = {1, 1, 1};
+  std::array<double, 4> rotation = {0, 0, 0, 1};
+  const bool has_matrix = read("matrix", 16, matrix.data());
+  const bool has_translation = read("translation", 3, translation.data());
+  const bool has_rotation = read("rotation", 4, rotation.data());
+  const bool has_scale = read("scale", 3, scale.data());
+  const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
+  if (has_matrix) {
+    if (has_translation || has_rotation || has_scale)
+      return item.complain("matrix", "a node has either a matrix or translation, rotation and scale");
+    const double* m = matrix.data();
+    model_.transforms.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
+  } else if (has_translation || has_rotation || has_scale) {
+    const double length = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] +
+                                    (rotation[2] * rotation[2] + rotation[3] * rotation[3]));
+    if (!(std::fabs(length - 1) < 1e-2)) return item.complain("rotation", "the quaternion is not of length 1");
+    for (double& component : rotation) component /= length;
+    model_.transforms.emplace_back(index,
+                                   affine_transform({vector(translation.data()), rotation, vector(scale.data())}));
+  }
+}
+
+void Parser::check_nodes(const JsonView& root) {
+  if (complaint_.first() || !root.has("nodes")) return;
+  const std::size_t count = model_.nodes.size();
+  // What is left of the array was no object.
+  if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
+    return root.complain("nodes", "this must be an array of one object or more");
+  for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
+    const GltfNode& node = model_.nodes[i];
+    if (!node.mesh && node.weights.empty()) continue;
+    const std::size_t mesh = node.mesh.value_or(0);
+    if (node.mesh && mesh >= model_.meshes.size())
+      complaint_.add(node_pointer(i) + "/mesh", "there is no " + std::to_string(mesh) + " among the " +
+                                                    std::to_string(model_.meshes.size()) + " meshes");
+    else if (!node.weights.empty())
+      check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
+  }
+  if (!complaint_.first()) connect_nodes();
+  if (!complaint_.first() && !marked_.empty()) read_marks_of_nodes();
+}
+
+void Parser::connect_nodes() {
+  const std::size_t count = model_.nodes.size();
+  for (const auto& [parent, child] : children_) {
+    const std::string pointer = node_pointer(parent) + "/children";
+    if (child >= count)
+      return complaint_.add(pointer,
+                            "there is no " + std::to_string(child) + " among the " + std::to_string(count) + " nodes");
+    if (model_.nodes[child].parent)
+      return complaint_.add(pointer, "node " + std::to_string(child) + " has a parent already");
+    model_.nodes[child].parent = parent;
+  }
+  // Parents form a forest: whoever meets its own path again is in a circle. Every node is walked over once.
+  std::vector<std::uint32_t> seen_from(count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto mark = static_cast<std::uint32_t>(i + 1);
+    for (std::size_t at = i; seen_from[at] == 0;) {
+      seen_from[at] = mark;
+      if (!model_.nodes[at].parent) break;
+      at = *model_.nodes[at].parent;
+      if (seen_from[at] == mark) return complaint_.add(node_pointer(at), "the node is its own ancestor");
+    }
+  }
+}
+
+// Other programs drop the extras of meshes and keep those of nodes, and some hang the mesh into a node of its own below.
+void Parser::read_marks_of_nodes() {
+  for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+    const GltfNode& node = model_.nodes[i];
+    if (!node.mesh) continue;
+    GltfMesh& mesh = model_.meshes[*node.mesh];
+    const auto read = [&](std::size_t index) {
+      const bool is_known = mesh.mark || mesh.mark_fault;
+      if (!is_known) read_bake_mark(marked_, node_pointer(index), complaint_.place(""), mesh);
+    };
+    read(i);
+    if (node.parent && !model_.nodes[*node.parent].mesh) read(*node.parent);
+  }
+}
+
+std::vector<double> Parser::parse_weights(const JsonView& item) {
+  std::vector<double> weights;
+  const std::optional<JsonView> array = item.array("weights");
+  for (std::size_t i = 0; array && i < array->size(); ++i) weights.push_back(array->item(i).as_number());
+  return weights;
+}
+
+void Parser::check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count) {
+  if (weights.size() != target_count)
+    complaint_.add(pointer + "/weights", "there are " + std::to_string(weights.size()) + " weights for " +
+                                             std::to_string(target_count) + " morph targets");
+}
+
+std::string primitive_pointer(std::size_t mesh, std::size_t primitive) {
+  std::string pointer = "/meshes/";
+  return pointer.append(std::to_string(mesh)).append("/primitives/").append(std::to_string(primitive));
+}
+
+Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset, std::size_t file_bytes) {
+  Parser parser(name, file_bytes);
+  const auto take_node = [&](std::size_t index, const nlohmann::json& item) { parser.parse_node(index, item); };
+  const Result<nlohmann::json> document = parse_json(json, name, offset, {"nodes", take_node});
+  if (!document) return document.error();
+  return parser.parse(document.value());
+}
+
+}  // namespace chronormal::inline internal::gltf

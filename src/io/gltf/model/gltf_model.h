@@ -1,0 +1,115 @@
+/// The JSON of a glTF file as structs, references checked: what the reading of its bytes works from. Private to io.
+///
+/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; here is where each of their arrays
+/// lies. "What is read is checked": a buffer view is checked against its buffer, and an accessor that a primitive or
+/// a sampler names against its buffer view; other accessors only have to be well-formed.
+#ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
+#define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+
+namespace chronormal::inline internal::gltf {
+
+/// The values are those of the format.
+enum class Component { kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125, kFloat = 5126 };
+
+[[nodiscard]] constexpr std::size_t component_size(Component component) noexcept {
+  if (component == Component::kInt8 || component == Component::kUint8) return 1;
+  return component == Component::kInt16 || component == Component::kUint16 ? 2 : 4;
+}
+
+struct Buffer {
+  std::optional<std::string> uri;
+  std::size_t byte_length = 0;
+};
+
+/// A buffer view that EXT_meshopt_compression keeps compressed.
+struct Compression {
+  enum class Mode { kAttributes, kTriangles, kIndices };
+  enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
+
+  std::size_t buffer = 0, offset = 0, length = 0;  ///< of the compressed bytes
+  std::size_t stride = 0, count = 0;               ///< of the elements
+  Mode mode = Mode::kAttributes;
+  Filter filter = Filter::kNone;
+};
+
+struct BufferView {
+  std::size_t buffer = 0, offset = 0, length = 0;
+  std::optional<std::size_t> stride;
+  std::optional<Compression> compression;
+};
+
+struct Sparse {
+  std::size_t count = 0;
+  std::size_t indices_view = 0, indices_offset = 0;
+  Component indices_component = Component::kUint16;
+  std::size_t values_view = 0, values_offset = 0;
+};
+
+struct Accessor {
+  std::optional<std::size_t> view;  ///< nothing: all zeros
+  std::size_t offset = 0, count = 0;
+  Component component = Component::kFloat;
+  std::size_t components = 1;  ///< numbers in an element: 1 for SCALAR, 3 for VEC3
+  bool is_matrix = false, normalized = false;
+  std::optional<Sparse> sparse;
+
+  [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
+};
+
+/// Indices of accessors.
+struct Attributes {
+  std::optional<std::size_t> position, normal, tangent;
+};
+
+/// A primitive that KHR_draco_mesh_compression keeps compressed: ids of attributes in the compressed mesh.
+struct Draco {
+  std::size_t view = 0;
+  Attributes attributes;
+};
+
+struct PrimitiveSource {
+  Attributes base;
+  std::optional<std::size_t> indices;
+  std::vector<Attributes> targets;
+  std::optional<Draco> draco;
+};
+
+struct TrackSource {
+  std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
+};
+
+struct Model {
+  std::vector<Buffer> buffers;
+  std::vector<BufferView> views;
+  std::vector<Accessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
+  std::vector<GltfNode> nodes;
+  std::vector<std::pair<std::size_t, AffineTransform>> transforms;  ///< of nodes that have one, in their order
+  std::vector<GltfAnimation> animations;
+  std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
+  std::vector<std::string> extensions;
+};
+
+/// The JSON pointer of a primitive.
+[[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
+
+/// Takes a document apart: JSON that begins at byte `offset` of the file. file_bytes: the size of the file, which
+/// bounds how many elements an accessor without a buffer view may have. Errors: kInvalidInput, with name and JSON
+/// pointer as the place, or name and byte for what is no JSON.
+[[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
+                                        std::size_t file_bytes);
+
+}  // namespace chronormal::inline internal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_

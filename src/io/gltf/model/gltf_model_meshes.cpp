@@ -1,0 +1,425 @@
+// Meshes, what their accessors must look like, and the animations of their weights.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "io/bytes/binary.h"
+#include "io/gltf/model/gltf_bake_mark.h"
+#include "io/gltf/model/gltf_model_parser.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+// Weights of an expression beyond this are no weights.
+constexpr double kLargestBind = 100;
+
+// Where KHR_animation_pointer points to; empty where it does not.
+std::string pointer_of(const JsonView& target) {
+  const std::optional<JsonView> extensions = target.object("extensions");
+  const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
+  return extension ? extension->required_text("pointer") : std::string();
+}
+
+std::string node_weights(std::size_t node) { return "/nodes/" + std::to_string(node) + "/weights"; }
+
+constexpr std::size_t kAnyId = ~std::uint32_t{0};
+
+std::string number(std::size_t value) { return std::to_string(value); }
+
+bool is_one_of(Component component, std::initializer_list<Component> list) {
+  return std::find(list.begin(), list.end(), component) != list.end();
+}
+
+}  // namespace
+
+void Parser::parse_mesh(const JsonView& item) {
+  GltfMesh mesh;
+  std::vector<PrimitiveSource> sources;
+  mesh.name = item.text("name");
+  const std::optional<JsonView> primitives = item.array("primitives");
+  if (!primitives) item.complain("a mesh has primitives");
+  for (std::size_t p = 0; primitives && p < primitives->size() && !complaint_.first(); ++p) {
+    const JsonView primitive = primitives->item(p);
+    if (primitive.is_object()) parse_primitive(primitive, mesh, sources);
+  }
+  if (complaint_.first()) return;
+
+  mesh.weights = parse_weights(item);
+  if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
+  mesh.weights.resize(mesh.target_count, 0.0);
+  // Names are a convention, not part of the format: what does not fit is no fault.
+  try {
+    const nlohmann::json& names = document_->at(nlohmann::json::json_pointer(item.pointer() + "/extras/targetNames"));
+    if (names.is_array() && names.size() == mesh.target_count)
+      mesh.target_names = names.get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception&) {
+    mesh.target_names.clear();
+  }
+  read_bake_mark(*document_, item.pointer(), complaint_.place(""), mesh);
+  model_.meshes.push_back(std::move(mesh));
+  model_.sources.push_back(std::move(sources));
+}
+
+void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<PrimitiveSource>& sources) {
+  GltfPrimitive primitive;
+  PrimitiveSource source;
+  primitive.mode = static_cast<int>(item.count("mode", 6, 4));
+  const std::optional<JsonView> attributes = item.object("attributes");
+  if (!attributes) return item.complain("attributes", "a primitive has attributes");
+  if (attributes->size() == 0) return attributes->complain("a primitive has at least one attribute");
+
+  source.draco = parse_draco(item, *attributes);
+  if (complaint_.first()) return;
+  primitive.has_draco = source.draco.has_value();
+  if (primitive.has_draco && primitive.mode == 6)
+    return item.complain("mode", "only triangles and strips can be compressed by KHR_draco_mesh_compression");
+  const Attributes compressed = source.draco ? source.draco->attributes : Attributes();
+  source.base.position = parse_use(*attributes, "POSITION", Use::kPosition, primitive.has_draco);
+  if (source.base.position) {
+    primitive.vertex_count = model_.accessors[*source.base.position].count;
+    source.base.normal = parse_use(*attributes, "NORMAL", Use::kNormal, compressed.normal.has_value());
+    source.base.tangent = parse_use(*attributes, "TANGENT", Use::kTangent, compressed.tangent.has_value());
+    if (complaint_.first()) return;
+    for (const auto& [key, index] : {std::pair("NORMAL", source.base.normal), {"TANGENT", source.base.tangent}}) {
+      if (index && model_.accessors[*index].count != primitive.vertex_count)
+        attributes->complain(key, "there are " + number(model_.accessors[*index].count) + " of these for " +
+                                      number(primitive.vertex_count) + " positions");
+    }
+  }
+  source.indices = parse_use(item, "indices", Use::kIndices, primitive.has_draco);
+  if (complaint_.first()) return;
+  primitive.has_normals = source.base.normal.has_value();
+  primitive.has_tangents = source.base.tangent.has_value();
+  primitive.element_count = source.indices ? model_.accessors[*source.indices].count : primitive.vertex_count;
+  if (primitive.element_count > kAnyId || primitive.vertex_count > kAnyId)
+    item.complain("indices of 32 bits cannot name so many vertices");
+
+  parse_targets(item, primitive, source);
+  if (complaint_.first()) return;
+  if (!sources.empty() && primitive.targets.size() != mesh.target_count)
+    item.complain("targets", "the primitive has " + number(primitive.targets.size()) +
+                                 " targets, but the first of its mesh has " + number(mesh.target_count));
+  mesh.target_count = primitive.targets.size();
+  mesh.primitives.push_back(std::move(primitive));
+  sources.push_back(std::move(source));
+}
+
+std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& attributes) {
+  const std::optional<JsonView> extensions = item.object("extensions");
+  const std::optional<JsonView> found = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
+  if (!found) return std::nullopt;
+  Draco draco;
+  draco.view = found->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
+  const std::optional<JsonView> ids = found->object("attributes");
+  if (!ids) {
+    found->complain("attributes", "a compressed primitive has attributes");
+    return std::nullopt;
+  }
+  for (const std::string& key : ids->keys()) {
+    if (!attributes.has(key.c_str())) ids->complain(key.c_str(), "the primitive does not have this attribute");
+  }
+  if (attributes.has("POSITION") && !ids->has("POSITION")) ids->complain("there is no POSITION");
+  draco.attributes.position = ids->find_index("POSITION", kAnyId, "attributes");
+  draco.attributes.normal = ids->find_index("NORMAL", kAnyId, "attributes");
+  draco.attributes.tangent = ids->find_index("TANGENT", kAnyId, "attributes");
+  return draco;
+}
+
+void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source) {
+  const std::optional<JsonView> targets = item.array("targets");
+  for (std::size_t k = 0; targets && k < targets->size() && !complaint_.first(); ++k) {
+    const JsonView target = targets->item(k);
+    if (!target.is_object()) return;
+    if (target.size() == 0) return target.complain("a target moves at least one attribute");
+    if (!source.base.position) {  // nothing of it is read
+      source.targets.emplace_back();
+      primitive.targets.emplace_back();
+      continue;
+    }
+    Attributes moved;
+    const auto read = [&](const char* key, Use use, const std::optional<std::size_t>& base,
+                          std::optional<std::size_t>& result) {
+      if (!target.has(key)) return;
+      if (!base) return target.complain(key, "the target moves an attribute that the primitive does not have");
+      result = parse_use(target, key, use);
+      if (result && model_.accessors[*result].count != primitive.vertex_count)
+        target.complain(key, "the target has " + number(model_.accessors[*result].count) + " of these, but the base " +
+                                 number(primitive.vertex_count));
+    };
+    read("POSITION", Use::kMovedPosition, source.base.position, moved.position);
+    read("NORMAL", Use::kMovedNormal, source.base.normal, moved.normal);
+    read("TANGENT", Use::kMovedTangent, source.base.tangent, moved.tangent);
+    source.targets.push_back(moved);
+    primitive.targets.push_back({moved.position.has_value(), moved.normal.has_value(), moved.tangent.has_value()});
+  }
+}
+
+std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char* key, Use use, bool compressed) {
+  const std::optional<std::size_t> index = object.find_index(key, model_.accessors.size(), "accessors");
+  if (!index || complaint_.first()) return std::nullopt;
+  check_use(object, key, *index, use, compressed);
+  if (complaint_.first()) return std::nullopt;
+  return index;
+}
+
+void Parser::check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed) {
+  using enum Component;
+  const Accessor& accessor = model_.accessors[index];
+  const auto complain = [&](std::string message) {
+    object.complain(key, "accessor " + number(index) + " " + std::move(message));
+  };
+
+  std::size_t components = 3;
+  if (use == Use::kTangent) components = 4;
+  if (use == Use::kIndices || use == Use::kTimes || use == Use::kWeights) components = 1;
+  if (accessor.is_matrix || accessor.components != components)
+    return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)));
+
+  // Section 3.7.2.1 of the specification, and KHR_mesh_quantization.
+  const bool small = is_one_of(accessor.component, {kInt8, kInt16});
+  bool fits = accessor.component == kFloat;
+  switch (use) {
+    case Use::kPosition:
+      fits = fits || (quantized_ && is_one_of(accessor.component, {kInt8, kUint8, kInt16, kUint16}));
+      break;
+    case Use::kMovedPosition:
+      fits = fits || (quantized_ && small);
+      break;
+    case Use::kNormal:
+    case Use::kTangent:
+    case Use::kMovedNormal:
+    case Use::kMovedTangent:
+      fits = fits || (quantized_ && small && accessor.normalized);
+      break;
+    case Use::kTimes:
+      break;
+    case Use::kWeights:
+      fits = fits || (accessor.component != kUint32 && accessor.normalized);
+      break;
+    case Use::kIndices:
+      fits = is_one_of(accessor.component, {kUint8, kUint16, kUint32}) && !accessor.normalized;
+      break;
+  }
+  if (!fits) return complain("has a component type that is not allowed here");
+
+  if (compressed) return;  // what it says of the result is checked when that is there
+  if (accessor.view) check_inside_view(object, key, index, use);
+  const bool moved = use == Use::kMovedPosition || use == Use::kMovedNormal || use == Use::kMovedTangent;
+  constexpr std::size_t kPlausible = 65536;
+  if (!accessor.view && !moved && accessor.count > file_bytes_ + kPlausible)
+    return complain("has " + number(accessor.count) + " elements without a buffer view, in a file of " +
+                    number(file_bytes_) + " bytes");
+  if (accessor.sparse) check_sparse(object, key, index);
+}
+
+void Parser::check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use) {
+  const Accessor& accessor = model_.accessors[index];
+  const BufferView& view = model_.views[*accessor.view];
+  const auto complain = [&](std::string message) {
+    object.complain(key, "accessor " + number(index) + " " + std::move(message));
+  };
+  const bool is_attribute = use != Use::kIndices && use != Use::kTimes && use != Use::kWeights;
+  if (!is_attribute) check_unstrided(object, key, view, "an accessor of indices, times or weights");
+  const std::size_t size = accessor.element_size(), stride = view.stride.value_or(size);
+  const std::size_t alignment = component_size(accessor.component);
+  if (accessor.offset % alignment != 0 || (view.offset + accessor.offset) % alignment != 0)
+    return complain("is not aligned to its components of " + number(alignment) + " bytes");
+  if (is_attribute && (accessor.offset % 4 != 0 || stride % 4 != 0))
+    return complain("is an attribute, whose elements must be aligned to 4 bytes");
+  if (stride < size)
+    return complain("has elements of " + number(size) + " bytes, more than the byteStride of " + number(stride));
+  if (accessor.offset > view.length || view.length - accessor.offset < size ||
+      accessor.count - 1 > (view.length - accessor.offset - size) / stride)
+    return complain("ends beyond buffer view " + number(*accessor.view) + ", which has " + number(view.length) +
+                    " bytes");
+}
+
+void Parser::check_sparse(const JsonView& object, const char* key, std::size_t index) {
+  const Accessor& accessor = model_.accessors[index];
+  const Sparse& sparse = *accessor.sparse;
+  const auto check = [&](std::size_t view_index, std::size_t offset, std::size_t size, Component component,
+                         const char* what) {
+    const BufferView& view = model_.views[view_index];
+    check_unstrided(object, key, view, "a sparse accessor");
+    const std::size_t alignment = component_size(component);
+    if ((view.offset + offset) % alignment != 0)
+      object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) + " are not aligned");
+    if (offset > view.length || !binary::fits(sparse.count, size, view.length - offset))
+      object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
+                               " end beyond buffer view " + number(view_index) + ", which has " + number(view.length) +
+                               " bytes");
+  };
+  check(sparse.indices_view, sparse.indices_offset, component_size(sparse.indices_component), sparse.indices_component,
+        "indices");
+  check(sparse.values_view, sparse.values_offset, accessor.element_size(), accessor.component, "values");
+}
+
+void Parser::check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what) {
+  if (view.stride) object.complain(key, std::string("the buffer view of ").append(what) + " has a byteStride");
+}
+
+std::vector<std::size_t> Parser::nodes_pointed_to(const JsonView& target) {
+  const std::string pointer = pointer_of(target);
+  const auto index_in = [&](std::string_view list) -> std::optional<std::size_t> {
+    std::size_t index = 0;
+    if (!pointer.starts_with(list)) return std::nullopt;
+    const char* const end = pointer.data() + pointer.size();
+    const auto [stop, code] = std::from_chars(pointer.data() + list.size(), end, index);
+    return code == std::errc() && std::string_view(stop, end) == "/weights" ? std::optional(index) : std::nullopt;
+  };
+  const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
+  if ((node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {
+    target.complain("there is no " + pointer);
+    return {};
+  }
+  if (node) return {*node};
+  std::vector<std::size_t> nodes, all;
+  for (std::size_t n = 0; mesh && n < model_.nodes.size(); ++n) {
+    if (model_.nodes[n].mesh != mesh) continue;
+    all.push_back(n);
+    if (model_.nodes[n].weights.empty()) nodes.push_back(n);
+  }
+  // Where all nodes have their own weights, nobody shows those of the mesh.
+  if (nodes.empty() && !all.empty()) nodes.push_back(all.front());
+  return nodes;
+}
+
+void Parser::parse_animation(const JsonView& item) {
+  GltfAnimation animation;
+  std::vector<TrackSource> sources;
+  std::set<std::string> driven;
+  animation.name = item.text("name");
+  const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
+  if (!channels || !samplers) return item.complain("an animation has channels and samplers");
+  animation.channel_count = channels->size();
+  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) {
+    const JsonView channel = channels->item(c);
+    if (!channel.is_object()) return;
+    const std::optional<JsonView> target = channel.object("target");
+    if (!target) return channel.complain("target", "a channel has a target");
+    const std::string path = target->required_text("path");
+    std::vector<std::size_t> nodes;
+    if (path == "pointer") {
+      nodes = nodes_pointed_to(*target);
+    } else if (path == "weights" && target->has("node")) {
+      if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) nodes.push_back(*node);
+    }
+    if (nodes.empty()) continue;
+    for (const std::size_t node : nodes) parse_track(item, channel, c, node, animation, sources);
+    const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(nodes.front());
+    if (!driven.insert(weights).second) target->complain("the animation has two channels for these weights");
+  }
+  // The same numbers mean the same weights only by the same interpolation, for as many targets.
+  std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
+  for (std::size_t t = 0; t < sources.size(); ++t) {
+    GltfTrack& track = animation.tracks[t];
+    const std::size_t target_count = model_.meshes[*model_.nodes[track.node].mesh].target_count;
+    const std::tuple curve(sources[t].input, sources[t].output, track.interpolation, target_count);
+    track.same_keys_as = first_track.try_emplace(curve, t).first->second;
+  }
+  model_.animations.push_back(std::move(animation));
+  model_.track_sources.push_back(std::move(sources));
+}
+
+void Parser::parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index,
+                         std::size_t node, GltfAnimation& result, std::vector<TrackSource>& sources) {
+  GltfTrack track;
+  TrackSource source;
+  const JsonView target = *channel.object("target"), samplers = *animation.array("samplers");
+  const std::optional<std::size_t> sampler_index = channel.required_index("sampler", samplers.size(), "samplers");
+  if (!sampler_index) return;
+  track.node = node;
+  track.channel = channel_index;
+  source.sampler = *sampler_index;
+  const std::optional<std::uint32_t> mesh = model_.nodes[track.node].mesh;
+  const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
+  if (target_count == 0) return target.complain("node", "the node has no mesh with morph targets to give weights to");
+
+  const JsonView sampler = samplers.item(source.sampler);
+  if (!sampler.is_object()) return;
+  const std::string interpolation = sampler.text("interpolation");
+  if (interpolation == "STEP")
+    track.interpolation = GltfInterpolation::kStep;
+  else if (interpolation == "CUBICSPLINE")
+    track.interpolation = GltfInterpolation::kCubicSpline;
+  else if (!interpolation.empty() && interpolation != "LINEAR")
+    sampler.complain("interpolation", "the interpolation is none of LINEAR, STEP, CUBICSPLINE");
+  for (const char* key : {"input", "output"}) {
+    if (!sampler.has(key)) sampler.complain(std::string("there is no ").append(key));
+  }
+  const std::optional<std::size_t> input = parse_use(sampler, "input", Use::kTimes);
+  const std::optional<std::size_t> output = parse_use(sampler, "output", Use::kWeights);
+  if (!input || !output) return;
+
+  track.key_count = model_.accessors[*input].count;
+  const std::size_t per_key = target_count * (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1);
+  const std::size_t given = model_.accessors[*output].count;
+  if (given % per_key != 0 || given / per_key != track.key_count)
+    return sampler.complain("output", "there are " + number(given) + " weights for " + number(track.key_count) +
+                                          " keys of " + number(per_key));
+  if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2)
+    return sampler.complain("input", "a cubic spline has two keys or more");
+  source.input = *input;
+  source.output = *output;
+  result.tracks.push_back(track);
+  sources.push_back(source);
+}
+
+namespace {
+
+// Calls visit(name, binds) for each expression of a VRM avatar, as its version has them.
+template <class Visit>
+void for_each_expression(const nlohmann::json& root, const Visit& visit) {
+  using Pointer = nlohmann::json::json_pointer;
+  const Pointer of_0("/extensions/VRM/blendShapeMaster/blendShapeGroups");
+  if (root.contains(of_0) && root[of_0].is_array()) {
+    for (const nlohmann::json& group : root[of_0])
+      if (group.is_object() && group.contains("binds")) visit(group["binds"]);
+  }
+  for (const char* const list :
+       {"/extensions/VRMC_vrm/expressions/preset", "/extensions/VRMC_vrm/expressions/custom"}) {
+    const Pointer of_1(list);
+    if (!root.contains(of_1) || !root[of_1].is_object()) continue;
+    for (const nlohmann::json& expression : root[of_1])
+      if (expression.is_object() && expression.contains("morphTargetBinds")) visit(expression["morphTargetBinds"]);
+  }
+}
+
+// A number of an object that is a whole one below a limit.
+std::optional<std::size_t> whole_below(const nlohmann::json& object, const char* key, std::size_t limit) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  if (!(value >= 0 && value < static_cast<double>(limit)) || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::size_t>(value);
+}
+
+}  // namespace
+
+void Parser::parse_expressions(const nlohmann::json& root) {
+  for_each_expression(root, [&](const nlohmann::json& binds) {
+    std::map<std::size_t, std::vector<double>> of_meshes;
+    if (!binds.is_array()) return;
+    for (const nlohmann::json& bind : binds) {
+      if (!bind.is_object() || !bind.contains("weight") || !bind["weight"].is_number()) continue;
+      // Version 0 names the mesh, and weights in percent; version 1 a node of it, and weights from 0 to 1.
+      const auto node = whole_below(bind, "node", model_.nodes.size());
+      auto mesh = whole_below(bind, "mesh", model_.meshes.size());
+      if (node && model_.nodes[*node].mesh) mesh = *model_.nodes[*node].mesh;
+      const auto target = mesh ? whole_below(bind, "index", model_.meshes[*mesh].target_count) : std::nullopt;
+      const double weight = bind["weight"].get<double>() / (node ? 1 : 100);
+      if (!target || !(std::fabs(weight) <= kLargestBind)) continue;
+      std::vector<double>& weights = of_meshes[*mesh];
+      weights.resize(model_.meshes[*mesh].target_count);
+      weights[*target] = weight;
+    }
+    for (auto& [mesh, weights] : of_meshes) model_.meshes[mesh].expressions.push_back(std::move(weights));
+  });
+}
+
+}  // namespace chronormal::inline internal::gltf

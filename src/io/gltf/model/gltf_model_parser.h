@@ -1,0 +1,95 @@
+/// The parser behind parse_model(), declared once for its two source files. Private to io.
+#ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_PARSER_H_
+#define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_PARSER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/gltf/model/gltf_model.h"
+#include "io/json/json.h"
+
+namespace chronormal::inline internal::gltf {
+
+class Parser {
+ public:
+  Parser(const std::string& name, std::size_t file_bytes) : complaint_(name), file_bytes_(file_bytes) {}
+
+  /// Parses a node, which may come before all else.
+  void parse_node(std::size_t index, const nlohmann::json& value);
+  /// Parses the rest, and checks nodes against it.
+  Result<Model> parse(const nlohmann::json& document);
+
+ private:
+  /// What an accessor is used for, which decides what it may look like.
+  enum class Use {
+    kPosition,
+    kNormal,
+    kTangent,
+    kMovedPosition,
+    kMovedNormal,
+    kMovedTangent,
+    kIndices,
+    kTimes,
+    kWeights
+  };
+
+  template <class Parse>
+  void for_each_item(const JsonView& root, const char* key, const Parse& parse) {
+    const std::optional<JsonView> items = root.array(key);
+    for (std::size_t i = 0; items && i < items->size() && !complaint_.first(); ++i) {
+      if (const JsonView item = items->item(i); item.is_object()) parse(item);
+    }
+  }
+
+  void parse_asset(const JsonView& root);
+  void parse_buffer(const JsonView& item);
+  void parse_view(const JsonView& item);
+  std::optional<Compression> parse_compression(const JsonView& item, const BufferView& view);
+  void parse_accessor(const JsonView& item);
+  void parse_sparse(const JsonView& item, Accessor& accessor);
+  void parse_transform(const JsonView& item, std::size_t index);
+  void check_nodes(const JsonView& root);
+  void connect_nodes();
+  /// Gives meshes without a mark of a bake the one of a node that carries them, or of the node above that.
+  void read_marks_of_nodes();
+  /// The member "weights" of a mesh or node; empty where there is none.
+  static std::vector<double> parse_weights(const JsonView& item);
+  void check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count);
+
+  void parse_mesh(const JsonView& item);
+  void parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
+  std::optional<Draco> parse_draco(const JsonView& item, const JsonView& attributes);
+  void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
+  /// The accessor that a member names, checked for its use; nothing where there is none, or after a complaint.
+  std::optional<std::size_t> parse_use(const JsonView& object, const char* key, Use use, bool compressed = false);
+  void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
+  void check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use);
+  void check_sparse(const JsonView& object, const char* key, std::size_t index);
+  void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
+
+  void parse_animation(const JsonView& item);
+  /// The nodes whose weights a target of a channel drives by KHR_animation_pointer; none where it drives something else.
+  std::vector<std::size_t> nodes_pointed_to(const JsonView& target);
+  void parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index, std::size_t node,
+                   GltfAnimation& result, std::vector<TrackSource>& sources);
+  /// The expressions of a VRM avatar. What is not as they are defined is passed over: no geometry depends on it.
+  void parse_expressions(const nlohmann::json& root);
+
+  const nlohmann::json* document_ = nullptr;
+  JsonComplaint complaint_;
+  std::size_t file_bytes_;
+  bool quantized_ = false;
+  Model model_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
+  nlohmann::json marked_;                                          // extras.chronormal of nodes, each at its pointer
+};
+
+}  // namespace chronormal::inline internal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_PARSER_H_

@@ -1,0 +1,150 @@
+#include "io/gltf/model/gltf_uri.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace chronormal::inline internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint8_t kNoDigit = 255;
+
+constexpr std::array<std::uint8_t, 256> base64_digits() {
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<std::uint8_t, 256> digits{};
+  for (std::uint8_t& digit : digits) digit = kNoDigit;
+  for (std::size_t i = 0; i < kAlphabet.size(); ++i)
+    digits[static_cast<unsigned char>(kAlphabet[i])] = static_cast<std::uint8_t>(i);
+  return digits;
+}
+
+// Nothing where the text is not base64. Padding may be missing, as it often is.
+std::optional<std::string> decode_base64(std::string_view text) {
+  static constexpr std::array<std::uint8_t, 256> kDigits = base64_digits();
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  if (text.size() % 4 == 1) return std::nullopt;
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int bit_count = 0;
+  for (const char c : text) {
+    const std::uint8_t digit = kDigits[static_cast<unsigned char>(c)];
+    if (digit == kNoDigit) return std::nullopt;
+    bits = (bits << 6) | digit;
+    bit_count += 6;
+    if (bit_count >= 8) {
+      bit_count -= 8;
+      bytes += static_cast<char>((bits >> bit_count) & 0xFF);
+    }
+  }
+  return bytes;
+}
+
+int hexadecimal(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::optional<std::string> decode_percent(std::string_view uri) {
+  std::string path;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      path += uri[i];
+      continue;
+    }
+    if (uri.size() - i < 3) return std::nullopt;
+    const int high = hexadecimal(uri[i + 1]), low = hexadecimal(uri[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    path += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  if (path.find('\0') != std::string::npos) return std::nullopt;
+  return path;
+}
+
+// "http:", "file:", "C:" and the like.
+bool has_scheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  return colon != std::string_view::npos && colon < uri.find('/') && colon > 0;
+}
+
+bool is_inside(const fs::path& path, const fs::path& folder) {
+  const auto [in_folder, in_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return in_folder == folder.end() && in_path != path.end();
+}
+
+Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place) {
+  const std::optional<std::string> relative = decode_percent(uri);
+  if (!relative || relative->empty()) return invalid_input(place, "the URI names no file");
+  if (has_scheme(uri)) return invalid_input(place, "only files beside the asset can be read, not other schemes");
+  return fs::path(*relative);
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) noexcept { return uri.starts_with("data:"); }
+
+Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, const std::string& place) {
+  constexpr std::string_view kPrefixes[] = {"data:application/octet-stream;base64,",
+                                            "data:application/gltf-buffer;base64,"};
+  for (const std::string_view prefix : kPrefixes) {
+    if (!uri.starts_with(prefix)) continue;
+    const std::string_view text = uri.substr(prefix.size());
+    if (text.size() / 4 * 3 + 3 < least)
+      return invalid_input(place, "the data URI holds fewer than the " + std::to_string(least) + " bytes declared");
+    std::optional<std::string> bytes = decode_base64(text);
+    if (!bytes) return invalid_input(place, "the data URI is not base64");
+    if (bytes->size() < least)
+      return invalid_input(place, "the data URI holds " + std::to_string(bytes->size()) + " bytes, but byteLength is " +
+                                      std::to_string(least));
+    return std::move(*bytes);
+  }
+  return invalid_input(place,
+                       "the data URI of a buffer must begin with data:application/octet-stream;base64, or "
+                       "data:application/gltf-buffer;base64,");
+}
+
+Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
+                                     bool allow_external, const std::string& place) {
+  const Result<fs::path> relative = decode_file_uri(uri, place);
+  if (!relative) return relative.error();
+  const fs::path& path_in_uri = relative.value();
+  if (!allow_external && !folder)
+    return invalid_input(place,
+                         "the asset came from standard input, so there is no folder for its files; "
+                         "--allow-external takes the current one");
+  if (!allow_external && path_in_uri.is_absolute())
+    return invalid_input(place, "the URI is an absolute path; --allow-external reads it");
+
+  const fs::path base = folder && !folder->empty() ? fs::path(*folder) : fs::path(".");
+  const fs::path path = base / path_in_uri;
+  std::error_code code;
+  const fs::path real_base = fs::canonical(base, code);
+  const fs::path real = code ? fs::path() : fs::weakly_canonical(path, code);
+  if (!allow_external && (code || !is_inside(real, real_base)))
+    return invalid_input(place, "the URI leads out of the folder of the asset; --allow-external reads it");
+  const fs::file_status status = fs::status(path, code);
+  if (!fs::exists(status)) return invalid_input(place, std::string("there is no file ").append(path.string()));
+  if (!fs::is_regular_file(status))
+    return invalid_input(place, std::string(path.string()).append(" is not a regular file"));
+  return path.string();
+}
+
+Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
+                                  const std::string& place) {
+  const Result<fs::path> relative = decode_file_uri(uri, place);
+  if (!relative) return relative.error();
+  const fs::path path = relative.value().lexically_normal();
+  if (path.is_absolute() || *path.begin() == "..")
+    return invalid_input(place, "the URI leads out of the folder of the asset");
+  return (fs::path(folder.value_or("")) / path).string();
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,454 @@
+// A vertex is judged by what its form adds up to in each pose, as each kind of host keeps the deltas. Poses are columns
+// of weights side by side, so that a delta is added to many poses in one loop over memory.
+#include "workflow/bake/judge/host_judge.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <deque>
+
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 32;
+constexpr int kFineBits = 16;
+constexpr std::size_t kMostRounded = 32;  // poses in which rounding is measured
+constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
+
+// The same without what is too fine, or a compressor's own: halves, and numbers of so many bits. What is left is what
+// becomes of lengths: they are kept, or made 1, or cut.
+Host judged_as(Host host) {
+  host.bits = host.normals == NormalRule::kClamped ? kFineBits : 32;
+  host.octahedral_base = false;
+  return host;
+}
+
+bool shows_alike(const Host& a, const Host& b) {
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
+}
+
+bool is_rounding(const Host& host) { return host.normals == NormalRule::kClamped && host.bits < kFineBits; }
+
+// Whether all hosts that do not round show the same of these deltas.
+bool is_plain(const Vec3f& normal, std::span<const VertexColumns::Entry> entries) {
+  const auto is_unit = [](const Vec3f& v) { return std::fabs(dot(v, v) - 1) < 1e-4F; };
+  if (entries.empty()) return true;
+  return is_unit(normal) && std::all_of(entries.begin(), entries.end(), [&](const VertexColumns::Entry& entry) {
+           return max_abs(to_double(entry.delta)) <= 1 && is_unit(normal + entry.delta);
+         });
+}
+
+// Sums of one vertex in many poses.
+class Sums {
+ public:
+  // weights are (columns, poses).
+  void add_up(const Host& host, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
+              std::span<const float> weights, std::size_t stride, std::size_t first, std::size_t count) {
+    const Vec3f base = kept_normal(host, normal);
+    x_.assign(count, base.x);
+    y_.assign(count, base.y);
+    z_.assign(count, base.z);
+    for (const auto& [column, delta] : entries) {
+      const Vec3f kept = kept_delta(host, normal, delta);
+      const float* const w = weights.data() + column * stride + first;
+      for (std::size_t p = 0; p < count; ++p) {
+        x_[p] += w[p] * kept.x;
+        y_[p] += w[p] * kept.y;
+        z_[p] += w[p] * kept.z;
+      }
+    }
+  }
+
+  // Degrees; negative where the right normal is not known.
+  [[nodiscard]] float angle_to(const Vec3f& right, std::size_t p) const {
+    if (right == Vec3f{}) return -1;
+    const Vec3f shown = {x_[p], y_[p], z_[p]};
+    const Vec3f aside = cross(shown, right);
+    const float along = dot(shown, right), across = std::sqrt(dot(aside, aside));
+    const float angle = kDegrees * std::atan2(across, along);
+    return (shown == Vec3f{} || !std::isfinite(angle)) ? 180 : angle;
+  }
+
+ private:
+  std::vector<float> x_, y_, z_;
+};
+
+std::vector<float> side_by_side(const PoseList& poses) {
+  std::vector<float> weights(poses.empty() ? 0 : poses.size() * poses[0].size());
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    for (std::size_t c = 0; c < poses[p].size(); ++c) weights[c * poses.size() + p] = static_cast<float>(poses[p][c]);
+  }
+  return weights;
+}
+
+constexpr std::size_t kBins = 160;
+constexpr float kBinsPerOctave = 8, kLeastBin = 1e-3F;
+
+// The exponent of a float counts octaves, and its fraction is held against eighths of one.
+std::size_t bin_of(float degrees) {
+  constexpr std::array<float, 7> kEighths = {1.0905077F, 1.1892071F, 1.2968396F, 1.4142135F,
+                                             1.5422108F, 1.6817929F, 1.8340081F};
+  const auto bits = std::bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
+  const float fraction = std::bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
+  std::size_t bin = std::size_t{8} * ((bits >> 23) - 127);
+  for (const float eighth : kEighths) bin += fraction >= eighth ? 1 : 0;
+  return std::min(kBins - 1, bin);
+}
+
+// Errors with their spread, to a tenth of themselves.
+struct Spread {
+  std::size_t count = 0;
+  double sum = 0, worst = 0;
+  std::array<std::size_t, kBins> bins{};
+
+  void add(const Spread& other) {
+    count += other.count;
+    sum += other.sum;
+    worst = std::fmax(worst, other.worst);
+    for (std::size_t b = 0; b < kBins; ++b) bins[b] += other.bins[b];
+  }
+  [[nodiscard]] ShownErrors errors() const {
+    ShownErrors result{count, count > 0 ? sum / static_cast<double>(count) : 0, 0, worst};
+    std::size_t beyond = count / 1000, b = kBins - 1;
+    while (b > 0 && bins[b] <= beyond) beyond -= bins[b--];
+    const float upper = kLeastBin * std::exp2(static_cast<float>(b + 1) / kBinsPerOctave);
+    result.most = b == 0 ? 0 : std::fmin(static_cast<double>(upper), worst);
+    return result;
+  }
+};
+
+// The same while it is gathered: numbers of vertices, which are added up in their order, and counts, for which the order
+// does not matter.
+struct Gathered {
+  explicit Gathered(std::size_t vertices) : sum(vertices), worst(vertices), counts(vertices) {}
+
+  void add(std::size_t n, std::span<const float> errors, std::span<const float> known) {
+    std::array<std::uint32_t, kBins> here{};
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      if (known[p] < 0) continue;
+      sum[n] += errors[p];
+      worst[n] = std::fmax(worst[n], errors[p]);
+      ++counts[n];
+      ++here[bin_of(errors[p])];
+    }
+    for (std::size_t b = 0; b < kBins; ++b)
+      if (here[b] > 0) bins[b].fetch_add(here[b], std::memory_order_relaxed);
+  }
+  [[nodiscard]] Spread spread() const {
+    Spread result;
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+      result.count += counts[n];
+      result.sum += static_cast<double>(sum[n]);
+      result.worst = std::fmax(result.worst, static_cast<double>(worst[n]));
+    }
+    for (std::size_t b = 0; b < kBins; ++b) result.bins[b] = bins[b];
+    return result;
+  }
+
+  std::vector<float> sum, worst;
+  std::vector<std::uint32_t> counts;
+  std::array<std::atomic<std::size_t>, kBins> bins{};
+};
+
+// The same of the stored forms and of the chosen ones, in each kind of host.
+struct GatheredPairs {
+  GatheredPairs(std::size_t kinds, std::size_t vertices) {
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      before.emplace_back(vertices);
+      after.emplace_back(vertices);
+    }
+  }
+
+  // errors has those of the stored form at all poses, and then those of the chosen one.
+  void add(std::size_t vertex, std::size_t kind, std::span<const float> errors) {
+    const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
+    before[kind].add(vertex, then, then);
+    after[kind].add(vertex, now, then);
+  }
+
+  std::deque<Gathered> before, after;  // they cannot be moved
+};
+
+// Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
+// those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where 99.9 %
+// are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below.
+void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
+  const ShownErrors then = before.spread().errors(), now = after.spread().errors();
+  const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.most, tolerance);
+  for (std::size_t n = 0; n < noted.size(); ++n) {
+    const bool grew = after.worst[n] > before.worst[n] && static_cast<double>(after.worst[n]) > high;
+    if (grew || (now.mean > then.mean && after.sum[n] > before.sum[n])) noted[n] = 1;
+  }
+}
+
+// The columns of the form that each vertex has.
+VertexColumns chosen_form(std::span<const VertexColumns> forms, std::span<const std::uint8_t> choice) {
+  VertexColumns result;
+  result.first.push_back(0);
+  for (std::size_t n = 0; n < choice.size(); ++n) {
+    const auto entries = forms[choice[n]].of(n);
+    result.entries.insert(result.entries.end(), entries.begin(), entries.end());
+    result.first.push_back(result.entries.size());
+  }
+  return result;
+}
+
+}  // namespace
+
+Vec3f VertexVectors::at(std::size_t vertex) const noexcept {
+  const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
+  return found == vertices.end() || *found != vertex ? Vec3f{}
+                                                     : vectors[static_cast<std::size_t>(found - vertices.begin())];
+}
+
+VertexColumns by_vertex(std::span<const VertexVectors* const> columns, std::span<const std::uint32_t> vertices) {
+  VertexColumns result;
+  result.first.assign(vertices.size() + 1, 0);
+  // Both lists ascend.
+  const auto walk = [&](const VertexVectors& column, const auto& visit) {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < column.vertices.size(); ++k) {
+      while (n < vertices.size() && vertices[n] < column.vertices[k]) ++n;
+      if (n < vertices.size() && vertices[n] == column.vertices[k] && column.vectors[k] != Vec3f{}) visit(n, k);
+    }
+  };
+  for (const VertexVectors* column : columns) walk(*column, [&](std::size_t n, std::size_t) { ++result.first[n + 1]; });
+  for (std::size_t n = 0; n < vertices.size(); ++n) result.first[n + 1] += result.first[n];
+  result.entries.resize(result.first.back());
+  std::vector<std::size_t> next(result.first.begin(), result.first.end() - 1);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    walk(*columns[c], [&](std::size_t n, std::size_t k) {
+      result.entries[next[n]++] = {static_cast<std::uint32_t>(c), columns[c]->vectors[k]};
+    });
+  }
+  return result;
+}
+
+HostJudge::HostJudge(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                     std::span<const std::uint32_t> element_of_vertex, const std::vector<bool>& is_new,
+                     std::span<const Host> hosts, std::vector<bool> is_binding, double tolerance)
+    : rights_(rights),
+      vertices_(vertices),
+      element_of_vertex_(element_of_vertex),
+      is_new_(is_new),
+      hosts_(hosts.begin(), hosts.end()),
+      is_binding_(std::move(is_binding)),
+      tolerance_(tolerance) {}
+
+std::vector<float> HostJudge::worst(const VertexColumns& form, const PoseList& poses) const {
+  std::vector<float> result(vertices_.size(), 0.0F);
+  const std::vector<float> weights = side_by_side(poses);
+  rights_.for_each(vertices_, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
+    thread_local Sums sums;
+    sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), form.of(n), weights, poses.size(), first, right.size());
+    for (std::size_t p = 0; p < right.size(); ++p) result[n] = std::fmax(result[n], sums.angle_to(right[p], p));
+  });
+  return result;
+}
+
+std::vector<HostJudge::Kind> HostJudge::kinds_of(const PoseSet& set) const {
+  std::vector<Kind> kinds;
+  for (const std::size_t h : set.hosts) {
+    const Host host = judged_as(hosts_[h]);
+    const auto known =
+        std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return shows_alike(k.host, host); });
+    if (known == kinds.end())
+      kinds.push_back({host, is_binding_[h]});
+    else
+      known->is_binding = known->is_binding || is_binding_[h];
+  }
+  return kinds;
+}
+
+// Calls visit(n, kind, errors) for batches of poses and all kinds of hosts; errors are those of each form, (forms,
+// poses).
+template <class Visit>
+void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set, std::span<const Kind> kinds,
+                        const Visit& visit) const {
+  const std::vector<float> weights = side_by_side(set.poses);
+  std::vector<std::uint32_t> some;
+  for (const std::uint32_t n : set.numbers) some.push_back(vertices_[n]);
+  const std::span<const std::uint32_t> vertices = some.empty() ? vertices_ : some;
+  // (forms, vertices)
+  std::vector<char> are_plain(forms.size() * vertices.size());
+  parallel_each(are_plain.size(), kBlock, [&](std::size_t i) {
+    const std::size_t at = i % vertices.size();
+    const auto entries = forms[i / vertices.size()].of(some.empty() ? at : set.numbers[at]);
+    are_plain[i] = is_plain(to_float(rights_.stored(vertices[at])), entries) ? 1 : 0;
+  });
+  rights_.for_each(vertices, set.poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
+    thread_local Sums sums;
+    thread_local std::vector<float> errors;
+    const std::size_t n = some.empty() ? at : set.numbers[at];
+    const Vec3f normal = to_float(rights_.stored(vertices_[n]));
+    errors.resize(forms.size() * right.size());
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      for (std::size_t f = 0; f < forms.size(); ++f) {
+        // Where these show what the kind before showed, it has been added up.
+        const bool is_known = kind > 0 && !is_rounding(kinds[kind].host) && !is_rounding(kinds[kind - 1].host) &&
+                              are_plain[f * vertices.size() + at] != 0;
+        if (is_known) continue;
+        sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, set.poses.size(), first, right.size());
+        for (std::size_t p = 0; p < right.size(); ++p) errors[f * right.size() + p] = sums.angle_to(right[p], p);
+      }
+      visit(n, kind, std::span<const float>(errors));
+    }
+  });
+}
+
+std::vector<std::uint8_t> HostJudge::choose(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
+                                            FormPreference preference) const {
+  const std::size_t count = vertices_.size(), form_count = forms.size();
+  std::vector<char> is_harmful(count * form_count, 0);
+  std::vector<float> squares(count * form_count, 0.0F);
+  const bool prefers_last = preference == FormPreference::kLast;
+  for (const PoseSet& set : sets) {
+    const bool is_mixed = set.kind != PoseSet::Kind::kFile;
+    if (is_mixed && preference == FormPreference::kNearestInFile) continue;
+    std::vector<Kind> kinds = kinds_of(set);
+    kinds.erase(std::remove_if(kinds.begin(), kinds.end(), [](const Kind& kind) { return !kind.is_binding; }),
+                kinds.end());
+    compare(forms, set, kinds, [&](std::size_t n, std::size_t, std::span<const float> errors) {
+      const std::size_t poses = errors.size() / form_count;
+      for (std::size_t f = 0; f < form_count; ++f) {
+        for (std::size_t p = 0; p < poses; ++p) {
+          const float before = errors[p], after = errors[f * poses + p];
+          if (before < 0) continue;
+          squares[n * form_count + f] += after * after;
+          if (!is_mixed && is_harmed(before, after)) {
+            is_harmful[n * form_count + f] = 1;
+          }
+        }
+      }
+    });
+  }
+  // The vertices of an element choose together.
+  std::vector<char> harmful_element;
+  std::vector<double> of_element;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t at = element_of_vertex_[vertices_[n]] * form_count;
+    if (of_element.size() < at + form_count) {
+      of_element.resize(at + form_count, 0.0);
+      harmful_element.resize(at + form_count, 0);
+    }
+    for (std::size_t f = 0; f < form_count; ++f) {
+      of_element[at + f] += static_cast<double>(squares[n * form_count + f]);
+      const bool is_no_choice = is_new_[vertices_[n]] ? f == 0 : is_harmful[n * form_count + f] != 0;
+      if (is_no_choice) harmful_element[at + f] = 1;
+    }
+  }
+  std::vector<std::uint8_t> choice(count, 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t at = element_of_vertex_[vertices_[n]] * form_count;
+    const std::size_t least = is_new_[vertices_[n]] ? 1 : 0;
+    std::size_t best = least;
+    for (std::size_t f = least + 1; f < form_count; ++f) {
+      const std::size_t than = prefers_last ? least : best;
+      if (harmful_element[at + f] == 0 && (of_element[at + f] < of_element[at + than] || (prefers_last && least > 0)))
+        best = f;
+    }
+    choice[n] = static_cast<std::uint8_t>(best);
+  }
+  return choice;
+}
+
+std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
+                                          std::vector<std::uint8_t>& choice) const {
+  constexpr int kMostRounds = 6;
+  struct Errors {
+    Spread before, after;
+  };
+  std::array<std::vector<Errors>, kPoseKinds> of_hosts;
+  for (int round = 0; round < kMostRounds; ++round) {
+    of_hosts.fill(std::vector<Errors>(hosts_.size()));
+    std::vector<char> is_harmful(vertices_.size(), 0), makes_worse(vertices_.size(), 0);
+    const std::array<VertexColumns, 2> both = {forms[0], chosen_form(forms, choice)};
+    for (const PoseSet& set : sets) {
+      const std::vector<Kind> kinds = kinds_of(set);
+      GatheredPairs gathered(kinds.size(), vertices_.size());
+      compare(both, set, kinds, [&](std::size_t n, std::size_t kind, std::span<const float> errors) {
+        if (is_new_[vertices_[n]]) return;
+        gathered.add(n, kind, errors);
+        const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
+        if (set.kind != PoseSet::Kind::kFile || !kinds[kind].is_binding) return;
+        for (std::size_t p = 0; p < then.size(); ++p)
+          if (is_harmed(then[p], now[p])) is_harmful[n] = 1;
+      });
+      for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+        if (set.kind != PoseSet::Kind::kFile && kinds[kind].is_binding)
+          note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, makes_worse);
+        const Spread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
+        for (const std::size_t h : set.hosts) {
+          if (!shows_alike(judged_as(hosts_[h]), kinds[kind].host)) continue;
+          Errors& errors = of_hosts[static_cast<std::size_t>(set.kind)][h];
+          errors.before.add(then);
+          errors.after.add(now);
+        }
+      }
+    }
+    // What is judged pose by pose comes first: it may be all that made the mixed poses worse.
+    const bool any_harmful = std::find(is_harmful.begin(), is_harmful.end(), 1) != is_harmful.end();
+    if (!return_to_stored(any_harmful ? is_harmful : makes_worse, choice)) break;
+  }
+  // What a compressor rounds is measured too, at some of the poses of the file.
+  const std::array<VertexColumns, 2> both = {forms[0], chosen_form(forms, choice)};
+  std::vector<Errors>& of_file = of_hosts[static_cast<std::size_t>(PoseSet::Kind::kFile)];
+  for (std::size_t h = 0; h < hosts_.size(); ++h)
+    if (is_rounding(hosts_[h])) of_file[h] = Errors();
+  for (const PoseSet& set : sets) {
+    if (set.kind != PoseSet::Kind::kFile) continue;
+    std::vector<Kind> kinds;
+    for (const std::size_t h : set.hosts)
+      if (is_rounding(hosts_[h])) kinds.push_back({hosts_[h], false});
+    PoseSet some{set.kind, set.hosts, {}, set.numbers};
+    const std::size_t count = std::min(kMostRounded, set.poses.size());
+    for (std::size_t n = 0; n < count; ++n) some.poses.push_back(set.poses[n * set.poses.size() / count]);
+    GatheredPairs gathered(kinds.size(), vertices_.size());
+    compare(both, some, kinds, [&](std::size_t n, std::size_t kind, std::span<const float> errors) {
+      if (!is_new_[vertices_[n]]) gathered.add(n, kind, errors);
+    });
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      for (const std::size_t h : set.hosts) {
+        if (!(hosts_[h] == kinds[kind].host)) continue;
+        of_file[h].before.add(gathered.before[kind].spread());
+        of_file[h].after.add(gathered.after[kind].spread());
+      }
+    }
+  }
+  std::vector<HostChange> changes(hosts_.size());
+  for (std::size_t h = 0; h < hosts_.size(); ++h) {
+    changes[h].host = std::string(hosts_[h].name);
+    for (std::size_t kind = 0; kind < kPoseKinds; ++kind)
+      changes[h].poses[kind] = {of_hosts[kind][h].before.errors(), of_hosts[kind][h].after.errors()};
+  }
+  return changes;
+}
+
+bool HostJudge::is_harmed(float before, float after) const noexcept {
+  return before >= 0 && static_cast<double>(after) > std::fmax(static_cast<double>(before) + kHarmless, tolerance_);
+}
+
+bool HostJudge::return_to_stored(const std::vector<char>& noted, std::vector<std::uint8_t>& choice) const {
+  std::vector<bool> elements;
+  for (std::size_t n = 0; n < noted.size(); ++n) {
+    if (noted[n] == 0) continue;
+    const std::uint32_t e = element_of_vertex_[vertices_[n]];
+    if (elements.size() <= e) elements.resize(e + 1);
+    elements[e] = true;
+  }
+  bool any = false;
+  for (std::size_t n = 0; n < choice.size(); ++n) {
+    const std::uint32_t e = element_of_vertex_[vertices_[n]];
+    if (choice[n] == 0 || is_new_[vertices_[n]] || e >= elements.size() || !elements[e]) continue;
+    choice[n] = 0;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,31 @@
+/// How far a mesh is off along the animations of its file: what the choice among its forms is made by. Private to
+/// workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_
+
+#include <cstdint>
+#include <span>
+
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake/judge/host_judge.h"
+#include "workflow/bake/judge/right_normals.h"
+#include "workflow/bake/low_rank/extra_curves.h"
+#include "workflow/bake/mesh_weights.h"
+
+namespace chronormal::inline internal {
+
+/// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
+/// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone. No more than
+/// `most` of each kind, evenly.
+[[nodiscard]] PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets,
+                                    std::size_t most);
+
+/// The errors of vertices in a host that adds up what is stored, over pairs of a vertex and a pose in which its normal
+/// n(w) is longer than a thousandth of n(0). On all cores; the same bits on any number of them.
+[[nodiscard]] ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                                        std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
+                                        const PoseList& poses);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_

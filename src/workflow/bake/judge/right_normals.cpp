@@ -1,0 +1,87 @@
+// The direction of a right normal is by the weighting that is asked for, its length by area in any case: only areas add
+// up to the same from both sides of a pose.
+#include "workflow/bake/judge/right_normals.h"
+
+#include <cmath>
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 256;
+// Below this part of the terms that it is made of the direction of a normal is not judged. An audit draws the line at
+// five times that.
+constexpr double kLeastLength = 2e-5;
+
+}  // namespace
+
+RightNormals::RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
+                           const std::vector<double>& largest)
+    : shading_(shading),
+      terms_(terms),
+      base_normals_(base_normals),
+      largest_(largest),
+      base_(shading.groups.size()),
+      base_lengths_(base_.size()),
+      all_elements_(base_.size()) {
+  parallel_each(base_.size(), kBlock, [&](std::size_t e) {
+    base_[e] = terms_.base_of(static_cast<std::uint32_t>(e));
+    base_lengths_[e] = length(base_[e]);
+    all_elements_[e] = static_cast<std::uint32_t>(e);
+  });
+}
+
+RightNormals::Places::Places(const GltfShading& shading, std::span<const std::uint32_t> vertices) {
+  std::vector<std::size_t> place(shading.groups.size(), 0);
+  for (const std::uint32_t v : vertices) place[shading.element_of_vertex[v]] = 1;
+  for (std::uint32_t e = 0; e < place.size(); ++e) {
+    if (place[e] == 0) continue;
+    place[e] = elements.size();
+    elements.push_back(e);
+  }
+  for (const std::uint32_t v : vertices) of_vertices.push_back(place[shading.element_of_vertex[v]]);
+}
+
+RightNormals::Turn::Turn(const RightNormals& rights, std::size_t vertex) noexcept {
+  const Vec3d stored = rights.stored(vertex);
+  const Vec3d base = rights.base_[rights.shading_.element_of_vertex[vertex]];
+  x_ = shown_direction(stored, base, {1, 0, 0});
+  y_ = shown_direction(stored, base, {0, 1, 0});
+  z_ = shown_direction(stored, base, {0, 0, 1});
+}
+
+Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
+  const float* const n = base_normals_.data() + 3 * vertex;
+  return to_double(Vec3f{n[0], n[1], n[2]});
+}
+
+Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept {
+  const double of_base = base_lengths_[element], size = length(by_area);
+  if (!(size > kLeastLength * std::max(of_base, largest_[element]))) return {};
+  return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(direction);
+}
+
+std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const {
+  return of_elements(pose, all_elements_);
+}
+
+std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
+                                             std::span<const std::uint32_t> elements) const {
+  std::vector<Vec3d> result(elements.size());
+  std::vector<double> positions(shading_.set.base.size());
+  blend_positions(shading_.set, pose, positions);
+  const std::vector<Vec3d> weighted =
+      terms_.is_fitted() ? terms_.weighted_at(positions, elements) : std::vector<Vec3d>();
+  parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+    const Vec3d normal = normal_from_positions(shading_, positions, elements[n]);
+    result[n] = judged(elements[n], normal, weighted.empty() ? normal : weighted[n]);
+  });
+  return result;
+}
+
+Vec3d RightNormals::of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept {
+  if (of_element == Vec3d{}) return {};
+  const std::uint32_t element = shading_.element_of_vertex[vertex];
+  return length(of_element) * shown_direction(stored(vertex), base_[element], of_element);
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,270 @@
+// Bakes a sequence. A host shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
+// target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
+//
+//     SequenceNormals     normals at keys, and their bends between                            sequence_normals
+//     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
+//     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
+//     unit_*              the same of what every host shows alike                             harmless_sequence
+//     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "chronormal/analysis/quality.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake/sequence/harmless_sequence.h"
+#include "workflow/bake/sequence/sequence_deltas.h"
+#include "workflow/bake/sequence/sequence_file.h"
+#include "workflow/bake/sequence/sequence_normals.h"
+
+namespace chronormal {
+namespace {
+
+using Step = std::function<void(std::size_t done, std::size_t total)>;
+
+Result<NormalGroups> groups_of(const Motion& motion, const BakeOptions& options) {
+  const Points points = weld_coincident(motion);
+  if (options.normal_of_corner.count > 0)
+    return NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner);
+  if (options.crease_angle == 180) return NormalGroups::of_vertices(motion.topology, points);
+  return NormalGroups::by_crease_angle(motion, points, options.crease_angle);
+}
+
+// Times as the file has them: float32, and none before 0.
+Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
+  const double shift = std::max(-motion.keyframes[0].time, 0.0);
+  if (shift > 0) warnings.push_back("time starts at 0 in the file, and not before it");
+  std::vector<float> times;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    const auto time = static_cast<float>(keyframe.time + shift);
+    // The slopes of weights between two keys are up to 1 over the time between them.
+    constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
+    const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
+    if (!is_after || !std::isfinite(time))
+      return invalid_input("keyframe " + std::to_string(times.size()),
+                           "its time is not after that of the one before in float32, by 1e-38 seconds or more");
+    times.push_back(time);
+  }
+  return times;
+}
+
+// How many polygons a fan does not fit: one of its triangles looks the other way.
+std::size_t count_not_convex(const Topology& topology, const std::vector<float>& positions) {
+  const auto at = [&](std::uint32_t v) {
+    return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
+  };
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < topology.face_count() && !topology.all_triangles(); ++f) {
+    const auto face = topology.face(f);
+    std::vector<Vec3d> triangles;
+    Vec3d normal;
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      triangles.push_back(cross(at(face[c - 1]) - at(face[0]), at(face[c]) - at(face[0])));
+      normal = normal + triangles.back();
+    }
+    const bool turns =
+        std::any_of(triangles.begin(), triangles.end(), [&](const Vec3d& n) { return dot(n, normal) < 0; });
+    count += turns ? 1 : 0;
+  }
+  return count;
+}
+
+// The largest bound of the fits of a weighting, in degrees; 0 for areas.
+double largest_bound(const SequenceNormals& normals) {
+  double largest = 0;
+  for (const std::vector<double>& bounds : normals.bounds()) {
+    for (const double bound : bounds) largest = std::max(largest, kDegreesPerRadian * bound);
+  }
+  return largest;
+}
+
+void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding encoding, SequenceBake& report) {
+  const auto freed =
+      std::count_if(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
+  const auto without =
+      std::count_if(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.has_none; });
+  report.without_normals = static_cast<std::size_t>(without);
+  if (encoding == BakeEncoding::kExact && freed > 0)
+    report.warnings.push_back(std::to_string(freed) +
+                              " normals cannot start from those of keyframe 0 (no area there, or much less later), so "
+                              "that keyframe 0 has a target too, whose weight is 1 at rest");
+}
+
+// Adds the targets of exact to the file, and notes which segments bend.
+Status write_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, const Step& step,
+                   SequenceTargets& targets, SequenceFile& file) {
+  const std::size_t total = 2 * normals.keys() - 1;
+  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < normals.keys(); ++k) {
+    file.add_key(k, k == 0 ? std::vector<float>() : normals.deltas(k), key_deltas(elements, normals.at_key(k)));
+    step(k + 1, total);
+    if (Status status = file.check_size(); !status) return status;
+  }
+  return each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
+    if (const std::vector<Vec3d> deltas = bend_deltas(elements, form); !deltas.empty()) {
+      targets.bent_segments.push_back(s);
+      file.add_bend(s, deltas);
+    }
+    step(normals.keys() + s + 1, total);
+    return file.check_size();
+  });
+}
+
+// Adds the targets of endpoint to the file. Returns the largest angle that is left, in degrees.
+Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                              const Step& step, SequenceFile& file) {
+  EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
+  double largest = 0;
+  const Status status = each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
+    const auto bounds = normals.bounds().empty() ? std::span<const double>() : std::span(normals.bounds()[s]);
+    end = end_deltas(elements, form, bounds, end.deltas);
+    largest = std::max(largest, kDegreesPerRadian * std::min(end.error, std::numbers::pi));
+    file.add_key(s + 1, normals.deltas(s + 1), end.deltas);
+    step(s + 1, normals.keys() - 1);
+    return file.check_size();
+  });
+  if (!status) return status.error();
+  return largest;
+}
+
+// The targets that all of these hosts have room for.
+std::size_t room_for_targets(std::span<const Host> hosts) {
+  std::size_t room = std::numeric_limits<std::size_t>::max();
+  for (const Host& host : hosts)
+    if (host.most_targets > 0) room = std::min(room, host.most_targets);
+  return room;
+}
+
+// Calls body(segment, form, ends) for every segment.
+template <class Body>
+Status each_unit_segment(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                         const Body& body) {
+  SegmentEnds ends;
+  return each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
+    ends = segment_ends(elements, form, ends.to);
+    return body(s, form, ends);
+  });
+}
+
+// Of all segments those whose bends gain most, as many as there is room for.
+std::vector<bool> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                                   std::size_t room) {
+  const std::size_t segments = normals.keys() - 1;
+  std::vector<bool> is_bent(segments, segments <= room);
+  if (segments <= room) return is_bent;
+  std::vector<std::pair<double, std::size_t>> gains;
+  (void)each_unit_segment(normals, elements, [&](std::size_t s, const SegmentForm& form, const SegmentEnds& ends) {
+    gains.emplace_back(-unit_bends(elements, form, ends).gain, s);
+    return Status(Success{});
+  });
+  std::sort(gains.begin(), gains.end());
+  for (std::size_t n = 0; n < room; ++n) is_bent[gains[n].second] = true;
+  return is_bent;
+}
+
+// Adds the targets of harmless to the file, and notes which segments bend. Returns the largest angle that is left, in
+// degrees.
+Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                              std::span<const Host> hosts, const Step& step, SequenceTargets& targets,
+                              SequenceFile& file) {
+  const std::size_t room = room_for_targets(hosts), total = 2 * normals.keys() - 1;
+  const std::vector<bool> is_bent = segments_to_bend(normals, elements, room - std::min(room, targets.of_keys()));
+  Status status = each_unit_segment(normals, elements, [&](std::size_t s, const SegmentForm&, const SegmentEnds& ends) {
+    if (s == 0 && targets.has_key_0) file.add_key(0, {}, unit_key_deltas(elements, ends.from));
+    file.add_key(s + 1, normals.deltas(s + 1), unit_key_deltas(elements, ends.to));
+    step(s + 1, total);
+    return file.check_size();
+  });
+  if (!status) return status.error();
+  double largest = 0;
+  status = each_unit_segment(normals, elements, [&](std::size_t s, const SegmentForm& form, const SegmentEnds& ends) {
+    const UnitBends bends = unit_bends(elements, form, ends);
+    if (is_bent[s] && !bends.deltas.empty()) {
+      targets.bent_segments.push_back(s);
+      file.add_bend(s, bends.deltas);
+    }
+    largest = std::max(largest, is_bent[s] ? bends.error : bends.straight);
+    step(normals.keys() + s, total);
+    return file.check_size();
+  });
+  if (!status) return status.error();
+  return kDegreesPerRadian * largest;
+}
+
+std::string titles_of_others(std::span<const Host> hosts) {
+  std::string titles;
+  for (const Host& host : hosts)
+    if (host.normals != NormalRule::kSum) titles.append(titles.empty() ? "" : ", ").append(host.title);
+  return titles;
+}
+
+void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, const SequenceTargets& targets,
+                   std::size_t without_room, std::vector<std::string>& warnings) {
+  if (const std::string titles = titles_of_others(hosts); encoding != BakeEncoding::kHarmless && !titles.empty())
+    warnings.push_back(
+        "by --encode " + std::string(name_of(encoding)) +
+        " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + titles +
+        ": --encode harmless is for all of these");
+  if (without_room > 0)
+    warnings.push_back(std::to_string(without_room) +
+                       " normals turn so far from those of keyframe 0 that compressors cut their deltas");
+  for (const Host& host : hosts)
+    if (host.most_targets > 0 && targets.count() > host.most_targets)
+      warnings.push_back(std::to_string(targets.count()) + " targets are more than " + std::string(host.title) +
+                         " takes: " + std::string(host.beyond));
+}
+
+}  // namespace
+
+Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
+  const BakeEncoding encoding = options.encoding.value_or(BakeEncoding::kExact);
+  const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
+  const Result<NormalGroups> groups = groups_of(motion, options);
+  if (!groups) return groups.error();
+  const Result<SequenceNormals> made =
+      SequenceNormals::make(motion, groups.value(), options.weighting.value_or(Weighting::kArea));
+  if (!made) return made.error();
+  const SequenceNormals& normals = made.value();
+  SequenceBake report;
+  const Result<std::vector<float>> times = file_times(motion, report.warnings);
+  if (!times) return times.error();
+
+  HarmlessElements made_elements;
+  if (encoding == BakeEncoding::kHarmless)
+    made_elements = harmless_elements(normals);
+  else
+    made_elements.elements = sequence_elements(normals);
+  const std::vector<SequenceElement>& elements = made_elements.elements;
+  report_elements(elements, encoding, report);
+  report.largest_error = largest_bound(normals);
+  const bool any_freed =
+      std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
+  SequenceTargets targets{encoding, encoding == BakeEncoding::kExact && any_freed, normals.keys(), {}};
+  if (const std::size_t bent = count_not_convex(motion.topology, motion.keyframes[0].positions); bent > 0)
+    report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
+
+  SequenceFile file(motion, groups.value(), elements, options);
+  if (encoding == BakeEncoding::kExact) {
+    if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
+  } else {
+    const Result<double> error = encoding == BakeEncoding::kEndpoint
+                                     ? write_endpoint(normals, elements, step, file)
+                                     : write_harmless(normals, elements, options.hosts, step, targets, file);
+    if (!error) return error.error();
+    report.largest_error = std::max(report.largest_error, error.value());
+  }
+  warn_of_hosts(encoding, options.hosts, targets, made_elements.without_room, report.warnings);
+  Result<std::string> bytes = file.finish(targets, times.value());
+  if (!bytes) return bytes.error();
+  glb = std::move(bytes).value();
+  report.keyframes = normals.keys();
+  report.vertices = file.vertex_count();
+  report.targets = targets.of_keys();
+  report.extra_targets = targets.bent_segments.size();
+  report.bytes = glb.size();
+  return report;
+}
+
+}  // namespace chronormal

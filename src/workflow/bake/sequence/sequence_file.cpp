@@ -1,0 +1,223 @@
+#include "workflow/bake/sequence/sequence_file.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "chronormal/core/views.h"
+#include "io/gltf/model/gltf_bake_mark.h"
+#include "workflow/bake/sequence/harmless_sequence.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+SequenceVertices make_vertices(const Topology& topology, const NormalGroups& groups) {
+  const std::span<const std::uint32_t> corners = topology.corners();
+  SequenceVertices result;
+  result.vertex.resize(topology.vertex_count());
+  for (std::size_t v = 0; v < result.vertex.size(); ++v) result.vertex[v] = static_cast<std::uint32_t>(v);
+  if (groups.outputs_are_vertices()) {
+    result.element.assign(groups.element_of_output().begin(), groups.element_of_output().end());
+    result.of_corner.assign(corners.begin(), corners.end());
+    return result;
+  }
+  result.element.assign(topology.vertex_count(), SequenceVertices::kNone);
+  std::vector<std::uint32_t> next_copy(topology.vertex_count(), SequenceVertices::kNone);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::uint32_t element = groups.element_of_corner()[c];
+    std::uint32_t at = corners[c];
+    if (result.element[at] == SequenceVertices::kNone) result.element[at] = element;
+    while (result.element[at] != element) {
+      if (next_copy[at] == SequenceVertices::kNone) {
+        next_copy[at] = static_cast<std::uint32_t>(result.vertex.size());
+        result.vertex.push_back(corners[c]);
+        result.element.push_back(element);
+        next_copy.push_back(SequenceVertices::kNone);
+      }
+      at = next_copy[at];
+    }
+    result.of_corner.push_back(at);
+  }
+  return result;
+}
+
+std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
+  std::vector<Vec3d> normals;
+  normals.reserve(elements.size());
+  for (const SequenceElement& element : elements) normals.push_back(element.normal);
+  return normals;
+}
+
+// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
+// out-tangents.
+struct WeightTrack {
+  std::vector<float> times, values;
+};
+
+// Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
+WeightTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::size_t keys = targets.keys, n = targets.count();
+  WeightTrack track{times, std::vector<float>(keys * 3 * n, 0.0F)};
+  enum Row : std::size_t { kIn, kValue, kOut };
+  const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
+    return track.values[(key * 3 + row) * n + target];
+  };
+  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < keys; ++k) at(k, kValue, targets.of_key(k)) = 1;
+  // Per second, with the length of the segment as a reader computes it from the times in the file.
+  const auto slope = [&](std::size_t s) { return static_cast<float>(1 / (double{times[s + 1]} - double{times[s]})); };
+  for (std::size_t s = 0; s + 1 < keys; ++s) {
+    for (const auto& [key, sign] : {std::pair{s, -1.0F}, std::pair{s + 1, 1.0F}}) {
+      if (key == 0 && !targets.has_key_0) continue;
+      at(s, kOut, targets.of_key(key)) = sign * slope(s);
+      at(s + 1, kIn, targets.of_key(key)) = sign * slope(s);
+    }
+  }
+  for (std::size_t b = 0; b < targets.bent_segments.size(); ++b) {
+    const std::size_t s = targets.bent_segments[b], target = targets.of_keys() + b;
+    at(s, kOut, target) = slope(s);
+    at(s + 1, kIn, target) = -slope(s);
+  }
+  return track;
+}
+
+// Of the others: the hats, and in bent segments 4 t (1 - t) at keys between.
+WeightTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
+  const std::size_t n = targets.count();
+  WeightTrack track;
+  const auto add_key = [&](float time) {
+    track.times.push_back(time);
+    track.values.resize(track.values.size() + n);
+    return track.values.end() - static_cast<std::ptrdiff_t>(n);
+  };
+  const auto set_hat = [&](auto row, std::size_t key, double weight) {
+    if (key > 0 || targets.has_key_0)
+      row[static_cast<std::ptrdiff_t>(targets.of_key(key))] = static_cast<float>(weight);
+  };
+  std::size_t bend = 0;
+  for (std::size_t k = 0; k < targets.keys; ++k) {
+    set_hat(add_key(times[k]), k, 1);
+    if (bend == targets.bent_segments.size() || targets.bent_segments[bend] != k) continue;
+    const double from = times[k], length = double{times[k + 1]} - from;
+    for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
+      const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
+      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between
+      const double t = (double{time} - from) / length;
+      const auto row = add_key(time);
+      set_hat(row, k, 1 - t);
+      set_hat(row, k + 1, t);
+      row[static_cast<std::ptrdiff_t>(targets.of_keys() + bend)] = static_cast<float>(4 * t * (1 - t));
+    }
+    ++bend;
+  }
+  return track;
+}
+
+// The weight t (1 - t), or 4 times that, as a product of the weights of two keys. That of key 0, where it has no target,
+// is 1 minus all of the others.
+GltfBakeMark mark_of(const SequenceTargets& targets) {
+  GltfBakeMark mark{targets.encoding, true, {}};
+  const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;
+  for (const std::size_t s : targets.bent_segments) {
+    GltfExtraTarget& extra = mark.extras.emplace_back();
+    extra.target = targets.of_keys() + mark.extras.size() - 1;
+    const std::size_t next = targets.of_key(s + 1);
+    if (s > 0 || targets.has_key_0) {
+      extra.quadratic.push_back({targets.of_key(s), next, factor});
+      continue;
+    }
+    extra.linear.push_back({next, factor});
+    for (std::size_t i = 0; i < targets.of_keys(); ++i) extra.quadratic.push_back({i, next, -factor});
+  }
+  return mark;
+}
+
+}  // namespace
+
+std::vector<float> SequenceVertices::positions(std::span<const float> of_motion) const {
+  std::vector<float> result(3 * size());
+  for (std::size_t i = 0; i < size(); ++i)
+    std::copy_n(of_motion.data() + 3 * std::size_t{vertex[i]}, 3, result.data() + 3 * i);
+  return result;
+}
+
+std::vector<float> SequenceVertices::vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const {
+  std::vector<float> result(3 * size());
+  const auto view = VectorView<float>::packed(result.data(), size());
+  for (std::size_t i = 0; i < size(); ++i) view.set(i, to_float(element[i] == kNone ? none : of_elements[element[i]]));
+  return result;
+}
+
+SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
+                           const BakeOptions& options)
+    : vertices_(make_vertices(motion.topology, groups)),
+      dense_zeros_(options.dense_zeros),
+      expansion_(options.expansion),
+      builder_(options.most_bytes) {
+  triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices_.of_corner), vertices_.size());
+  base_ = {
+      {"POSITION", builder_.add_vectors(vertices_.positions(motion.keyframes[0].positions), {true, true})},
+      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals_of(elements), kAnyNormal), {false, true})},
+  };
+}
+
+std::size_t SequenceFile::zero_positions() {
+  if (!zero_positions_)
+    zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {true, dense_zeros_});
+  return *zero_positions_;
+}
+
+void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals) {
+  add_target(
+      "key " + std::to_string(key),
+      positions.empty() ? zero_positions() : builder_.add_vectors(vertices_.positions(positions), {true, dense_zeros_}),
+      normals);
+}
+
+void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals) {
+  add_target("bend " + std::to_string(segment), zero_positions(), normals);
+}
+
+void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {
+  names_.push_back(std::move(name));
+  targets_.push_back({{"POSITION", positions},
+                      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
+}
+
+Status SequenceFile::check_size(std::uint64_t more) const {
+  if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
+  if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
+  return invalid_input("", "the file would have more than " + std::to_string(builder_.most_bytes()) +
+                               " bytes, which is all that it may have");
+}
+
+Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
+  const bool exact = targets.encoding == BakeEncoding::kExact;
+  const std::uint64_t keys = targets.keys + std::uint64_t{targets.bent_segments.size()} * (exact ? 0 : kBendPieces - 1),
+                      weights = keys * targets.count() * (exact ? 3 : 1);
+  if (Status status = check_size(sizeof(float) * (keys + weights)); !status) return status.error();
+  const WeightTrack track = exact ? spline_track(targets, times) : linear_track(targets, times);
+  const std::size_t input = builder_.add_scalars(track.times, {true, true}),
+                    output = builder_.add_scalars(track.values, {false, true});
+  std::vector<int> rest(targets_.size(), 0);
+  if (targets.has_key_0) rest[0] = 1;
+  Json& document = builder_.document();
+  document["scene"] = 0;
+  document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  const Json mark = gltf::bake_mark_json(mark_of(targets));
+  Json node = {{"mesh", 0}};
+  if (!targets.bent_segments.empty()) node["extras"] = {{"chronormal", mark}};
+  document["nodes"] = Json::array({std::move(node)});
+  const Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", targets_}};
+  const Json mesh = {{"primitives", Json::array({primitive})},
+                     {"weights", rest},
+                     {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
+  document["meshes"] = Json::array({mesh});
+  const Json sampler = {{"input", input}, {"interpolation", exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};
+  const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
+  document["animations"] =
+      Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});
+  return builder_.finish();
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,89 @@
+/// A GLB file that plays a sequence: one mesh, its targets, and one animation of their weights. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
+#define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/workflow/bake.h"
+#include "io/gltf/glb/glb_builder.h"
+#include "workflow/bake/sequence/sequence_deltas.h"
+
+namespace chronormal::inline internal {
+
+/// Which target stands for what: first one for each key, key 0 only where some normal needs it, then one for each
+/// segment in which normals bend.
+struct SequenceTargets {
+  BakeEncoding encoding = BakeEncoding::kExact;
+  bool has_key_0 = false;
+  std::size_t keys = 0;
+  std::vector<std::size_t> bent_segments;
+
+  [[nodiscard]] std::size_t of_keys() const noexcept { return keys - (has_key_0 ? 0U : 1U); }
+  [[nodiscard]] std::size_t count() const noexcept { return of_keys() + bent_segments.size(); }
+  /// The target of a key, which must have one.
+  [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
+};
+
+/// The vertices of a file. Those of the motion come first, and behind them their copies, one for each further normal.
+struct SequenceVertices {
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+
+  std::vector<std::uint32_t> vertex;     ///< of each: that of the motion
+  std::vector<std::uint32_t> element;    ///< of each: whose normal it shows; kNone where it has no face
+  std::vector<std::uint32_t> of_corner;  ///< of each corner of the motion
+
+  [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
+  /// Positions of the motion, (V, 3), for each vertex of the file.
+  [[nodiscard]] std::vector<float> positions(std::span<const float> of_motion) const;
+  /// Vectors of elements for each vertex of the file, and `none` for those without a face.
+  [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
+};
+
+/// The file while it grows, target by target.
+class SequenceFile {
+ public:
+  /// Writes key 0 with the normals of the elements, and polygons as fans of triangles. (Their normals are those of the
+  /// polygons all the same.)
+  SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
+               const BakeOptions& options);
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
+
+  /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
+  /// key 0 itself.
+  void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
+  /// Adds a target for the bend of a segment.
+  void add_bend(std::size_t segment, std::span<const Vec3d> normals);
+
+  /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more.
+  [[nodiscard]] Status check_size(std::uint64_t more = 0) const;
+  /// Adds the animation and puts the file together. targets must say what was added. Errors: kInvalidInput where it
+  /// would be too large.
+  [[nodiscard]] Result<std::string> finish(const SequenceTargets& targets, const std::vector<float>& times);
+
+ private:
+  void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);
+  // The accessor that targets share which move nothing.
+  [[nodiscard]] std::size_t zero_positions();
+
+  SequenceVertices vertices_;
+  bool dense_zeros_;
+  Expansion expansion_;
+  GlbBuilder builder_;
+  std::size_t triangles_ = 0;  // accessor
+  std::optional<std::size_t> zero_positions_;
+  nlohmann::ordered_json base_, targets_ = nlohmann::ordered_json::array();
+  std::vector<std::string> names_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_

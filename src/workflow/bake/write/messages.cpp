@@ -1,0 +1,152 @@
+#include "workflow/bake/write/messages.h"
+
+#include <map>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "io/gltf/model/gltf_bake_mark.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Hosts that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
+// specification asks for).
+constexpr std::size_t kMorphedAttributes = 8;
+// More extra targets than these make a file large.
+constexpr std::size_t kManyExtras = 64;
+
+std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
+  return mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name;
+}
+
+}  // namespace
+
+std::string name_of_extra(const GltfExtraTarget& extra) {
+  if (extra.quadratic.empty() && extra.linear.empty()) return "chronormal of the animations";
+  if (extra.quadratic.empty()) return "chronormal w" + std::to_string(extra.linear.front().i);
+  const auto& [i, j, q] = extra.quadratic.front();
+  std::string name("chronormal w");
+  name.append(std::to_string(i)).append(i == j ? "*(1-w" : "*w").append(std::to_string(j));
+  return name.append(i == j ? ")" : "");
+}
+
+std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes) {
+  Json of_meshes = Json::array();
+  for (const BakedMesh& baked : meshes) {
+    if (baked.extras.empty()) continue;
+    const GltfMesh& mesh = document.meshes()[baked.mesh];
+    const GltfBakeMark mark{baked.encoding, mesh.mark && mesh.mark->sequence, baked.extras};
+    of_meshes.push_back({{"mesh", baked.mesh}, {"name", mesh.name}, {"chronormal", gltf::bake_mark_json(mark)}});
+  }
+  return Json({{"meshes", std::move(of_meshes)}}).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings) {
+  constexpr std::size_t kMostNamed = 4;
+  struct Meshes {
+    std::string names;
+    std::size_t count = 0;
+  };
+  std::map<std::string_view, Meshes> meshes_of;
+  for (const MeshWarning& warning : warnings) {
+    Meshes& meshes = meshes_of[warning.sentence];
+    if (++meshes.count <= kMostNamed) meshes.names.append(meshes.count == 1 ? "" : ", ").append(warning.mesh);
+  }
+  std::vector<std::string> texts;
+  for (const MeshWarning& warning : warnings) {
+    const auto meshes = meshes_of.extract(warning.sentence);
+    if (meshes.empty()) continue;  // said already
+    const auto& [names, count] = meshes.mapped();
+    const std::string more = count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "";
+    texts.push_back(names + more + ": " + warning.sentence);
+  }
+  return texts;
+}
+
+void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
+  if (baked.left_flat == 0) return;
+  warnings.push_back({label_of(mesh, baked),
+                      baked.left_flat == 1
+                          ? "1 primitive has no normals and stays flat, as hosts shade it by the specification "
+                            "(--smooth gives it normals)"
+                          : std::to_string(baked.left_flat) +
+                                " primitives have no normals and stay flat, as hosts shade them by the specification "
+                                "(--smooth gives them normals)"});
+}
+
+void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings) {
+  if (error < std::numbers::pi) return;
+  warnings.push_back({label_of(mesh, baked),
+                      "keys of a track are so near to each other, or weights so large, that float32 cannot hold the "
+                      "products of weights between them: normals may be anything there"});
+}
+
+void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
+                   const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
+  const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
+  const std::size_t targets = mesh.target_count + baked.extras.size();
+  const bool is_harmless = plan.encoding == BakeEncoding::kHarmless;
+  if (!plan.is_driven && is_harmless) {
+    warn(
+        "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
+        "(--encode exact writes extra targets all the same)");
+  }
+  if (plan.is_driven && !plan.products_fit && is_harmless) {
+    warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
+  }
+  if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
+    std::string names;
+    for (const Host& host : options.hosts)
+      if (host.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(host.title);
+    if (!names.empty()) {
+      warn("by --encode " + std::string(name_of(plan.encoding)) +
+           " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + names +
+           ": leave --encode out for these");
+    }
+  }
+  if (baked.undriven > 0) {
+    warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
+         " driven by no animation and got the best single delta");
+  }
+  if (!baked.unmarked_nodes.empty()) {
+    warn("extras of node " + std::to_string(baked.unmarked_nodes.front()) +
+         (baked.unmarked_nodes.size() == 1
+              ? " is"
+              : " and of " + std::to_string(baked.unmarked_nodes.size() - 1) + " more are") +
+         " no object: what drives the extra targets stands in the mesh alone");
+  }
+  if (baked.rescaled > 0) {
+    warn(std::to_string(baked.rescaled) +
+         " stored base normals are longer than 1e10 or shorter than 1e-10, which no host can add to: they were brought "
+         "to length 1");
+  }
+  if (baked.stilled > 0) {
+    warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
+         " normals and moves no position: where the surface stays its normals stay, and these deltas are zero now");
+  }
+  if (baked.without_stored > 0) {
+    warn(std::to_string(baked.without_stored) +
+         " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
+  }
+  if (baked.extras.size() > kManyExtras) {
+    warn(std::to_string(baked.extras.size()) +
+         " extra targets, for so many are active at once: a larger --tolerance needs fewer");
+  }
+  if (baked.without_base > 0) {
+    warn(std::to_string(baked.without_base) +
+         " vertices have no area around them in the base: their normals are right but for weights near 0");
+  }
+  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes) {
+    warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
+         " morphed attributes; hosts that have room for 8 leave out those of the smallest weights");
+  }
+  if (shading.split_by_crease > 0) {
+    warn(std::to_string(shading.split_by_crease) +
+         " vertices lie on edges sharper than the crease angle and got one normal all the same");
+  }
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,80 @@
+/// One mesh as edits: arrays of normals and deltas go into the file, and everything that counts targets grows with
+/// them. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
+#define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/gltf_edit.h"
+#include "workflow/bake/exact/deltas.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal::inline internal {
+
+/// Accessors of zeros, one for each number of vertices.
+class ZeroVectors {
+ public:
+  ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
+  [[nodiscard]] std::size_t of(std::size_t vertices);
+  /// Whether zeros are written as bytes too.
+  [[nodiscard]] bool are_dense() const noexcept { return dense_; }
+
+ private:
+  GltfEdit& edit_;
+  bool dense_;
+  std::map<std::size_t, std::size_t> accessors_;
+};
+
+/// Writes targets one by one, so that the arrays of one target are in memory at a time. All targets of a primitive must
+/// have the same attributes (section 3.7.2.2 of the specification): what one has, the others get as zeros.
+class MeshWriter {
+ public:
+  /// shading must have been read with this `smooth`. All arguments must outlive this.
+  MeshWriter(const GltfDocument& document, const GltfShading& shading, bool smooth, ZeroVectors& zeros, GltfEdit& edit);
+
+  /// Whether the vertices of a primitive show normals of elements.
+  [[nodiscard]] bool is_shaded(std::size_t primitive) const { return part_[primitive].has_value(); }
+
+  /// Replaces the base normals of some parts; normals are those of all, (V, 3). Errors: kInvalidInput where Draco
+  /// compresses them.
+  [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
+  /// Writes the deltas of a target of the mesh; without them it only gets the attributes that it lacks.
+  void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas);
+  /// Adds a target that moves no vertex.
+  void append_target(const TargetDeltas& deltas);
+  /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,
+  /// as MeshWeights has these, where no formula gives them.
+  void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
+  /// Writes down what was done (docs/extras.md): in the mesh, where the next bake and an audit look for it, and where
+  /// there are extra targets, in the nodes that carry the mesh, for hosts that hand on the extras of nodes alone. Returns
+  /// the nodes whose extras are no object, which stay as they are.
+  [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
+
+ private:
+  // Which attributes the targets of a primitive have when all is done.
+  struct Attributes {
+    bool positions = false, normals = false, tangents = false;
+  };
+
+  [[nodiscard]] std::string pointer_of(std::size_t primitive) const;
+  [[nodiscard]] std::size_t deltas_of(std::size_t primitive, const TargetDeltas& deltas);
+  [[nodiscard]] std::size_t zeros_of(std::size_t primitive);
+
+  const GltfDocument& document_;
+  const GltfShading& shading_;
+  const GltfMesh& mesh_;
+  ZeroVectors& zeros_;
+  GltfEdit& edit_;
+  std::string pointer_;                           // of the mesh
+  std::vector<std::optional<std::size_t>> part_;  // of each primitive that is shaded
+  std::vector<Attributes> attributes_;            // of each primitive
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_

@@ -1,0 +1,231 @@
+// A sampler may be shared by channels that drive other meshes, or something else than weights. It stays as it is where
+// one of them needs that; else the first mesh takes it over, and every further mesh gets a sampler of its own.
+#include "workflow/bake/write/write_tracks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "io/json/json_writer.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+std::string item(const std::string& list, std::size_t index) {
+  return std::string(list).append("/").append(std::to_string(index));
+}
+
+std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
+  const std::string text = edit.text(pointer);
+  double value = 0;  // 4.0 is an index too
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return static_cast<std::size_t>(value);
+}
+
+// How many items an array of the source has.
+std::size_t size_of(const GltfEdit& edit, const std::string& list) {
+  std::size_t beyond = 1;
+  while (edit.has(item(list, beyond - 1))) beyond *= 2;
+  std::size_t least = beyond / 2, most = beyond - 1;
+  while (least < most) {
+    const std::size_t middle = least + (most - least) / 2;
+    if (edit.has(item(list, middle)))
+      least = middle + 1;
+    else
+      most = middle;
+  }
+  return least;
+}
+
+std::string_view name_of(GltfInterpolation interpolation) {
+  if (interpolation == GltfInterpolation::kStep) return "STEP";
+  return interpolation == GltfInterpolation::kLinear ? "LINEAR" : "CUBICSPLINE";
+}
+
+// A sampler as it is written.
+struct Sampler {
+  std::string input, output;  // accessors
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  bool has_new_input = false, is_converted = false;
+};
+
+// Whether a JSON pointer leads to weights, or to one of them, of a mesh that has extra targets.
+bool leads_to_weights(const GltfDocument& document, std::span<const GrownMesh> meshes, const std::string& pointer) {
+  std::string_view rest = pointer;
+  const bool of_node = rest.starts_with("/nodes/");
+  if (!of_node && !rest.starts_with("/meshes/")) return false;
+  rest.remove_prefix(rest.find('/', 1) + 1);
+  std::size_t index = 0;
+  const auto [stop, code] = std::from_chars(rest.data(), rest.data() + rest.size(), index);
+  if (code != std::errc() || !std::string_view(stop, rest.data() + rest.size()).starts_with("/weights")) return false;
+  if (of_node) {
+    if (index >= document.nodes().size() || !document.nodes()[index].mesh) return false;
+    index = *document.nodes()[index].mesh;
+  }
+  return std::any_of(meshes.begin(), meshes.end(), [&](const GrownMesh& mesh) { return mesh.mesh == index; });
+}
+
+// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the mesh.
+Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
+  for (std::size_t a = 0; a < document.animations().size() && !meshes.empty(); ++a) {
+    const GltfAnimation& animation = document.animations()[a];
+    std::set<std::size_t> of_tracks;
+    for (const GltfTrack& track : animation.tracks) of_tracks.insert(track.channel);
+    for (std::size_t c = 0; c < animation.channel_count; ++c) {
+      const std::string channel = item(item("/animations", a) + "/channels", c);
+      const std::string pointer = channel + "/target/extensions/KHR_animation_pointer/pointer";
+      if (of_tracks.count(c) > 0 || !edit.has(pointer)) continue;
+      const std::string text = edit.text(pointer);
+      if (text.size() > 2 && leads_to_weights(document, meshes, text.substr(1, text.size() - 2))) {
+        return invalid_input(std::string(document.name()).append(", ").append(pointer),
+                             "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: "
+                             "let it drive all weights, or use --encode endpoint");
+      }
+    }
+  }
+  return Success{};
+}
+
+// The samplers of an animation for channels that drive something else than weights of nodes.
+std::set<std::size_t> samplers_of_others(const GltfDocument& document, const GltfEdit& edit, std::size_t a) {
+  const GltfAnimation& animation = document.animations()[a];
+  std::set<std::size_t> of_weights, samplers;
+  for (const GltfTrack& track : animation.tracks) of_weights.insert(track.channel);
+  for (std::size_t c = 0; c < animation.channel_count; ++c) {
+    const std::string sampler = item(item("/animations", a) + "/channels", c) + "/sampler";
+    if (of_weights.count(c) == 0 && edit.has(sampler)) samplers.insert(index_at(edit, sampler));
+  }
+  return samplers;
+}
+
+class TrackWriter {
+ public:
+  TrackWriter(const GltfDocument& document, std::span<const GrownMesh> meshes, double tolerance, GltfEdit& edit)
+      : document_(document), meshes_(meshes), tolerance_(tolerance), edit_(edit) {
+    written_.errors.resize(meshes.size());
+    for (std::size_t n = 0; n < meshes.size(); ++n) place_of_mesh_[meshes[n].mesh] = n;
+  }
+
+  Status write_animation(std::size_t a) {
+    const GltfAnimation& animation = document_.animations()[a];
+    const std::string pointer = item("/animations", a);
+    std::map<std::size_t, std::vector<std::size_t>> tracks_of_sampler;
+    for (std::size_t t = 0; t < animation.tracks.size(); ++t) {
+      const std::string channel = item(pointer + "/channels", animation.tracks[t].channel);
+      tracks_of_sampler[index_at(edit_, channel + "/sampler")].push_back(t);
+    }
+    const std::set<std::size_t> of_others = samplers_of_others(document_, edit_, a);
+    std::size_t appended = 0;
+    for (const auto& [sampler, tracks] : tracks_of_sampler) {
+      std::map<std::size_t, std::vector<std::size_t>> tracks_of_mesh;
+      bool is_needed = of_others.count(sampler) > 0;
+      for (const std::size_t t : tracks) {
+        const std::size_t* place = mesh_driven_by(animation.tracks[t]);
+        if (place == nullptr)
+          is_needed = true;
+        else
+          tracks_of_mesh[*place].push_back(t);
+      }
+      for (const auto& [place, of_mesh] : tracks_of_mesh) {
+        Result<Sampler> extended = extended_sampler(a, of_mesh.front(), sampler, place);
+        if (!extended) return extended.error();
+        if (!is_needed) {
+          replace(item(pointer + "/samplers", sampler), extended.value());
+        } else {
+          if (appended == 0) appended = size_of(edit_, pointer + "/samplers");
+          append(pointer + "/samplers", extended.value());
+          for (const std::size_t t : of_mesh) {
+            edit_.set(item(pointer + "/channels", animation.tracks[t].channel) + "/sampler", std::to_string(appended));
+          }
+          ++appended;
+        }
+        is_needed = true;
+      }
+    }
+    return Success{};
+  }
+
+  [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
+
+ private:
+  // Which of the meshes a track drives; nothing where it is none of them.
+  [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
+    const GltfNode& node = document_.nodes()[track.node];
+    const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();
+    return found == place_of_mesh_.end() ? nullptr : &found->second;
+  }
+
+  Result<Sampler> extended_sampler(std::size_t a, std::size_t t, std::size_t sampler, std::size_t place) {
+    const GltfTrack& track = document_.animations()[a].tracks[t];
+    const auto [found, is_new] = samplers_.try_emplace({a, track.same_keys_as, place});
+    if (is_new) {
+      Result<GltfKeys> keys = document_.keys(a, t);
+      if (!keys) return keys.error();
+      const WeightTrack weights{track.interpolation, std::move(keys).value(),
+                                document_.meshes()[meshes_[place].mesh].target_count};
+      const std::uint64_t bytes_per_key = kBytesPerWeight * (weights.targets + meshes_[place].drivers.size());
+      const Expansion expansion = document_.expansion();
+      const std::uint64_t added = edit_.added_bytes();
+      const std::uint64_t room = (expansion.most() - std::min(expansion.most(), added)) / bytes_per_key;
+      const auto most_keys =
+          static_cast<std::size_t>(std::min<std::uint64_t>(room, std::numeric_limits<std::size_t>::max()));
+      const double tolerance = meshes_[place].keeps_kind ? std::numeric_limits<double>::infinity() : tolerance_;
+      const ExtendedTrack extended =
+          meshes_[place].drivers.extended({a, track.same_keys_as}, weights, tolerance, most_keys);
+      if (extended.keys > most_keys)
+        return expansion
+            .check(edit_.added_bytes() + bytes_per_key * extended.keys, item(document_.name() + ", /animations", a))
+            .error();
+      written_.errors[place] = std::fmax(written_.errors[place], extended.error);
+      Sampler& result = found->second;
+      result.interpolation = extended.interpolation;
+      result.is_converted = extended.interpolation != track.interpolation;
+      result.has_new_input = !extended.times.empty();
+      if (result.has_new_input) result.input = std::to_string(edit_.add_scalars(extended.times, {true, true}));
+      result.output = std::to_string(edit_.add_scalars(extended.values, {false, true}));
+    }
+    Sampler result = found->second;
+    if (!result.has_new_input)
+      result.input = edit_.text(item(item("/animations", a) + "/samplers", sampler) + "/input");
+    written_.converted += result.is_converted ? 1 : 0;
+    return result;
+  }
+
+  void replace(const std::string& pointer, const Sampler& sampler) {
+    edit_.set(pointer + "/output", sampler.output);
+    if (sampler.has_new_input) edit_.set(pointer + "/input", sampler.input);
+    if (sampler.is_converted) edit_.set(pointer + "/interpolation", quote_json(name_of(sampler.interpolation)));
+  }
+  void append(const std::string& list, const Sampler& sampler) {
+    JsonObject object;
+    object.add("input", sampler.input).add("output", sampler.output);
+    edit_.append(list, object.add("interpolation", quote_json(name_of(sampler.interpolation))).text());
+  }
+
+  const GltfDocument& document_;
+  std::span<const GrownMesh> meshes_;
+  double tolerance_;
+  GltfEdit& edit_;
+  WrittenTracks written_;
+  std::map<std::size_t, std::size_t> place_of_mesh_;                               // in meshes_
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;  // by animation, keys, place of mesh
+};
+
+}  // namespace
+
+Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes, double tolerance,
+                                   GltfEdit& edit) {
+  if (Status status = check_pointers(document, meshes, edit); !status) return status.error();
+  TrackWriter writer(document, meshes, tolerance, edit);
+  for (std::size_t a = 0; a < document.animations().size() && !meshes.empty(); ++a) {
+    if (Status status = writer.write_animation(a); !status) return status.error();
+  }
+  return std::move(writer).written();
+}
+
+}  // namespace chronormal::inline internal

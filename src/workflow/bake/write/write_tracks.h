@@ -1,0 +1,35 @@
+/// The weight tracks of a file as edits: those that drive a mesh with extra targets get their weights too. Private to
+/// workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_edit.h"
+#include "workflow/bake/low_rank/extra_curves.h"
+
+namespace chronormal::inline internal {
+
+/// A mesh that got extra targets, one at least.
+struct GrownMesh {
+  std::size_t mesh = 0;
+  ExtraDrivers drivers;
+  bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
+};
+
+struct WrittenTracks {
+  std::vector<double> errors;  ///< of each mesh: a bound of what inserted keys leave, in radians
+  std::size_t converted = 0;   ///< tracks that are cubic splines now
+};
+
+/// Extends the tracks of all animations that drive these meshes; cubic splines get keys until no normal is off by more
+/// than tolerance (radians). Errors: of GltfDocument; kInvalidInput where an extension drives weights of any mesh.
+[[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
+                                                 double tolerance, GltfEdit& edit);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
