@@ -1,5 +1,5 @@
 # `cmake --install`: what is built of the libraries and the program, headers, and what find_package(chronormal) and
-# pkg-config need. The package has the component `io` where chronormal_io was built.
+# pkg-config need. The package has the component `io` where chronormal_io was built, and `c` where chronormal_c was.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -42,7 +42,8 @@ if(CHRONORMAL_IO)
   chronormal_install_library(chronormal_io "chronormal zlib pugixml draco" " -lmeshoptimizer")
 endif()
 if(CHRONORMAL_C)
-  install(TARGETS chronormal_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS chronormal_c EXPORT chronormal_cTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT chronormal_cTargets NAMESPACE chronormal:: DESTINATION ${package_folder})
   install(FILES ${PROJECT_SOURCE_DIR}/include/chronormal_c.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   chronormal_install_pkg_config(chronormal_c "" "")
 endif()
@@ -70,11 +71,23 @@ install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOC
 
 file(CONFIGURE OUTPUT ${config_folder}/chronormalConfig.cmake CONTENT
 "include(CMakeFindDependencyMacro)
-if(\"@TBB_FOUND@\")  # whether the library was built over oneTBB
-  find_dependency(TBB)
+
+# The component c, a shared library, needs nothing else: neither the others nor what these are linked with.
+set(chronormal_c_file \${CMAKE_CURRENT_LIST_DIR}/chronormal_cTargets.cmake)
+if(EXISTS \${chronormal_c_file} AND (NOT chronormal_FIND_COMPONENTS OR \"c\" IN_LIST chronormal_FIND_COMPONENTS))
+  include(\${chronormal_c_file})
+  set(chronormal_c_FOUND TRUE)
 endif()
-find_dependency(hwy)
-include(\${CMAKE_CURRENT_LIST_DIR}/chronormalTargets.cmake)
+
+# The component core, unless c alone was asked for.
+if(NOT \"\${chronormal_FIND_COMPONENTS}\" STREQUAL \"c\")
+  if(\"@TBB_FOUND@\")  # whether the library was built over oneTBB
+    find_dependency(TBB)
+  endif()
+  find_dependency(hwy)
+  include(\${CMAKE_CURRENT_LIST_DIR}/chronormalTargets.cmake)
+  set(chronormal_core_FOUND TRUE)
+endif()
 
 # The component io, where it is installed and not something else alone was asked for.
 set(chronormal_io_file \${CMAKE_CURRENT_LIST_DIR}/chronormal_ioTargets.cmake)
@@ -86,11 +99,10 @@ if(EXISTS \${chronormal_io_file} AND (NOT chronormal_FIND_COMPONENTS OR \"io\" I
   include(\${chronormal_io_file})
   set(chronormal_io_FOUND TRUE)
 endif()
-set(chronormal_core_FOUND TRUE)
 foreach(component \${chronormal_FIND_COMPONENTS})
   if(chronormal_FIND_REQUIRED_\${component} AND NOT chronormal_\${component}_FOUND)
     set(chronormal_FOUND FALSE)
-    set(chronormal_NOT_FOUND_MESSAGE \"chronormal has no component \${component} here; there are core and, with CHRONORMAL_IO, io\")
+    set(chronormal_NOT_FOUND_MESSAGE \"chronormal has no component \${component} here; there are core and, with CHRONORMAL_IO, io, and with CHRONORMAL_C, c\")
   endif()
 endforeach()
 " @ONLY)

@@ -22,7 +22,7 @@ if(FROM STREQUAL "package")
   # Moved, to see that nothing names the place where it was.
   file(RENAME ${folder}/prefix ${folder}/moved)
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
-  list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config)
+  list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)
 elseif(FROM STREQUAL "folder")
   # The project that the README shows, with this repository as its folder.
   set(project ${folder}/project)
