@@ -1,7 +1,6 @@
 #include "cli/options/moments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include "chronormal/io/target_names.h"
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
+#include "core/charconv.h"
 
 namespace chronormal::cli {
 namespace {
@@ -38,7 +38,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   std::string_view digits = trimmed(word);
   if (digits.size() > 1 && digits.starts_with('+') && digits[1] != '-') digits.remove_prefix(1);
   double value = 0;
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
   if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
     return misuse(option, formatted("'{}' is not a number", word));
   return value;

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 #include "cli/terminal/version.h"
+#include "core/charconv.h"
 #include "core/nearest.h"
 
 namespace chronormal::cli {
@@ -188,7 +188,7 @@ Check check_whole(std::size_t least, std::size_t most) {
   return [least, most, message = "it must be a whole number " + range](const std::string& value) {
     std::size_t number = 0;
     const char* const last = value.data() + value.size();
-    const auto [end, code] = std::from_chars(value.data(), last, number);
+    const auto [end, code] = from_chars(value.data(), last, number);
     return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
   };
 }

@@ -49,7 +49,7 @@ struct fmt::formatter<chronormal::cli::Number> {
   constexpr auto parse(Context& context) {
     if (std::is_constant_evaluated()) return fmt::formatter<double>().parse(context);  // which checks the text
     const auto end = std::find(context.begin(), context.end(), '}');
-    form_ = {context.begin(), end};
+    form_ = std::string_view(context.begin(), static_cast<std::size_t>(end - context.begin()));
     return end;
   }
 

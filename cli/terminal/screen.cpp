@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
+
+#include "core/charconv.h"
 
 namespace chronormal::cli {
 namespace {
@@ -30,7 +31,7 @@ std::string marked(std::string_view mark, std::string_view text) {
 std::size_t columns_of_output() {
   std::size_t columns = 0;
   const std::string_view given = environment("COLUMNS");
-  std::from_chars(given.data(), given.data() + given.size(), columns);
+  from_chars(given.data(), given.data() + given.size(), columns);
   winsize size{};
   if (columns == 0 && isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
   return columns == 0 ? kUsualColumns : std::max(columns, kLeastColumns);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "core/charconv.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -63,7 +64,7 @@ std::size_t characters_of(std::string_view text) {
 std::string digits_of(double value, std::chars_format format, int precision) {
   if (!std::isfinite(value)) return "-";
   std::array<char, 400> text{};  // 309 digits before the point of the largest double
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr};
+  return {text.data(), to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr};
 }
 
 }  // namespace

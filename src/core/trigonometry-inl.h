@@ -11,9 +11,9 @@
 
 #include <hwy/highway.h>
 
-#include <bit>
 #include <cstdint>
 
+#include "core/bits.h"
 #include "core/trigonometry.h"
 
 #if defined(CHRONORMAL_CORE_TRIGONOMETRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -32,15 +32,15 @@ HWY_INLINE S select(bool mask, const S& a, const S& b) {
   return mask ? a : b;
 }
 
-HWY_INLINE float absolute(float a) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(a) & 0x7FFFFFFF); }
+HWY_INLINE float absolute(float a) { return bit_cast<float>(bit_cast<std::uint32_t>(a) & 0x7FFFFFFF); }
 HWY_INLINE float larger_of(float a, float b) { return a > b ? a : b; }
 HWY_INLINE float smaller_of(float a, float b) { return a < b ? a : b; }
 
-HWY_INLINE bool has_low_bit(float s) { return (std::bit_cast<std::uint32_t>(s) & 1) != 0; }
+HWY_INLINE bool has_low_bit(float s) { return (bit_cast<std::uint32_t>(s) & 1) != 0; }
 HWY_INLINE float negated_by_bit_1(float s, float v) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(v) ^ (std::bit_cast<std::uint32_t>(s) & 2) << 30);
+  return bit_cast<float>(bit_cast<std::uint32_t>(v) ^ (bit_cast<std::uint32_t>(s) & 2) << 30);
 }
-HWY_INLINE float next_bits(float s) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(s) + 1); }
+HWY_INLINE float next_bits(float s) { return bit_cast<float>(bit_cast<std::uint32_t>(s) + 1); }
 
 template <class S>
 HWY_INLINE SinCos<S> sin_cos(const S& x) {

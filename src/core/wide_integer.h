@@ -22,6 +22,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/bits.h"
+
 namespace chronormal::inline internal {
 
 inline constexpr int kDigitBits = 24;
@@ -33,7 +35,7 @@ struct FloatParts {
   unsigned shift = 0;
 
   [[nodiscard]] static FloatParts of(float value) noexcept {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const auto bits = bit_cast<std::uint32_t>(value);
     const std::uint32_t exponent = bits >> 23 & 0xFF, fraction = bits & 0x7FFFFF;
     const auto size = static_cast<std::int64_t>(exponent == 0 ? fraction : fraction | 0x800000);
     return {(bits >> 31) != 0 ? -size : size, exponent == 0 ? 0 : exponent - 1};
@@ -48,7 +50,7 @@ struct UnitFraction {
   [[nodiscard]] static UnitFraction of(double t) noexcept {
     assert(t == 0 || (0x1p-200 <= t && t <= 1));
     if (t == 0) return {};
-    const auto bits = std::bit_cast<std::uint64_t>(t);
+    const auto bits = bit_cast<std::uint64_t>(t);
     const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFF) | 0x10000000000000;
     const auto zeros = static_cast<unsigned>(std::countr_zero(mantissa));
     const std::uint64_t integer = mantissa >> zeros;

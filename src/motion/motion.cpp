@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+
+#include "core/charconv.h"
 
 namespace chronormal {
 namespace {
@@ -16,7 +17,7 @@ Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::mov
 // The fewest digits that read back as the same number, so that it can be pasted.
 std::string text_of(double number) {
   char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
+  return {digits, to_chars(digits, digits + sizeof digits, number).ptr};
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "chronormal/schemes/scheme.h"
 
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 
+#include "core/charconv.h"
 #include "schemes/kernels/curve_kernels.h"
 #include "schemes/makers.h"
 
@@ -44,7 +44,7 @@ struct Name {
 
 std::optional<std::uint64_t> number_in(std::string_view text, std::uint64_t smallest, std::uint64_t largest) {
   std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || value < smallest || value > largest)
     return std::nullopt;
   return value;

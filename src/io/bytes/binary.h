@@ -13,6 +13,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/bits.h"
+
 namespace chronormal::inline internal::binary {
 
 /// Reads the number whose first byte is at `at`.
@@ -21,20 +23,20 @@ template <class T>
   std::array<char, sizeof(T)> raw{};
   std::memcpy(raw.data(), at, sizeof(T));
   if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
+  return bit_cast<T>(raw);
 }
 
 /// Writes the bytes of a number to `at` and behind it.
 template <class T>
 void store(char* at, T value, std::endian order) noexcept {
-  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  auto raw = bit_cast<std::array<char, sizeof(T)>>(value);
   if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
   std::memcpy(at, raw.data(), raw.size());
 }
 
 template <class T>
 void append(std::string& text, T value, std::endian order) {
-  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  auto raw = bit_cast<std::array<char, sizeof(T)>>(value);
   if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
   text.append(raw.data(), raw.size());
 }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "core/charconv.h"
 #include "io/bytes/descriptor.h"
 #include "io/bytes/temporary_file.h"
 
@@ -92,7 +92,7 @@ std::optional<int> stream_descriptor(std::string_view path) {
     if (!path.starts_with(folder)) continue;
     int number = -1;
     const char* const last = path.data() + path.size();
-    const auto [end, code] = std::from_chars(path.data() + folder.size(), last, number);
+    const auto [end, code] = from_chars(path.data() + folder.size(), last, number);
     if (code == std::errc{} && end == last && number >= 0) return number;
   }
   return std::nullopt;

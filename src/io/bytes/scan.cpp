@@ -4,6 +4,8 @@
 #include <limits>
 #include <system_error>
 
+#include "core/charconv.h"
+
 namespace chronormal::inline internal::scan {
 namespace {
 
@@ -44,12 +46,12 @@ bool is_large(std::string_view number) noexcept {
 NumberFault parse_float(std::string_view word, float& value) noexcept {
   word = without_plus(word);
   const char* const last = word.data() + word.size();
-  const auto [end, code] = std::from_chars(word.data(), last, value);
+  const auto [end, code] = from_chars(word.data(), last, value);
   if (code == std::errc::invalid_argument || end != last) return NumberFault::kNotANumber;
   if (code == std::errc::result_out_of_range) {
     if (is_large(word)) return NumberFault::kTooLarge;
     double wide = 0;
-    const bool tiny = std::from_chars(word.data(), last, wide).ec == std::errc::result_out_of_range;
+    const bool tiny = from_chars(word.data(), last, wide).ec == std::errc::result_out_of_range;
     value = tiny ? std::copysign(0.0F, word.front() == '-' ? -1.0F : 1.0F) : static_cast<float>(wide);
     return NumberFault::kNone;
   }
@@ -61,7 +63,7 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
 NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept {
   word = without_plus(word);
   const char* const last = word.data() + word.size();
-  const auto [end, code] = std::from_chars(word.data(), last, value);
+  const auto [end, code] = from_chars(word.data(), last, value);
   if (code == std::errc::invalid_argument || end != last) return NumberFault::kNotANumber;
   return code == std::errc::result_out_of_range ? NumberFault::kTooLarge : NumberFault::kNone;
 }

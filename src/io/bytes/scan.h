@@ -2,11 +2,12 @@
 #ifndef CHRONORMAL_IO_BYTES_SCAN_H_
 #define CHRONORMAL_IO_BYTES_SCAN_H_
 
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "core/charconv.h"
 
 namespace chronormal::inline internal::scan {
 
@@ -72,7 +73,7 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 template <class Number>
 void append_number(std::string& text, Number number) {
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+  text.append(digits, to_chars(digits, digits + sizeof digits, number).ptr);
 }
 
 }  // namespace chronormal::inline internal::scan

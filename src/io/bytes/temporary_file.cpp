@@ -27,7 +27,7 @@ static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not
 // 16 hexadecimal digits.
 std::string random_digits() {
   std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))
+  if (::getentropy(&number, sizeof number) != 0)
     number = static_cast<std::uint64_t>(::getpid()) << 32U ^ reinterpret_cast<std::uintptr_t>(&number);
   std::string digits;
   for (; digits.size() < 16; number >>= 4U) digits += "0123456789abcdef"[number & 0xFU];

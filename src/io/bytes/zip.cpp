@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <limits>
+#include <new>
 #include <optional>
 #include <set>
 #include <utility>
@@ -82,14 +83,14 @@ bool read_zip64_field(std::string_view extra, Member& member) {
   return false;
 }
 
-// Unpacks at most `most` bytes. The result has fewer where the data are damaged; at_end is whether they ended well.
+// Unpacks at most `most` bytes. The result has fewer where the data are damaged; at_end is whether they ended well. Where
+// zlib gets no memory, this ends as it does where anything else gets none.
 std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
-  std::string result;
+  std::string result(most, '\0');
   at_end = false;
   z_stream stream{};
-  if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) return result;
-  result.resize(most);
+  if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw std::bad_alloc();
   std::size_t done = 0;
   int code = Z_OK;
   unsigned char none = 0;  // where to put nothing, so that an empty result can end well
@@ -107,6 +108,7 @@ std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end
   }
   at_end = code == Z_STREAM_END;
   (void)::inflateEnd(&stream);
+  if (code == Z_MEM_ERROR) throw std::bad_alloc();
   result.resize(done);
   return result;
 }

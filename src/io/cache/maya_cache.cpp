@@ -2,7 +2,6 @@
 #include "io/bytes/file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_chunks.h"
@@ -104,7 +104,7 @@ class DescriptionReader {
 bool take_number_after(std::string_view& text, std::string_view word, std::int32_t& number) {
   if (!text.starts_with(word)) return false;
   const std::string_view digits = text.substr(word.size());
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), number);
   if (code != std::errc{}) return false;
   text = digits.substr(static_cast<std::size_t>(end - digits.data()));
   return true;

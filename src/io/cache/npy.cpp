@@ -1,12 +1,12 @@
 #include "io/cache/npy.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
@@ -53,7 +53,7 @@ class Python {
     if (!sign('(')) return std::nullopt;
     while (!sign(')')) {
       std::uint64_t number = 0;
-      const auto [end, code] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
+      const auto [end, code] = from_chars(text_.data(), text_.data() + text_.size(), number);
       if (code != std::errc{} || numbers.size() == kMostDimensions) return std::nullopt;
       text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
       numbers.push_back(number);
@@ -80,7 +80,7 @@ class Python {
 bool read_type(std::string_view type, bool allow_text, Array& array) {
   if (allow_text && type.size() > 2 && (type[1] == 'U' || type[1] == 'S')) {
     std::uint32_t length = 0;
-    const auto [end, code] = std::from_chars(type.data() + 2, type.data() + type.size(), length);
+    const auto [end, code] = from_chars(type.data() + 2, type.data() + type.size(), length);
     array.order = type[0] == '>' ? std::endian::big : std::endian::little;
     array.kind = static_cast<Kind>(type[1]);
     array.item_size = std::size_t{length} * (array.kind == Kind::kText ? 4 : 1);

@@ -1,10 +1,10 @@
 #include "chronormal/io/gltf_document.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
@@ -229,7 +229,7 @@ Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_inde
   if (named != all.end() && !name_or_index.empty()) return static_cast<std::size_t>(named - all.begin());
   std::size_t index = 0;
   const char* const end = name_or_index.data() + name_or_index.size();
-  const auto [stop, code] = std::from_chars(name_or_index.data(), end, index);
+  const auto [stop, code] = from_chars(name_or_index.data(), end, index);
   if (code == std::errc() && stop == end && index < all.size()) return index;
 
   constexpr std::size_t kMostNamed = 20;

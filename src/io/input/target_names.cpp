@@ -1,8 +1,8 @@
 #include "chronormal/io/target_names.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "core/charconv.h"
 #include "core/nearest.h"
 
 namespace chronormal {
@@ -60,7 +60,7 @@ Result<std::size_t> find_target(const TargetNames& names, const std::string& nam
   }
   std::size_t number = 0;
   const char* const end = name_or_number.data() + name_or_number.size();
-  const auto [stop, code] = std::from_chars(name_or_number.data(), end, number);
+  const auto [stop, code] = from_chars(name_or_number.data(), end, number);
   if (code == std::errc() && stop == end && number < names.size()) return number;
 
   std::vector<std::string> all;

@@ -1,12 +1,12 @@
 #include "io/json/json.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <system_error>
 
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/json/json_text.h"
 
@@ -44,7 +44,7 @@ bool overflows(std::string_view number) {
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
   if (exponent_at == number.size() && number.size() <= kMostDigits) return false;
   double value = 0;
-  const auto [stop, code] = std::from_chars(number.data(), number.data() + number.size(), value);
+  const auto [stop, code] = from_chars(number.data(), number.data() + number.size(), value);
   if (code == std::errc()) return std::isinf(value);
   if (code != std::errc::result_out_of_range) return false;
   // Too large or too small, by far: what counts is where the first digit that is not 0 stands.
@@ -54,7 +54,7 @@ bool overflows(std::string_view number) {
   std::string_view digits = number.substr(std::min(exponent_at + 1, number.size()));
   if (digits.starts_with('+')) digits.remove_prefix(1);
   std::int64_t exponent = 0;
-  if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
+  if (!digits.empty() && from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
   // More than the text has digits decides alone.
   constexpr std::int64_t kFar = std::int64_t{1} << 40;

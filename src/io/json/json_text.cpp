@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/json/json_writer.h"
 
 namespace chronormal::inline internal {
@@ -40,7 +40,7 @@ std::size_t end_of_value(std::string_view text, std::size_t at) {
 
 std::uint32_t hexadecimal(std::string_view digits) {
   std::uint32_t value = 0;
-  (void)std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  (void)from_chars(digits.data(), digits.data() + digits.size(), value, 16);
   return value;
 }
 
@@ -70,7 +70,7 @@ bool is_named(std::string_view quoted, std::string_view name) {
 std::optional<std::size_t> to_index(std::string_view token) {
   std::size_t index = 0;
   const char* const end = token.data() + token.size();
-  const auto [stop, code] = std::from_chars(token.data(), end, index);
+  const auto [stop, code] = from_chars(token.data(), end, index);
   if (code != std::errc() || stop != end || (token.size() > 1 && token.front() == '0')) return std::nullopt;
   return index;
 }

@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
+
+#include "core/charconv.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -12,7 +13,7 @@ template <class Number>
 std::string shortest(Number value) {
   assert(std::isfinite(value));
   std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+  return {digits.data(), to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "io/bytes/binary.h"
@@ -34,7 +35,7 @@ struct Inflater {
 Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const std::string& name) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max(), kFirstRoom = 16384;
   Inflater inflater;
-  if (!inflater.is_ready) return Error{ErrorCode::kFailed, name, "there is no memory to unpack the file"};
+  if (!inflater.is_ready) throw std::bad_alloc();
   z_stream& stream = inflater.stream;
   std::string text;
   std::size_t done = 0, handed_over = 0;
@@ -61,6 +62,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
       return error("the file unpacks to more than " + std::to_string(most) +
                    " bytes, which no target of this base needs");
     if (code == Z_OK) continue;
+    if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code == Z_BUF_ERROR) return error("the gzip data end early");  // there was room, so it wants more input
     if (code != Z_STREAM_END) {
       std::string message = "the gzip data are damaged";

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/bits.h"
 #include "io/bytes/scan.h"
 #include "io/mesh/ply_header.h"
 #include "io/mesh/polygon_builder.h"
@@ -141,7 +142,7 @@ class BinarySource {
     std::memcpy(raw.data(), bytes_.data() + position_, sizeof(T));
     if (is_swapped_) std::reverse(raw.begin(), raw.end());
     position_ += sizeof(T);
-    return std::bit_cast<T>(raw);
+    return bit_cast<T>(raw);
   }
 
   // Reads one value into whole or, for the types of fractions, into real.
@@ -321,7 +322,7 @@ class RowWriter {
       bytes_ += ' ';
       return;
     }
-    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    auto raw = bit_cast<std::array<char, sizeof(T)>>(value);
     if (swap_) std::reverse(raw.begin(), raw.end());
     bytes_.append(raw.data(), raw.size());
   }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/bytes/scan.h"
 
 namespace chronormal::inline internal::ply {
@@ -133,7 +133,7 @@ Status HeaderReader::read_element(const Words& words) {
   Element element;
   element.name = words[1];
   const char* const last = words[2].data() + words[2].size();
-  const auto [end, code] = std::from_chars(words[2].data(), last, element.count);
+  const auto [end, code] = from_chars(words[2].data(), last, element.count);
   if (code != std::errc{} || end != last)
     return error(scan::quoted(words[2]) + " is not a possible number of " + scan::quoted(words[1]) + " elements");
   if (!element_names_.insert(element.name).second)

@@ -1,14 +1,15 @@
 #include "chronormal/normals/normal_groups.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
+
+#include "core/bits.h"
 
 namespace chronormal {
 namespace {
 
 // A total order of coordinates in which -0 and 0 are the same.
-std::uint32_t key(float coordinate) { return std::bit_cast<std::uint32_t>(coordinate + 0.0F); }
+std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
 // Negative where vertex a comes first, 0 where the two are of one body and coincide in all keyframes.
 int compare(const Motion& motion, std::uint32_t a, std::uint32_t b) {

@@ -1,6 +1,5 @@
 // Meshes, what their accessors must look like, and the animations of their weights.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
@@ -8,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "io/gltf/model/gltf_model_parser.h"
@@ -269,8 +269,8 @@ std::vector<std::size_t> Parser::nodes_pointed_to(const JsonView& target) {
     std::size_t index = 0;
     if (!pointer.starts_with(list)) return std::nullopt;
     const char* const end = pointer.data() + pointer.size();
-    const auto [stop, code] = std::from_chars(pointer.data() + list.size(), end, index);
-    return code == std::errc() && std::string_view(stop, end) == "/weights" ? std::optional(index) : std::nullopt;
+    const auto [stop, code] = from_chars(pointer.data() + list.size(), end, index);
+    return code == std::errc() && std::string_view(stop, static_cast<std::size_t>(end - stop)) == "/weights" ? std::optional(index) : std::nullopt;
   };
   const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
   if ((node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {

@@ -63,9 +63,9 @@ void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVect
     if (!moves(source.shading, i)) continue;
     const NormalTerms::Term linear = source.terms.linear_by_element(i);
     const NormalTerms::Term square = source.terms.pair_by_element(i, i);
-    auto& [vertices, vectors] = deltas[i];
-    parallel_each(vertices.size(), kBlock, [&](std::size_t n) {
-      const std::uint32_t v = vertices[n], element = source.shading.element_of_vertex[v];
+    VertexVectors& delta = deltas[i];
+    parallel_each(delta.vertices.size(), kBlock, [&](std::size_t n) {
+      const std::uint32_t v = delta.vertices[n], element = source.shading.element_of_vertex[v];
       const Vec3d of_element = source.terms.base_of(element), base = to_double(normals[v]);
       const VertexTerms turned(of_element, source.plan.largest[element], base);
       Vec3d a, c;
@@ -73,8 +73,8 @@ void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVect
       (void)square.find(element, c);
       const Course course{turned(of_element), turned(a), turned(c),
                           length(turned(Vec3d{source.plan.largest[element], 0, 0})), base};
-      vectors[n] =
-          to_float(harmless_delta(course, to_double(stored[i].at(v)), to_double(vectors[n]), lengths, tolerance));
+      Vec3f& vector = delta.vectors[n];
+      vector = to_float(harmless_delta(course, to_double(stored[i].at(v)), to_double(vector), lengths, tolerance));
     });
   }
 }

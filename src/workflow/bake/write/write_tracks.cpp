@@ -3,7 +3,6 @@
 #include "workflow/bake/write/write_tracks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/json/json_writer.h"
 
 namespace chronormal::inline internal {
@@ -23,7 +23,7 @@ std::string item(const std::string& list, std::size_t index) {
 std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   const std::string text = edit.text(pointer);
   double value = 0;  // 4.0 is an index too
-  std::from_chars(text.data(), text.data() + text.size(), value);
+  from_chars(text.data(), text.data() + text.size(), value);
   return static_cast<std::size_t>(value);
 }
 
@@ -61,8 +61,9 @@ bool leads_to_weights(const GltfDocument& document, std::span<const GrownMesh> m
   if (!of_node && !rest.starts_with("/meshes/")) return false;
   rest.remove_prefix(rest.find('/', 1) + 1);
   std::size_t index = 0;
-  const auto [stop, code] = std::from_chars(rest.data(), rest.data() + rest.size(), index);
-  if (code != std::errc() || !std::string_view(stop, rest.data() + rest.size()).starts_with("/weights")) return false;
+  const auto [stop, code] = from_chars(rest.data(), rest.data() + rest.size(), index);
+  rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+  if (code != std::errc() || !rest.starts_with("/weights")) return false;
   if (of_node) {
     if (index >= document.nodes().size() || !document.nodes()[index].mesh) return false;
     index = *document.nodes()[index].mesh;
