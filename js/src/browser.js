@@ -1,0 +1,21 @@
+// What browsers have of their own (package.json, "imports").
+export const require = undefined;
+
+export async function compile(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
+  return WebAssembly.compile(await response.arrayBuffer());
+}
+
+/** Starts the worker of worker.js; onMessage gets what it says, onError what ends it. */
+export function startWorker(onMessage, onError) {
+  const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+  worker.onmessage = ({ data }) => onMessage(data);
+  worker.onerror = (event) => onError(new Error(event.message ?? 'the worker could not be started'));
+  return worker;
+}
+
+/** In a worker: answers each message by what answer(message, say) says. */
+export async function serve(answer) {
+  self.onmessage = ({ data }) => answer(data, (reply, transfer = []) => self.postMessage(reply, transfer));
+}

@@ -1,0 +1,70 @@
+// The program with the files and the terminal of this machine.
+import { existsSync, readdirSync, readSync, writeSync } from 'node:fs';
+import process from 'node:process';
+import { run } from './run.js';
+
+const isWindows = process.platform === 'win32';
+// C:\models\face.glb is /C:/models/face.glb in the file system of the program.
+const inside = (path) => (isWindows ? path.replaceAll('\\', '/').replace(/^([A-Za-z]:)(?=\/)/, '/$1') : path);
+
+// Mounts what stands at the root of the machine under the same names.
+function mount(FS, NODEFS) {
+  const roots = isWindows
+    ? [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].map((letter) => `${letter}:`).filter((drive) => existsSync(`${drive}\\`))
+    : readdirSync('/').filter((name) => !['dev', 'proc', 'sys'].includes(name));
+  for (const name of roots) {
+    const folder = `/${name}`;
+    try {
+      if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
+      FS.mount(NODEFS, { root: isWindows ? `${name}\\` : folder }, folder);
+    } catch {
+      // No folder: a file, or a link that leads nowhere.
+    }
+  }
+  FS.chdir(inside(process.cwd()));
+}
+
+const writeAll = (stream) => (bytes) => {
+  for (let at = 0; at < bytes.length; ) {
+    try {
+      at += writeSync(stream, bytes, at);
+    } catch (error) {
+      if (error.code === 'EPIPE') return; // whoever reads it has seen enough
+      if (error.code !== 'EAGAIN') throw error;
+    }
+  }
+};
+
+function readStandardInput() {
+  const piece = new Uint8Array(65536);
+  let count = 0, at = 0;
+  return () => {
+    while (at === count) {
+      try {
+        count = readSync(0, piece, 0, piece.length, null);
+      } catch (error) {
+        if (error.code === 'EAGAIN') continue;
+        if (error.code === 'EOF') return null;
+        throw error;
+      }
+      at = 0;
+      if (count === 0) return null;
+    }
+    return piece[at++];
+  };
+}
+
+/** Runs the program with these arguments, and returns its exit code. */
+export async function main(args) {
+  const { stdout, stderr, env } = process;
+  const columns = stdout.columns ?? stderr.columns;
+  const { code } = await run(isWindows ? args.map(inside) : args, {
+    prepare: mount,
+    stdout: writeAll(1),
+    stderr: writeAll(2),
+    stdin: readStandardInput(),
+    terminals: { stdout: stdout.isTTY, stderr: stderr.isTTY },
+    env: { ...env, ...(columns && !env.COLUMNS ? { COLUMNS: String(columns) } : {}) },
+  });
+  return code;
+}

@@ -1,0 +1,85 @@
+// One run of the program: a fresh module with files in memory, or with those of this machine, so that nothing of one run
+// is left for the next, whatever it ended with.
+import createProgram from '../wasm/program.js';
+import * as platform from '#platform';
+
+let compiled; // the module, once for all runs
+
+/**
+ * Compiles the program, unless that was done before. What it takes is the most of a short run.
+ * @returns {Promise<WebAssembly.Module>}
+ */
+export function compile() {
+  compiled ??= platform.compile(new URL('../wasm/program.wasm', import.meta.url));
+  return compiled;
+}
+
+// What a stream gets, in pieces of this many bytes, or of a line where someone looks on.
+const PIECE = 65536;
+
+class Sink {
+  constructor(write, byLine) {
+    this.write = write;
+    this.byLine = byLine;
+    this.bytes = new Uint8Array(PIECE);
+    this.count = 0;
+  }
+  put(byte) {
+    this.bytes[this.count++] = byte;
+    if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush(); // a bar ends with "%"
+  }
+  flush() {
+    if (this.count > 0) this.write(this.bytes.slice(0, this.count));
+    this.count = 0;
+  }
+}
+
+/**
+ * Runs the program.
+ * @param {string[]} args the command line, without the name of the program
+ * @param {object} world what it meets:
+ *   prepare(FS, NODEFS)   puts files into its file system, before it starts
+ *   finish(FS)            takes what it left there; its result is that of run()
+ *   stdout, stderr        get bytes (Uint8Array) as they come
+ *   terminals             {stdout, stderr}: which of them is a terminal
+ *   stdin()               a byte, or null at the end
+ *   env                   variables of the environment
+ * @returns {Promise<{code: number, result: any}>} the exit code, and what finish() returned
+ */
+export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin = () => null, env = {} }) {
+  const module = await compile();
+  const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
+  let code = 1;
+  const program = await createProgram({
+    require: platform.require,
+    thisProgram: 'chronormal',
+    instantiateWasm(imports, done) {
+      WebAssembly.instantiate(module, imports).then(done);
+      return {};
+    },
+    preRun: [
+      ({ ENV, FS, NODEFS }) => {
+        for (const name of Object.keys(ENV)) delete ENV[name];
+        Object.assign(ENV, env);
+        FS.init(stdin, (byte) => out.put(byte), (byte) => err.put(byte));
+        prepare(FS, NODEFS);
+      },
+    ],
+    quit(status, error) {
+      code = status;
+      throw error;
+    },
+    print: (text) => stdout(new TextEncoder().encode(`${text}\n`)),
+    printErr: (text) => stderr(new TextEncoder().encode(`${text}\n`)),
+  });
+  for (const [stream, isTerminal] of [[1, terminals.stdout], [2, terminals.stderr]]) {
+    if (isTerminal) program.FS.getStream(stream).tty = true;
+  }
+  try {
+    code = program.callMain(args) ?? code;
+  } finally {
+    out.flush();
+    err.flush();
+  }
+  return { code, result: finish?.(program.FS) };
+}
