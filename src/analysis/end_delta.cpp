@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/portable_math.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -22,7 +24,7 @@ constexpr double kRange = 11.090354888959125;  // log of 2^16, the largest s
 // Angles are compared by a number that ascends with them and needs no trigonometry: the square of the sine, and from 90
 // degrees on 2 minus it.
 double angle_of_key(double key) noexcept {
-  return key <= 1 ? std::asin(std::sqrt(key)) : 2 * kHalfPi - std::asin(std::sqrt(std::max(2 - key, 0.0)));
+  return key <= 1 ? portable::asin(std::sqrt(key)) : 2 * kHalfPi - portable::asin(std::sqrt(std::max(2 - key, 0.0)));
 }
 
 double key_of(double sine_square, double cosine) noexcept {
@@ -180,7 +182,7 @@ class ScaleSearch {
   };
 
   [[nodiscard]] Worst worst(double log_scale) const noexcept {
-    const double s = std::exp(log_scale);
+    const double s = portable::exp(log_scale);
     Worst result;
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
@@ -203,8 +205,8 @@ class ScaleSearch {
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
       if (t.cosine0 <= 0 && t.cosine1 <= 0) return false;
-      if (t.cosine0 <= 0) low = std::max(low, std::log(-t.cosine0 / t.cosine1));
-      if (t.cosine1 < 0) high = std::min(high, std::log(-t.cosine0 / t.cosine1));
+      if (t.cosine0 <= 0) low = std::max(low, portable::log(-t.cosine0 / t.cosine1));
+      if (t.cosine1 < 0) high = std::min(high, portable::log(-t.cosine0 / t.cosine1));
     }
     return low < high;
   }
@@ -268,7 +270,7 @@ double log_of_degree_1(const ControlNormals& normals) noexcept {
   const Vec3d from = max_abs(normals.n0) == 0 ? 2 * normals.m : normals.n0;
   const Vec3d to = max_abs(normals.n1) == 0 ? 2 * normals.m : normals.n1;
   const double ratio = length(to) / length(from);
-  return std::isnormal(ratio) ? std::clamp(std::log(ratio), -kRange, kRange) : 0;
+  return std::isnormal(ratio) ? std::clamp(portable::log(ratio), -kRange, kRange) : 0;
 }
 
 bool all_zero(const ControlNormals& normals) noexcept {
@@ -302,7 +304,7 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   constexpr int kExchanges = 6;
   constexpr double kGain = 1 + 1e-3, kExact = 1e-24;  // of keys: half of it in angles
   for (int round = 0; round <= kExchanges; ++round) {
-    const double s = std::exp(log_scale);
+    const double s = portable::exp(log_scale);
     samples.follow(u0, s * u1);
     const Peak peak = highest_peak(samples, u0, s * u1);
     if (peak.key < best.key) {

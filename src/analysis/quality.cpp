@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/portable_math.h"
+
 namespace chronormal {
 
 double Quality::mean() const noexcept { return count == 0 ? 0 : sum / static_cast<double>(count); }
@@ -26,7 +28,7 @@ void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals,
     }
     const Vec3d n{exact[i].x / scale, exact[i].y / scale, exact[i].z / scale};
     const Vec3d x = cross(n, u);
-    const double angle = std::atan2(std::sqrt(dot(x, x)), dot(n, u));
+    const double angle = portable::atan2(std::sqrt(dot(x, x)), dot(n, u));
     sum += angle;
     sum_of_squares += angle * angle;
     ++count;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "chronormal/core/vec3.h"
+#include "core/portable_math.h"
 #include "schemes/curve_scheme.h"
 
 namespace chronormal::inline internal {
@@ -18,7 +19,7 @@ struct Arc {
   Vec3d w, p, q;
   double angle = 0;  ///< A, from u0 to u1 counter-clockwise about the axis, in [0, 2 pi]
 
-  [[nodiscard]] Vec3d at(double t) const { return w + std::cos(t * angle) * p + std::sin(t * angle) * q; }
+  [[nodiscard]] Vec3d at(double t) const { return w + portable::cos(t * angle) * p + portable::sin(t * angle) * q; }
 };
 
 inline constexpr double kPi = 3.14159265358979323846;
@@ -31,7 +32,7 @@ inline constexpr double kPi = 3.14159265358979323846;
 
 /// The angle by which v lies behind the start of the arc, counter-clockwise about its axis, in [0, 2 pi).
 [[nodiscard]] inline double angle_along(const Arc& arc, const Vec3d& v) {
-  const double angle = std::atan2(dot(arc.q, v), dot(arc.p, v));
+  const double angle = portable::atan2(dot(arc.q, v), dot(arc.p, v));
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
@@ -65,13 +66,13 @@ struct CircleFamily {
   /// The arc from u0 to u1 about axis(phi): at most half a turn for phi in [-pi/2, pi/2], more beyond.
   [[nodiscard]] Arc arc(double phi) const {
     if (kind == Kind::kEqual) return {{}, u0, {}, 0};
-    Arc arc = arc_about(std::cos(phi) * pole + std::sin(phi) * bisector, u0, 0);
+    Arc arc = arc_about(portable::cos(phi) * pole + portable::sin(phi) * bisector, u0, 0);
     arc.angle = angle_along(arc, u1);
     return arc;
   }
 
   /// The phi of an axis, which should be as far from u0 as from u1.
-  [[nodiscard]] double phi_of(const Vec3d& axis) const { return std::atan2(dot(axis, bisector), dot(axis, pole)); }
+  [[nodiscard]] double phi_of(const Vec3d& axis) const { return portable::atan2(dot(axis, bisector), dot(axis, pole)); }
 
   /// phi = 0: vector slerp. Equal ends stay where they are, antipodal ends turn about a fixed perpendicular.
   [[nodiscard]] Arc great_arc() const { return arc(0); }
@@ -81,10 +82,10 @@ struct CircleFamily {
 inline constexpr std::size_t kTurnPlanes = 4;
 
 inline void put_turn(double* state, double angle, double step_angle) {
-  state[0] = std::cos(angle);
-  state[1] = std::sin(angle);
-  state[2] = std::cos(step_angle);
-  state[3] = std::sin(step_angle);
+  state[0] = portable::cos(angle);
+  state[1] = portable::sin(angle);
+  state[2] = portable::cos(step_angle);
+  state[3] = portable::sin(step_angle);
 }
 
 /// The planes of an arc: w, p, q, A.

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/portable_math.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -45,7 +47,7 @@ std::optional<FramePair> pair_of(const std::optional<Frame>& start, const std::o
 
 // The frame turned about its own normal.
 Frame turned(const Frame& frame, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   return {c * frame.tangent + s * frame.binormal, c * frame.binormal - s * frame.tangent, frame.normal};
 }
 
@@ -99,7 +101,7 @@ std::optional<FramePair> polar_frames(const ElementMotion& element) {
   const double f1y = dot(edges.end.f, frames->at_end.binormal);
   const double sine = e1x * f0x - f1x * e0x, cosine = e1x * f0y + f1y * e0x;
   if (sine == 0 && cosine == 0) return std::nullopt;
-  return FramePair{frames->at_start, turned(frames->at_end, std::atan2(sine, cosine))};
+  return FramePair{frames->at_start, turned(frames->at_end, portable::atan2(sine, cosine))};
 }
 
 std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed) {
@@ -155,7 +157,7 @@ Arc shorter_arc(const FramePair& frames) {
   }
   const double size = length(v);
   if (size <= 1e-15 * w) return {{}, a.normal, {}, 0};
-  return arc_about((1 / size) * v, a.normal, 2 * std::atan2(size, w));
+  return arc_about((1 / size) * v, a.normal, 2 * portable::atan2(size, w));
 }
 
 }  // namespace chronormal::inline internal

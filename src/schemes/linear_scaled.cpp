@@ -2,6 +2,7 @@
 // it run faster where the normal does (docs/theory.md, section 4.8). The best that a host can do which only adds one
 // delta. s is found per element by a search over its logarithm.
 
+#include "core/portable_math.h"
 #include "schemes/makers.h"
 #include "schemes/mean_error.h"
 #include "schemes/minimize.h"
@@ -36,11 +37,12 @@ class ScaledLinear {
       points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among them
     // An element of degree 1 is met exactly by the ratio of its areas.
     const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
-    points[kGrid] = std::isnormal(areas) ? std::clamp(std::log(areas), -kRange, kRange) : 0;
+    points[kGrid] = std::isnormal(areas) ? std::clamp(portable::log(areas), -kRange, kRange) : 0;
     std::sort(points.begin(), points.end());
 
     const ExactSamples exact(element.control_normals());
-    return std::exp(minimize(points, [&](double s) { return exact.mean_error_of_line(u0, std::exp(s) * u1); }));
+    return portable::exp(
+        minimize(points, [&](double s) { return exact.mean_error_of_line(u0, portable::exp(s) * u1); }));
   }
 };
 

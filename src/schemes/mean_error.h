@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "chronormal/normals/control_normals.h"
+#include "core/portable_math.h"
 #include "schemes/arc.h"
 
 namespace chronormal::inline internal {
@@ -49,7 +50,7 @@ class ExactSamples {
   /// Mean angle between the exact normal and the arc, over t.
   [[nodiscard]] double mean_error(const Arc& arc) const {
     // The position on the arc advances by a rotation of (cos, sin): no sine inside the loop.
-    const double step_cosine = std::cos(arc.angle / intervals_), step_sine = std::sin(arc.angle / intervals_);
+    const double step_cosine = portable::cos(arc.angle / intervals_), step_sine = portable::sin(arc.angle / intervals_);
     double cosine = 1, sine = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double next = cosine * step_cosine - sine * step_sine;

@@ -87,10 +87,8 @@ template <class S>
 inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
 /// Angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. By atan2, never by acos, which loses
-/// all angles below 1e-8 in double and below 3e-4 in float.
-[[nodiscard]] inline double angle_between(const Vec3d& a, const Vec3d& b) noexcept {
-  return std::atan2(length(cross(a, b)), dot(a, b));
-}
+/// all angles below 1e-8 in double and below 3e-4 in float; the same bits on every machine.
+[[nodiscard]] double angle_between(const Vec3d& a, const Vec3d& b) noexcept;
 
 }  // namespace chronormal
 

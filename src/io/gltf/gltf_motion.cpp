@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
+#include "core/portable_math.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/gltf_weights.h"
 #include "io/gltf/model/gltf_model.h"
@@ -290,14 +291,14 @@ class AnimationReader {
         double longest = 0;
         for (std::size_t at = 0; at + 2 < target.positions.size(); at += 3) {
           const Vec3d way = transform(vector(target.positions, at)) - transform.offset;
-          longest = std::max(longest, std::hypot(way.x, way.y, way.z));
+          longest = std::max(longest, portable::hypot(way.x, way.y, way.z));
         }
         reach.push_back(longest);
         size_ = std::max(size_, longest);
       }
     }
     // A base that is a point has the size of its targets.
-    size_ = std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
+    size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
   // A bound of the acceleration of any vertex between two neighbouring keys.

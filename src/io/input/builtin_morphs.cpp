@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
+#include "core/portable_math.h"
 
 namespace chronormal {
 namespace {
@@ -67,7 +68,7 @@ struct Grid {
 };
 
 Vec3d turned_about_z(const Vec3d& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   return {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
 }
 
@@ -85,8 +86,8 @@ Motion cloth() {
     const double phase = 0.4 * kPi * k;
     keyframes.push_back(grid.keyframe(k, [phase](double u, double v) {
       const double along = 3 * kPi * u - phase, across = 5 * v + phase;
-      return Vec3d{u - 0.5 - 0.05 * std::sin(along), v - 0.5 + 0.03 * std::cos(across) * u,
-                   0.08 * (0.4 + v) * std::cos(along) + 0.03 * std::sin(across) * u};
+      return Vec3d{u - 0.5 - 0.05 * portable::sin(along), v - 0.5 + 0.03 * portable::cos(across) * u,
+                   0.08 * (0.4 + v) * portable::cos(along) + 0.03 * portable::sin(across) * u};
     }));
   }
   return connected(grid.topology(), std::move(keyframes));
@@ -99,10 +100,10 @@ Motion bend() {
     return grid.keyframe(time, [bend_angle](double u, double v) {
       constexpr double kLength = 4, kRadius = 0.5;
       const double around = -2 * kPi * u;
-      const double x = kRadius * std::cos(around), z = kRadius * std::sin(around), y = kLength * v;
+      const double x = kRadius * portable::cos(around), z = kRadius * portable::sin(around), y = kLength * v;
       if (bend_angle == 0) return Vec3d{x, y, z};
       const double middle = kLength / bend_angle, angle = bend_angle * v;
-      return Vec3d{middle - (middle - x) * std::cos(angle), (middle - x) * std::sin(angle), z};
+      return Vec3d{middle - (middle - x) * portable::cos(angle), (middle - x) * portable::sin(angle), z};
     });
   };
   return connected(grid.topology(), {tube(0, 0), tube(1, kPi / 2)});
@@ -127,7 +128,8 @@ Motion eversion() {
   const auto sphere = [&grid](double time, double scale, double turn) {
     return grid.keyframe(time, [scale, turn](double u, double v) {
       const double around = 2 * kPi * u, down = kPi * (0.02 + 0.96 * v);
-      const Vec3d p{std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), -std::cos(down)};
+      const Vec3d p{portable::sin(down) * portable::cos(around), portable::sin(down) * portable::sin(around),
+                    -portable::cos(down)};
       return scale * turned_about_z(p, turn * p.z);
     });
   };
@@ -159,16 +161,17 @@ Motion bumps() {
   const auto head = [&grid](std::size_t target) {
     return grid.keyframe(target == 0 ? 0 : 1, [target](double u, double v) {
       const double around = 2 * kPi * u, down = kPi * (0.03 + 0.94 * v);
-      const Vec3d out{std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), std::cos(down)};
-      const double radius = 1 + 0.03 * std::sin(5 * around) * std::sin(6 * down);
+      const Vec3d out{portable::sin(down) * portable::cos(around), portable::sin(down) * portable::sin(around),
+                      portable::cos(down)};
+      const double radius = 1 + 0.03 * portable::sin(5 * around) * portable::sin(6 * down);
       const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
       if (target == 0) return base;
       // Four rows of three on the front, which looks along x; every other one pushes out, the others along the skin.
       const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
       const double centre_around = 0.45 * (static_cast<double>(column) - 1);
       const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);
-      const Vec3d centre{std::sin(centre_down) * std::cos(centre_around),
-                         std::sin(centre_down) * std::sin(centre_around), std::cos(centre_down)};
+      const Vec3d centre{portable::sin(centre_down) * portable::cos(centre_around),
+                         portable::sin(centre_down) * portable::sin(centre_around), portable::cos(centre_down)};
       const Vec3d off = out - centre;
       const double distance = std::sqrt(dot(off, off)) / (0.5 + 0.05 * static_cast<double>(column));
       if (distance >= 1) return base;

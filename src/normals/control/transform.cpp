@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/portable_math.h"
+
 namespace chronormal {
 namespace {
 
@@ -27,9 +29,9 @@ Quaternion slerp(const Quaternion& from, Quaternion to, double t) {
   if (dot4(from, to) < 0) to = weighted_sum(-1, to, 0, to);
   // The angle from chord and diagonal, which loses none that are small.
   const Quaternion chord = weighted_sum(1, to, -1, from), diagonal = weighted_sum(1, to, 1, from);
-  const double angle = 2 * std::atan2(std::sqrt(dot4(chord, chord)), std::sqrt(dot4(diagonal, diagonal)));
+  const double angle = 2 * portable::atan2(std::sqrt(dot4(chord, chord)), std::sqrt(dot4(diagonal, diagonal)));
   if (angle < kSmallAngle) return normalised(weighted_sum(1 - t, from, t, to));
-  return normalised(weighted_sum(std::sin((1 - t) * angle), from, std::sin(t * angle), to));
+  return normalised(weighted_sum(portable::sin((1 - t) * angle), from, portable::sin(t * angle), to));
 }
 
 }  // namespace

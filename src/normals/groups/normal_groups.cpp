@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "chronormal/normals/control_normals.h"
+#include "core/portable_math.h"
 #include "normals/groups/corner_sets.h"
 
 namespace chronormal {
@@ -219,7 +220,7 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
 
   CornerSets sets(topology.corner_count());
   const Listing around = corners_of_points(topology, points);
-  const double chord = 2 * std::sin(degrees * kRadiansPerDegree / 2) + 4 * std::numeric_limits<double>::epsilon();
+  const double chord = 2 * portable::sin(degrees * kRadiansPerDegree / 2) + 4 * std::numeric_limits<double>::epsilon();
   std::vector<StoredNormal> normals;
   for (std::size_t p = 0; p < points.count; ++p) {
     normals.clear();

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/portable_math.h"
+
 namespace chronormal::inline internal {
 
 struct Interval {
@@ -73,10 +75,10 @@ struct Interval {
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
   const double radius = (y.high - y.low) + (x.high - x.low);
   // The distance to the origin is at least this on the way from the point inside to any other.
-  const double distance = 0.999 * std::hypot(mx, my) - radius;
+  const double distance = 0.999 * portable::hypot(mx, my) - radius;
   if (!(distance > 0)) return Interval::whole();
   constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();
-  const double angle = std::atan2(my, mx), error = 1.001 * radius / distance + kLibrary;
+  const double angle = portable::atan2(my, mx), error = 1.001 * radius / distance + kLibrary;
   return Interval::outwards(angle - error, angle + error);
 }
 

@@ -9,6 +9,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
+#include "core/portable_math.h"
 #include "core/vector_area.h"
 #include "normals/weighting/corner_terms.h"
 #include "normals/weighting/sampled_normal.h"
@@ -236,7 +237,7 @@ struct Element {
     const double sine = largest_length_over(series.cross_here, series.cross_around, half, series.slack);
     const double cosine = least_over(series.dot_here, series.dot_around, half, series.slack);
     if (!std::isfinite(sine) || !(cosine > 0)) return std::numbers::pi;
-    return (1 + 0x1p-48) * std::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
+    return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
   // The bound over the whole segment. Pieces are halved until their bounds are close to `goal`; where the shortest has

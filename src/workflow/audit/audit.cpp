@@ -6,6 +6,7 @@
 #include <string>
 
 #include "chronormal/normals/weighting.h"
+#include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
 
@@ -104,10 +105,10 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   if (rule == AuditRule::kLerp) return to_float(unit(lerp(from, to, t)));
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));
-  const double angle = angle_between(u0, u1), sine = std::sin(angle);
+  const double angle = angle_between(u0, u1), sine = portable::sin(angle);
   constexpr double kStraight = 1e-9;  // near 0 and 180 degrees the arc is a line, or none
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
-  return to_float((std::sin((1 - t) * angle) / sine) * u0 + (std::sin(t * angle) / sine) * u1);
+  return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
 }
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept {

@@ -9,6 +9,7 @@
 #include "chronormal/normals/transform.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
+#include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
@@ -94,7 +95,7 @@ class SequenceSource {
     // The point of the arc at the allowed angle.
     const Vec3d side = to - dot(from, to) * from;
     const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
-    return turned(from, std::cos(allowed) * from + std::sin(allowed) * across, direction);
+    return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
   }
 
   const Motion& motion_;

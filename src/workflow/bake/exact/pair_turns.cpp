@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/blocks.h"
+#include "core/portable_math.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -44,7 +45,7 @@ double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
 
-double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? std::atan(tangent) : std::numbers::pi; }
+double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? portable::atan(tangent) : std::numbers::pi; }
 
 // The term of a pair where it is shown and not zero.
 BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, const std::vector<bool>& is_shown) {

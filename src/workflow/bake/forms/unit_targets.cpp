@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/portable_math.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -20,7 +22,7 @@ Vec3d on_arc(const Vec3d& from, const Vec3d& to, double part) {
   const Vec3d aside = to - dot(from, to) * from;
   const Vec3d across = length(aside) > 1e-9 ? unit(aside) : any_perpendicular(from);
   const double angle = part * angle_between(from, to);
-  return std::cos(angle) * from + std::sin(angle) * across;
+  return portable::cos(angle) * from + portable::sin(angle) * across;
 }
 
 }  // namespace
@@ -74,7 +76,7 @@ std::optional<std::array<Vec3d, 2>> opposite_units(const Vec3d& base, const Vec3
   if (max_abs(nearest) > 1e-6) look(unit(nearest));
   for (int n = 0; n < 2 * kDirections && !best; ++n) {
     const double angle = std::numbers::pi * n / kDirections;
-    look(std::cos(angle) * x + std::sin(angle) * y);
+    look(portable::cos(angle) * x + portable::sin(angle) * y);
   }
   return best;
 }
@@ -90,7 +92,7 @@ std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& ve
   double least = kMost;
   for (int n = 0; n < kDirections; ++n) {
     const double angle = std::numbers::pi * n / kDirections;
-    const Vec3d aside = std::sqrt(room) * (std::cos(angle) * x + std::sin(angle) * y);
+    const Vec3d aside = std::sqrt(room) * (portable::cos(angle) * x + portable::sin(angle) * y);
     const std::array<Vec3d, 2> both = {middle + aside, middle - aside};
     const double largest = std::fmax(max_abs(both[0] - base), max_abs(both[1] - base));
     if (largest > least) continue;

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <deque>
 
+#include "core/bits.h"
 #include "core/blocks.h"
+#include "core/portable_math.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -70,7 +71,7 @@ class Sums {
     const Vec3f shown = {x_[p], y_[p], z_[p]};
     const Vec3f aside = cross(shown, right);
     const float along = dot(shown, right), across = std::sqrt(dot(aside, aside));
-    const float angle = kDegrees * std::atan2(across, along);
+    const float angle = kDegrees * static_cast<float>(portable::atan2(across, along));
     return (shown == Vec3f{} || !std::isfinite(angle)) ? 180 : angle;
   }
 
@@ -93,8 +94,8 @@ constexpr float kBinsPerOctave = 8, kLeastBin = 1e-3F;
 std::size_t bin_of(float degrees) {
   constexpr std::array<float, 7> kEighths = {1.0905077F, 1.1892071F, 1.2968396F, 1.4142135F,
                                              1.5422108F, 1.6817929F, 1.8340081F};
-  const auto bits = std::bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
-  const float fraction = std::bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
+  const auto bits = bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
+  const float fraction = bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
   std::size_t bin = std::size_t{8} * ((bits >> 23) - 127);
   for (const float eighth : kEighths) bin += fraction >= eighth ? 1 : 0;
   return std::min(kBins - 1, bin);
@@ -116,7 +117,7 @@ struct Spread {
     ShownErrors result{count, count > 0 ? sum / static_cast<double>(count) : 0, 0, worst};
     std::size_t beyond = count / 1000, b = kBins - 1;
     while (b > 0 && bins[b] <= beyond) beyond -= bins[b--];
-    const float upper = kLeastBin * std::exp2(static_cast<float>(b + 1) / kBinsPerOctave);
+    const float upper = kLeastBin * static_cast<float>(portable::exp2(static_cast<double>(b + 1) / kBinsPerOctave));
     result.most = b == 0 ? 0 : std::fmin(static_cast<double>(upper), worst);
     return result;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/blocks.h"
+#include "core/portable_math.h"
 #include "workflow/bake/judge/played_poses.h"
 
 namespace chronormal::inline internal {
@@ -62,7 +63,7 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
       ++found.count;
       found.sum += error;
       found.worst = std::fmax(found.worst, error);
-      const double bin = kBinsPerUnit * std::log(std::fmax(error, kLeast) / kLeast);
+      const double bin = kBinsPerUnit * portable::log(std::fmax(error, kLeast) / kLeast);
       ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
     };
     const Found of_pose = parallel_fold<Found>(vertices.size(), kBlock, look, [](Found& to, const Found& each) {
@@ -79,7 +80,7 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
   ShownErrors result{all.count, all.count > 0 ? all.sum / static_cast<double>(all.count) : 0, 0, all.worst};
   std::size_t beyond = all.count / 1000, b = kBins - 1;
   while (b > 0 && all.bins[b] <= beyond) beyond -= all.bins[b--];
-  if (b > 0) result.most = std::fmin(kLeast * std::exp(static_cast<double>(b + 1) / kBinsPerUnit), all.worst);
+  if (b > 0) result.most = std::fmin(kLeast * portable::exp(static_cast<double>(b + 1) / kBinsPerUnit), all.worst);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "analysis/kernels/products.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
+#include "core/portable_math.h"
 #include "workflow/bake/forms/unit_targets.h"
 #include "workflow/bake/low_rank/low_rank_fit.h"
 #include "workflow/bake/low_rank/missing_normals.h"
@@ -142,8 +143,8 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
   // Between two counts the logarithm of the error falls about evenly.
   if (at > 0 && errors[at] > 0 && errors[at] < kPartOfSingular * limits.tolerance) {
-    const double part =
-        std::log(errors[at - 1] / (kPartOfSingular * limits.tolerance)) / std::log(errors[at - 1] / errors[at]);
+    const double part = portable::log(errors[at - 1] / (kPartOfSingular * limits.tolerance)) /
+                        portable::log(errors[at - 1] / errors[at]);
     extras =
         counts[at - 1] + static_cast<std::size_t>(std::ceil(part * static_cast<double>(counts[at] - counts[at - 1])));
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/blocks.h"
+#include "core/portable_math.h"
 #include "workflow/bake/forms/unit_targets.h"
 
 namespace chronormal::inline internal {
@@ -123,7 +124,8 @@ void MissingNormals::keep_beyond(double degrees) {
 
 float degrees_between(const Vec3f& a, const Vec3f& b) noexcept {
   const Vec3f aside = cross(a, b);
-  return static_cast<float>(kDegreesPerRadian) * std::atan2(std::sqrt(dot(aside, aside)), dot(a, b));
+  return static_cast<float>(kDegreesPerRadian) *
+         static_cast<float>(portable::atan2(std::sqrt(dot(aside, aside)), dot(a, b)));
 }
 
 }  // namespace chronormal::inline internal
