@@ -1,9 +1,9 @@
 # The wasm build: what find_package() finds elsewhere is compiled here from Debian's sources, which tools/wasm.sh unpacks into
-# build/wasm/sources, and only as far as it is needed. Libraries that are headers alone are those of the system.
+# build/wasm-sources, and only as far as it is needed. Libraries that are headers alone are those of the system.
 enable_language(C)  # zlib
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)
-set(sources ${PROJECT_BINARY_DIR}/sources)
+set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
 if(NOT EXISTS ${sources})
   message(FATAL_ERROR "the sources of libraries are not in ${sources}: `./run npm` gets them")
 endif()

@@ -11,6 +11,7 @@ import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
 import { driveBabylon } from '../../examples/drive.mjs';
+import * as live from '../../js/src/babylon.js';
 
 const FRAMES_PER_SECOND = 60;  // what the loader multiplies seconds by
 const SHADED_NORMALS = 5;      // PBRMaterial.debugMode
@@ -50,6 +51,8 @@ export function setWeights({ scene }, weights) {
       weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
 }
 export const drive = ({ scene }) => driveBabylon(scene);
+export const attach = ({ scene }) => live.attach(scene);
+export const detach = ({ scene }) => live.detach(scene);
 
 export const dispose = ({ scene }) => scene.dispose();
 

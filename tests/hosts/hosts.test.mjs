@@ -192,9 +192,11 @@ async function assertDriven(page, host, parts) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
   const compare = (...all) => window.compareDriven(...all);
-  const [before, after] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
+  const [before, attached, detached, after] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
   assert.ok(before.p99 > 5, JSON.stringify(before));
-  assert.ok(after.pixels > 2000 && after.p99 < 1, JSON.stringify(after));
+  assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
+  assert.deepEqual(detached, before);
+  assert.deepEqual(after, attached);
 }
 
 // Draws wrong beside right, at one moment of a vase, and holds it against the picture in the documents.

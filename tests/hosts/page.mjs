@@ -55,16 +55,16 @@ window.normalsInHost = (host, file, times, view, size, pixels) =>
 window.middlesInHost = (host, file, times, view, size) =>
   ofPictures(host, file, times, view, size, (picture) => middleOf(picture, size));
 
-// What the host draws of a file when a program has set the weights of its own targets, and when it has driven the extra
-// ones too, against the still file of the moment.
+// What the host draws of a file when a program has set the weights of its own targets, then while our package drives the
+// extra ones, when it does so no more, and when the program has driven them itself, against the still file of the moment.
 window.compareDriven = async (host, file, weights, { truth, view }, size) => {
-  const { play, drawNormals, setWeights, drive, dispose } = hosts[host];
+  const { play, drawNormals, setWeights, drive, attach, detach, dispose } = hosts[host];
   const [still, model] = [await loaded(host, truth), await loaded(host, file)];
   play(still, null, 0);
   play(model, null, 0);
   const expected = await drawNormals(still, view, size);
   const results = [];
-  for (const step of [() => setWeights(model, weights), () => drive(model)]) {
+  for (const step of [() => setWeights(model, weights), () => attach(model), () => detach(model), () => drive(model)]) {
     step();
     results.push(compareNormals(await drawNormals(model, view, size), expected, size));
   }

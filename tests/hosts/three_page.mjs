@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';
+import * as live from '../../js/src/three.js';
 
 let renderer;
 
@@ -36,6 +37,8 @@ export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
 export const drive = ({ scene }) => driveThree(scene);
+export const attach = ({ scene }) => live.attach(scene);
+export const detach = ({ scene }) => live.detach(scene);
 
 export function dispose({ scene }) {
   scene.traverse(({ geometry }) => geometry?.dispose());

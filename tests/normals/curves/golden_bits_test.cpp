@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <ios>
@@ -13,6 +12,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
+#include "core/bits.h"
 #include "simd/targets.h"
 #include "tests/support/integer_mesh.h"
 
@@ -23,9 +23,9 @@ namespace {
 class Hash {
  public:
   void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
-  void add(float v) { add(std::bit_cast<std::uint32_t>(v)); }
+  void add(float v) { add(bit_cast<std::uint32_t>(v)); }
   void add(double v) {
-    const auto bits = std::bit_cast<std::uint64_t>(v);
+    const auto bits = bit_cast<std::uint64_t>(v);
     add(static_cast<std::uint32_t>(bits));
     add(static_cast<std::uint32_t>(bits >> 32));
   }

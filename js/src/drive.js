@@ -1,0 +1,46 @@
+// The weights of extra targets, from those of a mesh's own targets (docs/extras.md): what three.js and babylon.js share.
+
+// What a program without us knows as version 2. Files of another are left as they are.
+const VERSION = 2;
+
+/**
+ * The formulas of a mark, extras.chronormal of a mesh, in arrays that evaluating walks through without allocating.
+ * Targets without a formula are driven by the animations of the file alone, and not touched.
+ */
+export function formulasOf(mark) {
+  if (mark?.version !== VERSION || !Array.isArray(mark.extras)) return [];
+  return mark.extras
+    .filter(({ linear, quadratic }) => linear.length + quadratic.length > 0)
+    .map(({ target, linear, quadratic }) => ({
+      target,
+      first: Int32Array.from([...linear.map(([i]) => i), ...quadratic.map(([i]) => i)]),
+      second: Int32Array.from([...linear.map(() => -1), ...quadratic.map(([, j]) => j)]), // -1: none
+      factor: Float64Array.from([...linear.map(([, a]) => a), ...quadratic.map(([, , q]) => q)]),
+    }));
+}
+
+/** The weight of an extra target, from the weights w of all targets. */
+export function weightOf({ first, second, factor }, w) {
+  let sum = 0;
+  for (let n = 0; n < factor.length; ++n) {
+    sum += factor[n] * w[first[n]] * (second[n] < 0 ? 1 : w[second[n]]);
+  }
+  return sum;
+}
+
+/** Writes the weights of extra targets into w. */
+export function drive(formulas, w) {
+  for (let k = 0; k < formulas.length; ++k) w[formulas[k].target] = weightOf(formulas[k], w);
+}
+
+/**
+ * The mark of a mesh: its own, or else that of the nearest object above. A mesh of several primitives is a node with a
+ * child for each, and gltfpack puts a mesh into a new node below that with the extras.
+ */
+export function markOf(object, extrasOf) {
+  for (; object; object = object.parent) {
+    const mark = extrasOf(object)?.chronormal;
+    if (mark) return mark;
+  }
+  return undefined;
+}

@@ -1,0 +1,107 @@
+// bake() as a transform of glTF-Transform: await document.transform(chronormal({ for: ['three', 'godot'] })).
+import { WebIO } from '@gltf-transform/core';
+import { cloneDocument } from '@gltf-transform/functions';
+import { bake } from './index.js';
+
+// What would need encoders, and is undone when a file is read.
+const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);
+
+async function bytesOf(document) {
+  const plain = cloneDocument(document);
+  for (const extension of plain.getRoot().listExtensionsUsed()) {
+    if (COMPRESSIONS.has(extension.extensionName)) extension.dispose();
+  }
+  const io = new WebIO().registerExtensions(plain.getRoot().listExtensionsUsed().map((e) => e.constructor));
+  return { io, bytes: await io.writeBinary(plain) };
+}
+
+// Takes what a bake changes from one document into another, which are alike but for that: normals, extra targets, weights,
+// their tracks, and extras. All else stays the same objects.
+class Transfer {
+  constructor(document) {
+    this.document = document;
+    this.root = document.getRoot();
+    this.buffer = this.root.listBuffers()[0] ?? document.createBuffer();
+    this.copies = new Map();
+  }
+
+  accessor(from) {
+    if (!from) return null;
+    if (!this.copies.has(from)) {
+      const copy = this.document.createAccessor(from.getName()).setType(from.getType()).setArray(from.getArray().slice());
+      copy.setNormalized(from.getNormalized()).setSparse(from.getSparse()).setBuffer(this.buffer);
+      this.copies.set(from, copy);
+    }
+    return this.copies.get(from);
+  }
+
+  attribute(to, from, semantic) {
+    const before = to.getAttribute(semantic), after = from.getAttribute(semantic);
+    if (!same(before, after)) to.setAttribute(semantic, this.accessor(after));
+  }
+
+  primitive(to, from) {
+    this.attribute(to, from, 'NORMAL');
+    const before = to.listTargets();
+    from.listTargets().forEach((target, i) => {
+      if (i < before.length) return this.attribute(before[i], target, 'NORMAL');
+      const extra = this.document.createPrimitiveTarget(target.getName());
+      for (const semantic of target.listSemantics()) {
+        extra.setAttribute(semantic, this.accessor(target.getAttribute(semantic)));
+      }
+      return to.addTarget(extra);
+    });
+  }
+
+  animation(to, from) {
+    const samplers = new Map();
+    from.listChannels().forEach((channel, c) => {
+      const old = to.listChannels()[c].getSampler(), made = channel.getSampler();
+      if (channel.getTargetPath() !== 'weights' || (same(old.getInput(), made.getInput()) && same(old.getOutput(), made.getOutput()))) return;
+      if (!samplers.has(made)) {
+        const copy = this.document.createAnimationSampler(made.getName()).setInterpolation(made.getInterpolation());
+        copy.setInput(this.accessor(made.getInput())).setOutput(this.accessor(made.getOutput()));
+        to.addSampler(copy);
+        samplers.set(made, copy);
+      }
+      to.listChannels()[c].setSampler(samplers.get(made));
+    });
+    for (const sampler of to.listSamplers()) {
+      if (!to.listChannels().some((channel) => channel.getSampler() === sampler)) sampler.dispose();
+    }
+  }
+
+  all(baked) {
+    const pairs = (list) => list(this.root).map((to, n) => [to, list(baked.getRoot())[n]]);
+    for (const [to, from] of pairs((root) => root.listMeshes())) {
+      to.listPrimitives().forEach((primitive, p) => this.primitive(primitive, from.listPrimitives()[p]));
+      to.setWeights(from.getWeights()).setExtras(from.getExtras());
+    }
+    for (const [to, from] of pairs((root) => root.listNodes())) to.setWeights(from.getWeights()).setExtras(from.getExtras());
+    for (const [to, from] of pairs((root) => root.listAnimations())) this.animation(to, from);
+    for (const accessor of this.root.listAccessors()) {
+      if (accessor.listParents().every(({ propertyType }) => propertyType === 'Root')) accessor.dispose();
+    }
+  }
+}
+
+function same(a, b) {
+  if (!a || !b) return a === b;
+  const x = a.getArray(), y = b.getArray();
+  return x.constructor === y.constructor && x.length === y.length && x.every((value, n) => value === y[n]);
+}
+
+/**
+ * A transform that writes right normals into a document. Options are those of bake(); the report goes to
+ * options.onReport, and warnings to the document's logger.
+ */
+export function chronormal({ onReport, ...options } = {}) {
+  const transform = async (document) => {
+    const { io, bytes } = await bytesOf(document);
+    const result = await bake(bytes, options);
+    new Transfer(document).all(await io.readBinary(result.bytes));
+    for (const warning of result.warnings) document.getLogger().warn(warning);
+    onReport?.(result.report);
+  };
+  return Object.defineProperty(transform, 'name', { value: 'chronormal' });
+}
