@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <exception>
+#include <new>
 
 #include "chronormal/io/output.h"
 #include "cli/terminal/print.h"
@@ -51,6 +52,22 @@ extern "C" void end_by_lost_input(int /*signal*/) {
   ::_exit(kExitFailed);
 }
 
+// Where memory runs out, no destructor runs any more: not every library that JSON or threads come from survives that.
+void end_for_want_of_memory() {
+  remove_temporaries();
+  say_ending("chronormal: out of memory\n");
+  ::_exit(kExitFailed);
+}
+
+// The C library aborts where it gets no memory for a thread. An assertion that fails ends by the signal.
+#ifdef NDEBUG
+extern "C" void end_by_abort(int /*signal*/) {
+  remove_temporaries();
+  say_ending("chronormal: out of memory, or an internal error\n");
+  ::_exit(kExitFailed);
+}
+#endif
+
 void end_by_exception() {
   remove_temporaries();
   say_ending("chronormal: out of memory, or an internal error\n");
@@ -88,6 +105,10 @@ void prepare_process() noexcept {
   }
   install(SIGBUS, end_by_lost_input);
   install(SIGXFSZ, SIG_IGN);
+#ifdef NDEBUG
+  install(SIGABRT, end_by_abort);
+#endif
+  std::set_new_handler(end_for_want_of_memory);
   std::set_terminate(end_by_exception);
 }
 

@@ -4,6 +4,8 @@
 ///                                                 program (128 + n to a shell); those that are ignored stay ignored
 ///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
+///     no memory for an object                     the same; nothing is unwound, since not all that libraries do is safe then
+///     SIGABRT                                     the same: the C library aborts where it gets no memory for a thread
 ///     an exception where none may be              removes temporary files, and exit code 1
 ///
 /// SIGPIPE ends the program as it ends every other one: no temporary file is there while it writes to a pipe.
