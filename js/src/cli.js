@@ -1,7 +1,12 @@
 // The program with the files and the terminal of this machine.
 import { existsSync, readdirSync, readSync, writeSync } from 'node:fs';
+import { Buffer } from 'node:buffer';
 import process from 'node:process';
+import * as node from './platform.node.js';
+import { usePlatform } from './platform.js';
 import { run } from './run.js';
+
+usePlatform(node);
 
 const isWindows = process.platform === 'win32';
 // C:\models\face.glb is /C:/models/face.glb in the file system of the program.
@@ -35,23 +40,21 @@ const writeAll = (stream) => (bytes) => {
   }
 };
 
-function readStandardInput() {
-  const piece = new Uint8Array(65536);
-  let count = 0, at = 0;
-  return () => {
-    while (at === count) {
-      try {
-        count = readSync(0, piece, 0, piece.length, null);
-      } catch (error) {
-        if (error.code === 'EAGAIN') continue;
-        if (error.code === 'EOF') return null;
-        throw error;
-      }
-      at = 0;
-      if (count === 0) return null;
+// All of standard input, where the command line asks for it.
+function standardInput(args) {
+  if (!args.some((word) => word === '-' || word === '/dev/stdin')) return undefined;
+  const pieces = [], piece = Buffer.alloc(65536);
+  for (;;) {
+    try {
+      const count = readSync(0, piece, 0, piece.length, null);
+      if (count === 0) break;
+      pieces.push(Buffer.from(piece.subarray(0, count)));
+    } catch (error) {
+      if (error.code === 'EOF') break;
+      if (error.code !== 'EAGAIN') throw error;
     }
-    return piece[at++];
-  };
+  }
+  return new Uint8Array(Buffer.concat(pieces));
 }
 
 /** Runs the program with these arguments, and returns its exit code. */
@@ -62,7 +65,7 @@ export async function main(args) {
     prepare: mount,
     stdout: writeAll(1),
     stderr: writeAll(2),
-    stdin: readStandardInput(),
+    stdin: standardInput(args),
     terminals: { stdout: stdout.isTTY, stderr: stderr.isTTY },
     env: { ...env, ...(columns && !env.COLUMNS ? { COLUMNS: String(columns) } : {}) },
   });

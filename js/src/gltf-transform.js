@@ -1,7 +1,7 @@
 // bake() as a transform of glTF-Transform: await document.transform(chronormal({ for: ['three', 'godot'] })).
 import { WebIO } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
-import { bake } from './index.js';
+import { bake } from 'chronormal';
 
 // What would need encoders, and is undone when a file is read.
 const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);

@@ -1,7 +1,7 @@
 // One run of the program: a fresh module with files in memory, or with those of this machine, so that nothing of one run
 // is left for the next, whatever it ended with.
 import createProgram from '../wasm/program.js';
-import * as platform from '#platform';
+import { platform } from './platform.js';
 
 let compiled; // the module, once for all runs
 
@@ -42,11 +42,11 @@ class Sink {
  *   finish(FS)            takes what it left there; its result is that of run()
  *   stdout, stderr        get bytes (Uint8Array) as they come
  *   terminals             {stdout, stderr}: which of them is a terminal
- *   stdin()               a byte, or null at the end
+ *   stdin                 what is on standard input (Uint8Array)
  *   env                   variables of the environment
  * @returns {Promise<{code: number, result: any}>} the exit code, and what finish() returned
  */
-export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin = () => null, env = {} }) {
+export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {} }) {
   const module = await compile();
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
@@ -61,7 +61,13 @@ export async function run(args, { prepare, finish, stdout, stderr, terminals = {
       ({ ENV, FS, NODEFS }) => {
         for (const name of Object.keys(ENV)) delete ENV[name];
         Object.assign(ENV, env);
-        FS.init(stdin, (byte) => out.put(byte), (byte) => err.put(byte));
+        FS.init(() => null, (byte) => out.put(byte), (byte) => err.put(byte));
+        if (stdin) {
+          // A device may have no end, which a program has to think of; a file has one.
+          FS.close(FS.getStream(0));
+          FS.writeFile('/.stdin', stdin);
+          FS.open('/.stdin', 'r');
+        }
         prepare(FS, NODEFS);
       },
     ],

@@ -1,4 +1,4 @@
-// A command on files in memory, as index.js describes it and worker.js or the caller's own thread does it.
+// A command on files in memory, as api.js describes it and worker.js or the caller's own thread does it.
 import { run } from './run.js';
 
 const FOLDER = '/work';

@@ -1,12 +1,7 @@
-// A thread of its own for long work: it takes tasks one by one, and says how far each is and what came of it.
-import { serve } from '#platform';
-import { perform } from './task.js';
+// The worker of browsers.
+import * as browser from './platform.browser.js';
+import { usePlatform } from './platform.js';
+import { serveTasks } from './serve_tasks.js';
 
-serve(async ({ task, wantsProgress }, say) => {
-  try {
-    const done = await perform(task, wantsProgress ? (progress) => say({ progress }) : undefined);
-    say({ done }, Object.values(done.files).map((bytes) => bytes.buffer));
-  } catch (error) {
-    say({ failed: String(error?.message ?? error) });
-  }
-});
+usePlatform(browser);
+serveTasks(browser);

@@ -1,6 +1,8 @@
 // Headless Chromium with the page of page.mjs in it. Nothing is loaded from anywhere: whatever the page asks for is one
 // of the files below, or is refused.
 import { existsSync, readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import puppeteer from 'puppeteer-core';
@@ -25,9 +27,38 @@ function serve(page, files) {
   return page.setRequestInterception(true);
 }
 
-export async function openPage() {
+function launch() {
   const executablePath = process.env.CHRONORMAL_CHROMIUM ?? CHROMIUM.find((path) => existsSync(path));
   if (!executablePath) throw new Error('Chromium was not found (Debian: chromium); CHRONORMAL_CHROMIUM names another');
+  return puppeteer.launch({
+    executablePath,
+    headless: true,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    protocolTimeout: 300_000,
+  });
+}
+
+const TYPES = { js: 'text/javascript', html: 'text/html', wasm: 'application/wasm' };
+
+// A page of a server of this machine, which serves the files of folders by their names, and what else is given.
+export async function openFolder(contents) {
+  const server = createServer(({ url }, response) => {
+    const [, first, ...rest] = url.split('/'), found = contents[first];
+    const body = typeof found === 'string' && rest.length > 0 ? readFileSync(join(found, ...rest)) : found;
+    response.writeHead(body ? 200 : 404, { 'content-type': TYPES[url.split('.').at(-1)] ?? 'application/octet-stream' });
+    response.end(body);
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const browser = await launch(), page = await browser.newPage();
+  await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
+  const close = async () => {
+    await browser.close();
+    server.close();
+  };
+  return { page, close };
+}
+
+export async function openPage() {
   const bundle = await build({
     entryPoints: [fileURLToPath(new URL('page.mjs', import.meta.url))],
     bundle: true,
@@ -35,12 +66,7 @@ export async function openPage() {
     write: false,
     logLevel: 'error',
   });
-  const browser = await puppeteer.launch({
-    executablePath,
-    headless: true,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-    protocolTimeout: 300_000,
-  });
+  const browser = await launch();
   const page = await browser.newPage();
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));

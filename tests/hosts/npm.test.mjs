@@ -25,7 +25,7 @@ cpSync(join(folder, 'package'), installed, { recursive: true });
 // What a project that uses glTF-Transform has installed beside it.
 symlinkSync(fileURLToPath(new URL('node_modules/@gltf-transform', import.meta.url)), join(folder, 'node_modules/@gltf-transform'));
 
-const { bake, audit, inspect, ChronormalError } = await import(pathToFileURL(join(installed, 'src/index.js')));
+const { bake, audit, inspect, ChronormalError } = await import(pathToFileURL(join(installed, 'src/index.node.js')));
 const bin = join(installed, 'bin/chronormal.js');
 
 function both(args, options = {}) {
@@ -43,7 +43,7 @@ const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));
 
 test('the command line says and ends as the program does', () => {
   for (const args of [['--version'], ['--help'], ['bake', '--help'], ['bkae'], ['audit', 'nowhere.glb'], ['audit', 'bumps.glb'],
-                      ['audit', 'bumps.glb', '--tolerance', '0.0001'], ['inspect', 'bumps.glb', '--json'], ['bake', 'bumps.glb']]) {
+                      ['audit', 'bumps.glb', '--tolerance', '0.0001'], ['bake', 'bumps.glb']]) {
     const { native, wasm } = both(args);
     assert.deepEqual(wasm, native, args.join(' '));
   }
@@ -122,4 +122,50 @@ test('a transform of glTF-Transform changes what a bake changes, and leaves the 
   const baked = await audit(bytes);
   assert.ok(transformed.report.mean_degrees <= 1.001 * baked.report.mean_degrees, `${transformed.report.mean_degrees}`);
   assert.ok(baked.report.mean_degrees < 0.01 * (await audit(face)).report.mean_degrees);
+});
+
+test('the types are right', () => {
+  writeFileSync(join(folder, 'user.mts'), `
+import { audit, bake, ChronormalError, type Baked } from 'chronormal';
+import { chronormal } from 'chronormal/gltf-transform';
+import type { Document } from '@gltf-transform/core';
+
+export async function use(input: Uint8Array, document: Document): Promise<number> {
+  const { bytes, report, within }: Baked = await bake(input, {
+    for: ['three', 'godot'], tolerance: 0.5, maxTargets: 112, onProgress: ({ label, percent }) => console.log(label, percent),
+  });
+  await document.transform(chronormal({ for: 'all', onReport: ({ schema }) => console.log(schema) }));
+  try { await audit(bytes, { host: ['three'], samples: 8 }); } catch (error) { if (error instanceof ChronormalError) return error.code; }
+  // @ts-expect-error: there is no such host
+  await bake(input, { for: ['four'] });
+  return within ? report.schema : bytes.length;
+}
+`);
+  const tsc = fileURLToPath(new URL('node_modules/typescript/bin/tsc', import.meta.url));
+  const options = ['--noEmit', '--strict', '--target', 'es2022', '--module', 'nodenext', '--skipLibCheck', 'user.mts'];
+  const run = spawnSync(process.execPath, [tsc, ...options], { cwd: folder, encoding: 'utf8' });
+  assert.equal(run.status, 0, run.stdout);
+});
+
+test('a browser bakes in a worker, and its page goes on meanwhile', async () => {
+  const { openFolder } = await import('./browser.mjs');
+  const { page, close } = await openFolder({ chronormal: installed, 'face.glb': face, 'page.html': '<!doctype html><title>page</title>' });
+  try {
+    const { size, ticks, refused } = await page.evaluate(async () => {
+      const { bake } = await import('/chronormal/src/index.js');
+      const input = new Uint8Array(await (await fetch('/face.glb')).arrayBuffer());
+      let ticks = 0;
+      const clock = setInterval(() => ++ticks, 10);
+      const { bytes } = await bake(input, { encode: 'exact' });
+      clearInterval(clock);
+      const refused = await bake(input.slice(0, 50)).catch(({ code }) => code);
+      return { size: bytes.length, ticks, refused };
+    });
+    const { bytes } = await bake(face, { encode: 'exact' });
+    assert.equal(size, bytes.length);
+    assert.ok(ticks > 5, `${ticks}`);
+    assert.equal(refused, 3);
+  } finally {
+    await close();
+  }
 });

@@ -1,4 +1,4 @@
-// What Node.js has of its own (package.json, "imports").
+// What Node.js has of its own.
 import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { Worker } from 'node:worker_threads';
@@ -9,9 +9,9 @@ export async function compile(url) {
   return WebAssembly.compile(await readFile(url));
 }
 
-/** Starts the worker of worker.js; onMessage gets what it says, onError what ends it. */
+/** Starts worker.node.js; onMessage gets what it says, onError what ends it. */
 export function startWorker(onMessage, onError) {
-  const worker = new Worker(new URL('./worker.js', import.meta.url));
+  const worker = new Worker(new URL('./worker.node.js', import.meta.url));
   worker.on('message', onMessage);
   worker.on('error', onError);
   return worker;

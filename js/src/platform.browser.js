@@ -1,4 +1,4 @@
-// What browsers have of their own (package.json, "imports").
+// What browsers have of their own.
 export const require = undefined;
 
 export async function compile(url) {
@@ -7,7 +7,7 @@ export async function compile(url) {
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-/** Starts the worker of worker.js; onMessage gets what it says, onError what ends it. */
+/** Starts worker.js; onMessage gets what it says, onError what ends it. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);
