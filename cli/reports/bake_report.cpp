@@ -134,6 +134,14 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
+// Whether an optimiser found for every mesh a form that is near enough.
+bool are_all_within(const GltfBake& bake) {
+  return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
+    return std::any_of(mesh.choices.begin(), mesh.choices.end(),
+                       [](const BakeChoice& choice) { return choice.chosen && choice.within; });
+  });
+}
+
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
@@ -158,8 +166,10 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
              "nothing to bake: it was baked before; the output is as the input. To bake it in another way, start from "
              "the original\n";
     }
-    return text + (bake.meshes.empty()
-                       ? "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n"
+    if (bake.meshes.empty())
+      return text + "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n";
+    return text + (are_all_within(bake)
+                       ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
                        : "nothing to bake: no other normals would be nearer; the output is as the input\n");
   }
   Table table;
