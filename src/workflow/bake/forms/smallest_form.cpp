@@ -187,10 +187,11 @@ class Choice {
   [[nodiscard]] std::size_t most_bytes() const {
     return options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
   }
+  [[nodiscard]] bool is_within() const { return best_ && of_best_.within; }
   // Whether a form is near enough, of no more bytes than these, and no plan asks for all the others.
   [[nodiscard]] bool is_found() const { return is_found_below(std::numeric_limits<std::size_t>::max()); }
   [[nodiscard]] bool is_found_below(std::size_t bytes) const {
-    return best_ && of_best_.within && of_best_.bytes <= bytes && !options_.plan;
+    return is_within() && of_best_.bytes <= bytes && !options_.plan;
   }
 
   [[nodiscard]] ChosenForm take_best() {
@@ -327,7 +328,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   // All other forms with extra targets that nothing but animations drive have the deltas of all targets.
   const std::size_t of_deltas = choice.look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
   choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
-    find_worthwhile_forms(source, weights, options, lengths, is_enough, take);
+    find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
   });
   if (!choice.is_found_below(of_deltas) && source.plan.is_driven && source.plan.products_fit && most > 0) {
     std::size_t extras = most;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBlock = 16;
 // Selections that are looked at one by one, and sums that this may take; those of a walk from the fullest one.
 constexpr std::size_t kMostSelections = 8192;
-constexpr double kMostSums = 4e9;
+constexpr double kMostSums = 1e9;
 // What a limit lets a normal be off beyond what it is with all columns, or with what is stored.
 constexpr double kSlack = 0.01;
 constexpr double kLeastLength = 1e-3;

@@ -96,6 +96,8 @@ class WorthwhileForms {
                     });
   }
 
+  [[nodiscard]] bool have_extras() const { return have_extras_; }
+
  private:
   [[nodiscard]] std::size_t targets() const { return source_.shading.set.targets.size(); }
 
@@ -161,6 +163,7 @@ class WorthwhileForms {
     }
     make_harmless_alone(source_, stored_, lengths_, tolerance_, single);
     Corrections all = corrections(ends);
+    have_extras_ = !all.empty();
     std::size_t keys = 0;
     for (const WeightTrack& track : weights_.tracks)
       keys += (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1) * track.size();
@@ -291,12 +294,15 @@ class WorthwhileForms {
   std::vector<std::uint32_t> vertices_;
   std::vector<std::vector<std::uint32_t>> numbers_;
   Worthwhile offered_;
+  bool have_extras_ = false;
 };
 
 void find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                           FormLengths lengths, const std::function<bool(std::size_t bytes)>& is_enough,
+                           FormLengths lengths, bool are_near_alone,
+                           const std::function<bool(std::size_t bytes)>& is_enough,
                            const std::function<bool(ChosenForm)>& take) {
-  WorthwhileForms(source, weights, options, lengths).find(is_enough, take);
+  const WorthwhileForms forms(source, weights, options, lengths);
+  if (are_near_alone || forms.have_extras()) forms.find(is_enough, take);
 }
 
 }  // namespace chronormal::inline internal
