@@ -142,6 +142,35 @@ bool are_all_within(const GltfBake& bake) {
   });
 }
 
+std::string title_of_host(const std::string& name) {
+  for (const Host& host : kHosts)
+    if (host.name == name) return std::string(host.title);
+  return name;
+}
+
+// Prints a row for each form and host: the errors in the animations of the file and for each target alone.
+std::string plan_of_hosts(const GltfBake& bake) {
+  Table table;
+  table.add_column("mesh", "", Table::Align::kLeft);
+  table.add_column("form", "", Table::Align::kLeft);
+  table.add_column("host", "", Table::Align::kLeft);
+  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("worst", "", Table::Align::kRight);
+  bool any = false;
+  for (const BakedMesh& mesh : bake.meshes) {
+    for (const BakeChoice& choice : mesh.choices) {
+      for (const HostChange& host : choice.hosts) {
+        const ShownErrors& errors = host.poses[0].after;
+        table.add_row({mesh_name(mesh), std::string(choice.form), title_of_host(host.host), four_decimals(errors.mean),
+                       four_decimals(errors.most), four_decimals(errors.worst)});
+        any = true;
+      }
+    }
+  }
+  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() : "";
+}
+
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
@@ -220,7 +249,7 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                      four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
     }
   }
-  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text();
+  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

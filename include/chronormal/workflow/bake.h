@@ -87,15 +87,16 @@ struct HostChange {
   std::array<Errors, 3> poses;
 };
 
-/// A form of a mesh that --encode smallest looked at.
+/// A form of a mesh that smallest looked at.
 struct BakeChoice {
-  std::string_view form;  ///< "as it is", "own deltas", "pairs" or "low rank"
-  std::size_t targets = 0, bytes = 0;
-  /// Along the animations of the file, between its keys, and in its standing weights, or where it has no animation of
-  /// weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  std::string_view form;               ///< "as it is", "own deltas", "pruned", "low rank" or "harmless"
+  std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas, and those by which tracks grow
+  /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights, or
+  /// where it has no animation of weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a
+  /// thousandth of n(0).
   ShownErrors played;
-  std::vector<HostChange> hosts;
-  bool within = false;  ///< its worst is within the tolerance, and it within the limits
+  std::vector<HostChange> hosts;  ///< none where no other form than "as it is" was looked at
+  bool within = false;            ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
 };
 

@@ -195,6 +195,15 @@ class Choice {
   }
 
   [[nodiscard]] ChosenForm take_best() {
+    // What is stored is measured beside every other form.
+    const auto measured =
+        std::find_if(choices_.begin(), choices_.end(), [](const auto& c) { return !c.hosts.empty(); });
+    for (BakeChoice& choice : choices_) {
+      if (!choice.hosts.empty() || measured == choices_.end()) continue;
+      choice.hosts = measured->hosts;
+      for (HostChange& host : choice.hosts)
+        for (HostChange::Errors& errors : host.poses) errors.after = errors.before;
+    }
     for (BakeChoice& choice : choices_)
       choice.chosen =
           choice.form == of_best_.form && choice.targets == of_best_.targets && choice.bytes == of_best_.bytes;
@@ -327,8 +336,9 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   if (choice.is_found_below(0)) return choice.take_best();
   // All other forms with extra targets that nothing but animations drive have the deltas of all targets.
   const std::size_t of_deltas = choice.look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
+  bool have_products = false;
   choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
-    find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
+    have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
   });
   if (!choice.is_found_below(of_deltas) && source.plan.is_driven && source.plan.products_fit && most > 0) {
     std::size_t extras = most;
@@ -341,8 +351,8 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
       extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
     }
   }
-  // Where nothing is near enough, nothing may be farther off than harmless.
-  if (!choice.is_found() && !options.animations_only)
+  // Where nothing is near enough, nothing may be farther off than harmless, but where that has too many products.
+  if (!choice.is_found() && !options.animations_only && (have_products || !source.plan.is_driven))
     choice.look_at("harmless", choose_harmless(source, weights, options));
   return choice.take_best();
 }

@@ -297,12 +297,13 @@ class WorthwhileForms {
   bool have_extras_ = false;
 };
 
-void find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+bool find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                            FormLengths lengths, bool are_near_alone,
                            const std::function<bool(std::size_t bytes)>& is_enough,
                            const std::function<bool(ChosenForm)>& take) {
   const WorthwhileForms forms(source, weights, options, lengths);
   if (are_near_alone || forms.have_extras()) forms.find(is_enough, take);
+  return forms.have_extras();
 }
 
 }  // namespace chronormal::inline internal
