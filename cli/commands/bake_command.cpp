@@ -71,15 +71,13 @@ Result<BakeOptions> understand(const Options& options) {
   how.most_targets = options.most_targets;
   how.animations_only = options.animations_only;
   how.plan = options.plan;
-  if (how.encoding != BakeEncoding::kSmallest) {
-    constexpr const char* kNeedsSmallest = "it is for --encode smallest";
+  if (how.encoding.value_or(BakeEncoding::kSmallest) != BakeEncoding::kSmallest) {
+    constexpr const char* kNeedsSmallest = "it is for --encode smallest, which is the default";
     if (options.most_targets) return misuse("--max-targets", kNeedsSmallest);
     if (options.animations_only) return misuse("--animations-only", kNeedsSmallest);
     if (options.plan) return misuse("--plan", kNeedsSmallest);
-  } else {
-    how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
   }
-  if (options.json && is_stream(options.common.output))
+  if (options.json && !options.plan && is_stream(options.common.output))
     return misuse("--json", "it goes to the standard output: write the result to a file");
   if (options.drivers) {
     if (options.drivers->empty() || *options.drivers == "-") return misuse("--drivers", "it must name a file");
@@ -149,6 +147,8 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
     return misuse("--fps", "the animations of a glTF file have times of their own");
   if (options.crease_angle != 180 && !options.smooth)
     return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
+  if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
+    how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
   how.progress = progress.callback("baking");
   GltfEdit edit(document);
   Result<GltfBake> baked = bake(document, how, edit);
@@ -157,20 +157,20 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
-  // Elsewhere than beside its source, a file refers to what it takes along in other ways.
-  Result<std::vector<std::string>> pointers = edit.pointers(output);
-  if (!pointers) return pointers.error();
-  baked.value().pointers = std::move(pointers).value();
-  BakeReport told{input.name(), output, options.drivers, std::nullopt};
-  std::vector<std::string> warnings = baked.value().warnings;
-  for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
   const int code = is_beyond(options, baked.value()) ? kExitBeyond : kExitDone;
+  BakeReport told{input.name(), output, options.drivers, std::nullopt};
   if (options.plan) {
-    warn(warnings);
+    warn(baked.value().warnings);
     const Status printed = print(options.json ? plan_json(baked.value(), told) : plan_text(baked.value(), told));
     if (!printed) return printed.error();
     return code;
   }
+  // Elsewhere than beside its source, a file refers to what it takes along in other ways.
+  Result<std::vector<std::string>> pointers = edit.pointers(output);
+  if (!pointers) return pointers.error();
+  baked.value().pointers = std::move(pointers).value();
+  std::vector<std::string> warnings = baked.value().warnings;
+  for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
   // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.
   if (options.drivers) {
     if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
@@ -191,6 +191,10 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
 
 Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
+  constexpr const char* kNotOfSequences = "it is for glTF files, which have targets of their own";
+  if (options.most_targets) return misuse("--max-targets", kNotOfSequences);
+  if (options.animations_only) return misuse("--animations-only", kNotOfSequences);
+  if (options.plan) return misuse("--plan", kNotOfSequences);
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
   const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
                                    [](const Host& host) { return host.normals == NormalRule::kSum; });
@@ -244,6 +248,7 @@ Status take_output(Options& options) {
     options.common.output = *options.output;
     return Success{};
   }
+  if (options.plan && files.size() < 2) return Success{};
   const std::string extension = files.size() < 2 ? "" : std::filesystem::path(files.back()).extension().string();
   if (extension != ".glb" && extension != ".gltf" && extension != ".vrm" && extension != ".GLB")
     return misuse("-o,--output", "say where to write: bake IN OUT, or -o OUT");
@@ -258,12 +263,13 @@ Result<int> run(Options options) {
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
   // This is said before anything is read; for other names it depends on what the input turns out to be.
-  if (!is_stream(options.common.output) && is_motion_file(options.common.output))
+  const bool writes = !options.plan;
+  if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output,
                   "bake writes glTF: the name must end in .glb, or .gltf or .vrm for such a file");
-  const bool writes = !options.plan;
-  if (const Status output = check_output(options.common.output, options.common.force || !writes); !output)
-    return output.error();
+  if (writes) {
+    if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  }
   if (options.drivers && writes) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
   }
@@ -290,61 +296,61 @@ Command bake_command() {
        "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},
       {"--animation", "bake writes normals for all animations of a glTF file"},
       {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
-  return {"bake",
-          "Write right normals into a glTF file, or make a glTF file of a sequence",
-          {input_table(options->input, refused),
-           {{"--for HOST,...", &options->hosts,
-             "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
-                 ", or all (default)"},
-            {"--encode HOW", &options->encode,
-             "harmless (default): what all of these show alike, with extra targets where\n"
-             "they are worth it; exact: extra targets for all quadratic terms, right\n"
-             "where a host adds up targets as stored; endpoint: the best single delta per target,\n"
-             "by least squares where several are active at once; smallest: the smallest of the\n"
-             "file's own deltas, one delta per target, the extra targets of harmless, and extra\n"
-             "targets that only the animations of the file drive, whose errors in these are\n"
-             "within the tolerance"},
-            {"--weighting NAME", &options->weighting,
-             "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
-             "base normals of each mesh, else area)"},
-            {"--crease DEG", &options->crease_angle,
-             "of sequences, and with --smooth: edges between faces that differ by\n"
-             "more than this are hard (default 180: none)"},
-            {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
-            {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
-            {"--max-bytes N",
-             &options->most_bytes,
-             "fail where more bytes of arrays would be added; with smallest: for each mesh, keep\n"
-             "to so many bytes of deltas",
-             {.check = check_whole(0)}},
-            {"--max-targets N",
-             &options->most_targets,
-             "of smallest: how many targets a mesh may have (default: what the hosts bear)",
-             {.check = check_whole(0)}},
-            {"--animations-only", &options->animations_only,
-             "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
-             "fitted to these: a target that is set by itself shows anything"},
-            {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
-            {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
-            {"--tolerance DEG", &options->tolerance,
-             "leave out extra targets that turn no normal by more than this, and cut tracks so\n"
-             "finely (default 0.5; with --encode exact 0.001)"},
-            {"--drivers FILE", &options->drivers,
-             "write what drives extra targets, which stands in the result, to a JSON file too"},
-            {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
-            {"--json", &options->json, "one JSON object"}},
-           with_output(options->common.table(true), options->output)},
-          "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
-          "targets. OUT may be INPUT, with --force.\n"
-          "\nExamples:\n"
-          "  chronormal bake face.glb face.right.glb\n"
-          "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
-          "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
-          "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but of smallest no form is within the\n"
-          "tolerance or the limits that were asked for",
-          [options] { return run(*options); },
-          refused};
+  return {
+      "bake",
+      "Write right normals into a glTF file, or make a glTF file of a sequence",
+      {input_table(options->input, refused),
+       {{"--for HOST,...", &options->hosts,
+         "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
+             ", or all (default)"},
+        {"--encode HOW", &options->encode,
+         "smallest (default): the fewest bytes that are within the tolerance in these hosts,\n"
+         "of what the file has, one delta per target, and extra targets, which its weights or\n"
+         "its animations drive; harmless: extra targets wherever they bring all of these\n"
+         "nearer; exact: extra targets for all quadratic terms, right where a host adds up\n"
+         "targets as stored; endpoint: the best single delta per target, by least squares\n"
+         "where several are active at once"},
+        {"--weighting NAME", &options->weighting,
+         "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
+         "base normals of each mesh, else area)"},
+        {"--crease DEG", &options->crease_angle,
+         "of sequences, and with --smooth: edges between faces that differ by\n"
+         "more than this are hard (default 180: none)"},
+        {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
+        {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
+        {"--max-bytes N",
+         &options->most_bytes,
+         "for each mesh, keep to so many bytes of deltas; of sequences, and with another\n"
+         "--encode than smallest: fail where more bytes of arrays would be added",
+         {.check = check_whole(0)}},
+        {"--max-targets N",
+         &options->most_targets,
+         "of smallest: how many targets a mesh may have (default: what the hosts bear)",
+         {.check = check_whole(0)}},
+        {"--animations-only", &options->animations_only,
+         "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
+         "fitted to these: a target that is set by itself shows anything"},
+        {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
+        {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
+        {"--tolerance DEG", &options->tolerance,
+         "how far off normals may be at worst along the animations; with harmless and exact:\n"
+         "how far extra targets that are left out may turn one (default 0.5; of exact 0.001)"},
+        {"--drivers FILE", &options->drivers,
+         "write what drives extra targets, which stands in the result, to a JSON file too"},
+        {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
+        {"--json", &options->json, "one JSON object"}},
+       with_output(options->common.table(true), options->output)},
+      "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
+      "targets. OUT may be INPUT, with --force.\n"
+      "\nExamples:\n"
+      "  chronormal bake face.glb face.right.glb\n"
+      "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
+      "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
+      "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but no form is within the --tolerance,\n"
+      "--max-targets or --max-bytes that were asked for",
+      [options] { return run(*options); },
+      refused};
 }
 
 }  // namespace chronormal::cli

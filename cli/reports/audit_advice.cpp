@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/bake.h"
 #include "cli/reports/audit_words.h"
 #include "cli/terminal/format.h"
 
@@ -94,8 +95,10 @@ std::string outcome(const Audited& input) {
   const MotionError& error = input.audit.error;
   const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
                                           : formatted("{} degrees", degrees(error.worst));
-  std::string text =
-      formatted("writes what all hosts show alike, nowhere worse than before, and says what is left of {}", now);
+  std::string text = formatted(
+      "writes the fewest bytes that are within {:g} degrees in all hosts, nowhere worse than before, and says what is "
+      "left of {}",
+      kHarmlessTolerance, now);
   if (driven == wrong.size() && by_area && error.unlit == 0)
     text += "; for hosts that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
   return text;
@@ -108,15 +111,16 @@ std::string original_words(const Audited& input) {
     const BakeEncoding encoding = input.document()->meshes()[*subject->mesh].mark->encoding;
     all_fitted = all_fitted && subject->weighting != Weighting::kArea;
     all_single = all_single && encoding == BakeEncoding::kEndpoint;
-    any_harmless = any_harmless || encoding == BakeEncoding::kHarmless;
+    any_harmless = any_harmless || encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kSmallest;
     any_driven = any_driven || is_driven(input, *subject);
   }
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
   if (any_harmless && any_driven)
     return baked +
-           "this is what all hosts of that bake show alike; bake the original with --for and those hosts that count, "
-           "or "
-           "with --encode exact where these play targets as glTF says";
+           "this is what all hosts of that bake show alike within its tolerance; bake the original with a smaller "
+           "--tolerance, with --for and those hosts that count, or with --encode exact where these play targets as "
+           "glTF "
+           "says";
   if (any_harmless)
     return baked + "what hosts show alike of each target is all that there is where no animation moves them";
   if (!all_single && all_fitted)

@@ -134,6 +134,43 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
+// Whether an optimiser found for every mesh a form that is near enough.
+bool are_all_within(const GltfBake& bake) {
+  return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
+    return std::any_of(mesh.choices.begin(), mesh.choices.end(),
+                       [](const BakeChoice& choice) { return choice.chosen && choice.within; });
+  });
+}
+
+std::string title_of_host(const std::string& name) {
+  for (const Host& host : kHosts)
+    if (host.name == name) return std::string(host.title);
+  return name;
+}
+
+// Prints a row for each form and host: the errors in the animations of the file and for each target alone.
+std::string plan_of_hosts(const GltfBake& bake) {
+  Table table;
+  table.add_column("mesh", "", Table::Align::kLeft);
+  table.add_column("form", "", Table::Align::kLeft);
+  table.add_column("host", "", Table::Align::kLeft);
+  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("worst", "", Table::Align::kRight);
+  bool any = false;
+  for (const BakedMesh& mesh : bake.meshes) {
+    for (const BakeChoice& choice : mesh.choices) {
+      for (const HostChange& host : choice.hosts) {
+        const ShownErrors& errors = host.poses[0].after;
+        table.add_row({mesh_name(mesh), std::string(choice.form), title_of_host(host.host), four_decimals(errors.mean),
+                       four_decimals(errors.most), four_decimals(errors.worst)});
+        any = true;
+      }
+    }
+  }
+  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() : "";
+}
+
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
@@ -158,8 +195,10 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
              "nothing to bake: it was baked before; the output is as the input. To bake it in another way, start from "
              "the original\n";
     }
-    return text + (bake.meshes.empty()
-                       ? "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n"
+    if (bake.meshes.empty())
+      return text + "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n";
+    return text + (are_all_within(bake)
+                       ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
                        : "nothing to bake: no other normals would be nearer; the output is as the input\n");
   }
   Table table;
@@ -210,7 +249,7 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                      four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
     }
   }
-  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text();
+  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

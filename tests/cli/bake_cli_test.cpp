@@ -54,7 +54,7 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
 TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   const ProcessResult result = run("moving.glb -o out.glb");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  expect_words(result.out, {"moving.glb -> out.glb\n", "hills  harmless", " targets and ", "bytes of arrays were added",
+  expect_words(result.out, {"moving.glb -> out.glb\n", "hills  smallest", " targets and ", "bytes of arrays were added",
                             "in the animations of the file, and for each target alone", "three.js", "after gltfpack",
                             "by audit: worst "});
   EXPECT_EQ(result.out.find("cubic spline"), std::string::npos);
@@ -93,11 +93,11 @@ TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
   EXPECT_EQ(run_shell(std::string(kProgram) + " audit hard.glb --tolerance 0.01", folder_.path()).exit_code, 0);
 }
 
-TEST_F(BakeCli, json_is_one_object_with_schema_1) {
+TEST_F(BakeCli, json_is_one_object_with_schema_2) {
   const ProcessResult result = run("moving.glb -o out.glb --json --encode exact");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json json = Json::parse(result.out);
-  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["schema"], 2);
   EXPECT_EQ(json["command"], "bake");
   EXPECT_EQ(json["output"], "out.glb");
   EXPECT_TRUE(json["changed"]);
@@ -206,7 +206,7 @@ TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
   }
   EXPECT_GT(worse, 0U);
   const ProcessResult usual = run("huge.glb -o other.glb");
-  expect_words(usual.out, {"hills  harmless"});
+  expect_words(usual.out, {"hills  smallest"});
   expect_words(usual.err, {"float32 cannot hold their products"});
   EXPECT_EQ(run("moving.glb -o fine.glb").err.find("worse"), std::string::npos);
 }
@@ -214,7 +214,7 @@ TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
 TEST_F(BakeCli, what_drives_extra_targets_is_in_the_file_and_beside_it_where_that_is_asked_for) {
   const ProcessResult usual = run("still.glb -o out.glb");
   EXPECT_EQ(usual.exit_code, 0);
-  expect_words(usual.out, {"hills  harmless"});
+  expect_words(usual.out, {"hills  smallest"});
   expect_words(usual.err, {"no animation drives"});
   const std::size_t entries = folder_.entry_count();
   const ProcessResult exact = run("still.glb -o face.glb --encode exact");
@@ -281,7 +281,7 @@ TEST_F(BakeCli, standard_streams_work) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   ASSERT_EQ(run("moving.glb -o out.glb").exit_code, 0);
   EXPECT_EQ(bytes_of("piped.glb"), bytes_of("out.glb"));
-  expect_words(result.err, {"hills  harmless"});
+  expect_words(result.err, {"hills  smallest"});
 }
 
 TEST_F(BakeCli, sequences_become_an_animated_glb) {
@@ -309,7 +309,11 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb -o out.glb --drivers out.glb", 2, "--drivers");
   expect_error("f_0.obj f_1.obj -o out.glb --drivers d.json", 2, "--drivers");
   expect_error("moving.glb", 2, "--output");
-  expect_error("moving.glb -o out.glb --max-bytes 100", 3, "at most 100");
+  expect_error("moving.glb -o out.glb --encode harmless --max-bytes 100", 3, "at most 100");
+  expect_error("f_0.obj f_1.obj -o out.glb --max-bytes 100", 3, "more than 100 bytes");
+  expect_error("moving.glb -o out.glb --encode exact --max-targets 5", 2, "--max-targets");
+  for (const char* const option : {"--plan", "--max-targets 5", "--animations-only"})
+    expect_error(std::string("f_0.obj f_1.obj -o out.glb ") + option, 2, "it is for glTF files");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");
   expect_error("f_0.obj f_1.obj -o out.gltf", 2, "a sequence is written as .glb");
   expect_error("--base f_0.obj f_1.obj -o out.glb", 2, "--base");
@@ -318,6 +322,33 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("none.glb -o out.glb", 1, "none.glb");
   folder_.write("bad.glb", "glTF");
   expect_error("bad.glb -o out.glb", 3, "bad.glb");
+}
+
+TEST_F(BakeCli, what_cannot_be_had_ends_in_exit_code_4_only_where_somebody_asked_for_it) {
+  const std::string sentence = "no form that does no harm is within 0.5 degrees";
+  const ProcessResult plain = run("still.glb -o plain.glb");
+  EXPECT_EQ(plain.exit_code, 0);
+  expect_words(plain.err, {sentence, "name the hosts that count by --for, or take a larger --tolerance"});
+  const ProcessResult asked = run("still.glb -o asked.glb --tolerance 0.5");
+  EXPECT_EQ(asked.exit_code, 4);
+  expect_words(asked.err, {sentence});
+  EXPECT_EQ(bytes_of("asked.glb"), bytes_of("plain.glb"));
+  const ProcessResult in_three = run("still.glb -o three.glb --tolerance 5 --for three");
+  EXPECT_EQ(in_three.exit_code, 0);
+  EXPECT_EQ(in_three.err.find("no form"), std::string::npos);
+  const ProcessResult few = run("moving.glb -o few.glb --for three --max-bytes 100");
+  EXPECT_EQ(few.exit_code, 4);
+  expect_words(few.err, {"allow more by --max-targets and --max-bytes"});
+  EXPECT_EQ(bytes_of("few.glb"), bytes_of("moving.glb"));
+}
+
+TEST_F(BakeCli, a_plan_lists_the_forms_and_writes_nothing) {
+  const std::size_t entries = folder_.entry_count();
+  const ProcessResult plan = run("moving.glb --plan --for three"), json = run("moving.glb --plan --json");
+  EXPECT_EQ(plan.exit_code, 0) << plan.err;
+  expect_words(plan.out, {"moving.glb: nothing is written", "as it is", "own deltas", "low rank", "the smallest"});
+  EXPECT_EQ(Json::parse(json.out)["meshes"][0]["choices"][0]["form"], "as it is");
+  EXPECT_EQ(folder_.entry_count(), entries);
 }
 
 TEST_F(BakeCli, a_motion_that_jumps_is_no_sequence) {

@@ -1,13 +1,14 @@
 /// Writes right normals into ordinary glTF files.
 ///
+///     smallest   the default: of all these forms and more, the one of fewest bytes whose worst error along the animations
+///                is within a tolerance in every host that is named: what the file has, deltas of its targets alone, extra
+///                targets that products of weights drive, or extra targets of low rank that only the animations of the
+///                file drive (docs/theory.md, section 17); nowhere worse than before
 ///     harmless   unit normals at weight 1 for each target, and extra morph targets of unit normals for what that leaves
 ///                wrong on the way and where targets meet, as far as it is beyond a tolerance: nearly right in every host
 ///                that is named, and in none of them worse than before (docs/theory.md, section 16)
 ///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
 ///                at every instant in every host that adds up targets
-///     smallest   the smallest of these forms whose errors are within a tolerance: what the file has, deltas of its targets
-///                alone, the extra targets of harmless, or extra targets of low rank that only the animations of the file
-///                drive (docs/theory.md, section 17); nowhere worse than before, as harmless
 ///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
@@ -37,8 +38,8 @@ namespace chronormal {
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
 
 struct BakeOptions {
-  std::optional<BakeEncoding> encoding = {};  ///< nothing: harmless; of sequences exact
-  /// Those in which harmless deltas must be right, and for which the report says what they show.
+  std::optional<BakeEncoding> encoding = {};  ///< nothing: smallest; of sequences exact
+  /// Those in which the deltas must be right, and for which the report says what they show.
   std::vector<Host> hosts = {kHosts.begin(), kHosts.end()};
   /// Others than area are fitted, with a stated error. Nothing: for each mesh the one that its stored base normals
   /// follow clearly (as audit has it), or else area; area where normals are made anew: of sequences, recompute_base.
@@ -52,7 +53,8 @@ struct BakeOptions {
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
   std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
   Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
-  /// Degrees: extra targets whose lack, all together, turns no normal by more are left out, and tracks are cut to this.
+  /// Degrees: what the worst error of smallest may be. Of harmless and exact, extra targets whose lack, all together,
+  /// turns no normal by more are left out. Tracks are cut to this.
   /// Nothing: kHarmlessTolerance, and kExactBakeTolerance of exact.
   std::optional<double> tolerance = {};
   /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the hosts bear.
@@ -85,15 +87,16 @@ struct HostChange {
   std::array<Errors, 3> poses;
 };
 
-/// A form of a mesh that --encode smallest looked at.
+/// A form of a mesh that smallest looked at.
 struct BakeChoice {
-  std::string_view form;  ///< "as it is", "own deltas", "pairs" or "low rank"
-  std::size_t targets = 0, bytes = 0;
-  /// Along the animations of the file, between its keys, and in its standing weights, or where it has no animation of
-  /// weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  std::string_view form;               ///< "as it is", "own deltas", "pruned", "low rank" or "harmless"
+  std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas, and those by which tracks grow
+  /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights, or
+  /// where it has no animation of weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a
+  /// thousandth of n(0).
   ShownErrors played;
-  std::vector<HostChange> hosts;
-  bool within = false;  ///< its worst is within the tolerance, and it within the limits
+  std::vector<HostChange> hosts;  ///< none where no other form than "as it is" was looked at
+  bool within = false;            ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
 };
 
@@ -118,7 +121,7 @@ struct BakedMesh {
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
   bool already_baked = false;       ///< nothing was changed
-  std::vector<HostChange> hosts;    ///< of harmless and endpoint: what each named host shows
+  std::vector<HostChange> hosts;    ///< but of exact: what each named host shows, where the mesh changed
   std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
   std::size_t kept = 0;             ///< different normals that targets move and that keep the deltas of the file
   std::size_t left_out = 0;         ///< extra targets that the hosts have no room for

@@ -3,7 +3,8 @@
 //     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
 //     plan_mesh             how it is encoded, and for exact which pairs the animations need         plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
-//     choose_*              of other encodings: for each vertex what does no harm in any host        chosen_form
+//     choose_*              of other encodings: for each vertex what does no harm in any host        chosen_form,
+//                           and the smallest form of all that are near enough                        smallest_form
 //     MeshWriter            the arrays and all that counts targets, as edits of the file             write_mesh
 //
 // The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
@@ -165,6 +166,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
                           ? exact_deltas(source)
                           : chosen_deltas(source, weights.value(), options, baked.report);
+  warn_of_choice(mesh, options, baked.report, baked.warnings);
   for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k)
     baked.report.extras.push_back(deltas.grown.drivers.formulas[k].as_target(mesh.target_count + k));
 
@@ -201,8 +203,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
 
 // A mesh is baked once: a second time would add targets to targets. One that has none of them can be baked in another way.
 bool is_baked(const GltfShading& shading, const BakeOptions& options) {
-  return shading.mark && (shading.mark->sequence || !shading.mark->extras.empty() ||
-                          shading.mark->encoding == options.encoding.value_or(BakeEncoding::kHarmless));
+  return shading.mark &&
+         (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
 // Nothing for a mesh that does not move.

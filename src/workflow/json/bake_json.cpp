@@ -7,8 +7,11 @@
 namespace chronormal {
 namespace {
 
+// 2: without --encode, a file is what the smallest form makes of it, and `choices` has the forms.
+constexpr int kSchema = 2;
+
 Json common_json(const BakeReport& report) {
-  Json json = json_of_command("bake");
+  Json json = json_of_command("bake", kSchema);
   json["input"] = {{"name", report.input}};
   json["output"] = report.output;
   return json;
@@ -115,7 +118,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
 }
 
 std::string plan_json(const GltfBake& bake, const BakeReport& report) {
-  Json json = json_of_command("bake");
+  Json json = json_of_command("bake", kSchema);
   json["input"] = {{"name", report.input}};
   json["plan"] = true;
   Json meshes = Json::array();

@@ -3,8 +3,8 @@
 
 namespace chronormal::inline internal {
 
-Json json_of_command(const char* command) {
-  return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", 1}};
+Json json_of_command(const char* command, int schema) {
+  return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", schema}};
 }
 
 // Control characters that JSON lets stand are those from DEL on, inside of texts: as escapes they are the same texts.

@@ -11,7 +11,7 @@ namespace chronormal::inline internal {
 using Json = nlohmann::ordered_json;  // fields stay in the order of the documentation
 
 /// The object of a command with the fields that each begins with.
-[[nodiscard]] Json json_of_command(const char* command);
+[[nodiscard]] Json json_of_command(const char* command, int schema = 1);
 
 /// The text, indented, with the end of its last line. Names in files need not be UTF-8; what is not becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& json);

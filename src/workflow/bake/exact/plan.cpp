@@ -170,7 +170,7 @@ Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shad
   MeshPlan plan;
   plan.is_driven = is_driven;
   plan.products_fit = products_fit(mesh);
-  plan.encoding = options.encoding.value_or(BakeEncoding::kHarmless);
+  plan.encoding = encoding_of(options);
   plan.ranges = weight_ranges(use);
   plan.is_shown = shown_elements(shading);
   plan.is_line = single_delta_targets(mesh, plan.encoding);

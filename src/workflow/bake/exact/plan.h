@@ -31,6 +31,11 @@ struct MeshPlan {
   double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
 };
 
+/// How a mesh is encoded, whether that was asked for or not.
+[[nodiscard]] inline BakeEncoding encoding_of(const BakeOptions& options) {
+  return options.encoding.value_or(BakeEncoding::kSmallest);
+}
+
 /// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
 /// Pure. Errors: kInvalidInput where there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,

@@ -49,6 +49,7 @@ class ChosenForm {
   friend ChosenForm choose_of_lengths(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths);
   friend ChosenForm choose_endpoint(const DeltaSource&, const MeshWeights&, const BakeOptions&);
   friend ChosenForm keep_stored(const DeltaSource&);
+  friend class WorthwhileForms;
   friend ChosenForm choose_low_rank(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths,
                                     std::size_t);
 

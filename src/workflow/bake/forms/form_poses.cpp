@@ -108,20 +108,26 @@ std::vector<VertexVectors> stored_deltas(const GltfShading& shading) {
   return result;
 }
 
+VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas) {
+  VertexVectors result;
+  for (std::size_t p = 0; p < deltas.of_parts.size(); ++p) {
+    const std::vector<float>& all = deltas.of_parts[p];
+    for (std::size_t v = 0; 3 * v < all.size(); ++v) {
+      const Vec3f delta = {all[3 * v], all[3 * v + 1], all[3 * v + 2]};
+      if (delta == Vec3f{}) continue;
+      result.vertices.push_back(static_cast<std::uint32_t>(shading.parts[p].first_vertex + v));
+      result.vectors.push_back(delta);
+    }
+  }
+  return result;
+}
+
 std::vector<VertexVectors> endpoint_deltas(const DeltaSource& source, double& error) {
   std::vector<VertexVectors> result(source.shading.set.targets.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const TargetDeltas deltas = own_target_deltas(source, i);
     error = std::fmax(error, deltas.error);
-    for (std::size_t p = 0; p < deltas.of_parts.size(); ++p) {
-      const std::vector<float>& all = deltas.of_parts[p];
-      for (std::size_t v = 0; 3 * v < all.size(); ++v) {
-        const Vec3f delta = {all[3 * v], all[3 * v + 1], all[3 * v + 2]};
-        if (delta == Vec3f{}) continue;
-        result[i].vertices.push_back(static_cast<std::uint32_t>(source.shading.parts[p].first_vertex + v));
-        result[i].vectors.push_back(delta);
-      }
-    }
+    result[i] = as_column(source.shading, deltas);
   }
   return result;
 }

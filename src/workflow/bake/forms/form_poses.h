@@ -22,6 +22,9 @@ namespace chronormal::inline internal {
 /// What the file stores, other than zero.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
+/// The same of arrays that were computed for one target.
+[[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
+
 /// The deltas that --encode endpoint writes for all targets, and the largest error that they are stated with.
 [[nodiscard]] std::vector<VertexVectors> endpoint_deltas(const DeltaSource& source, double& error);
 

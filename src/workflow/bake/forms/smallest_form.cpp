@@ -11,6 +11,8 @@
 #include "workflow/bake/forms/form_poses.h"
 #include "workflow/bake/forms/opposite_targets.h"
 #include "workflow/bake/forms/unit_targets.h"
+#include "workflow/bake/forms/worthwhile_columns.h"
+#include "workflow/bake/forms/worthwhile_form.h"
 #include "workflow/bake/judge/played_errors.h"
 #include "workflow/bake/low_rank/low_rank_form.h"
 
@@ -21,22 +23,14 @@ namespace {
 constexpr double kPartOfTracks = 0.2;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
-// Poses that a choice is made by, pairs of targets that are worth a look, and how often the limit of bytes is tried.
-constexpr std::size_t kMostPlayed = 200, kMostPairs = 48;
+// Poses that a choice is made by, and how often the limit of bytes is tried.
+constexpr std::size_t kMostPlayed = 200;
 constexpr int kTries = 4;
 constexpr double kPartOfBytes = 0.95;
+// Means that differ by no more of themselves are alike.
+constexpr double kAlike = 1e-3;
 
-enum Choice : std::uint8_t { kStored, kOwn, kLowRank };
-
-// How many pairs of targets the file has active at once where both move a normal; a target with itself is one.
-std::size_t active_pairs(const DeltaSource& source, const MeshWeights& weights) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i)
-    for (std::size_t j = i; moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostPairs;
-         ++j)
-      if (moves(source.shading, j) && weights.use.together(i, j) && (i == j || source.terms.overlap(i, j))) ++count;
-  return count;
-}
+enum VertexForm : std::uint8_t { kStored, kOwn, kLowRank };
 
 // One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
 struct Share {
@@ -120,6 +114,144 @@ void drop_unused(std::span<const std::uint32_t> vertices, std::span<const std::u
   drivers = ExtraDrivers();
 }
 
+// What a form is off by along the animations: the largest mean, 99.9 % and worst of the named hosts.
+ShownErrors errors_in_hosts(const RightNormals& rights, const GltfShading& shading, std::span<const Host> hosts,
+                            std::span<const std::uint32_t> vertices, const VertexColumns& form, const PoseList& poses) {
+  std::vector<Host> kinds;
+  for (const Host& host : hosts) {
+    const Host kind = judged_as(host);
+    if (std::none_of(kinds.begin(), kinds.end(), [&](const Host& known) { return shows_alike(known, kind); }))
+      kinds.push_back(kind);
+  }
+  ShownErrors most;
+  std::vector<VertexColumns> looked_at;
+  for (const Host& kind : kinds) {
+    VertexColumns kept = kept_columns(kind, rights, vertices, form);
+    const auto is_known = [&](const VertexColumns& known) { return known.entries == kept.entries; };
+    if (std::any_of(looked_at.begin(), looked_at.end(), is_known)) continue;
+    const ShownErrors errors = played_errors(rights, vertices, shading.element_of_vertex, kept, poses);
+    most = {errors.judged, std::fmax(most.mean, errors.mean), std::fmax(most.most, errors.most),
+            std::fmax(most.worst, errors.worst)};
+    looked_at.push_back(std::move(kept));
+  }
+  return most;
+}
+
+// By how many bytes the tracks grow that drive extra targets.
+std::size_t bytes_of_tracks(const MeshWeights& weights, const ExtraDrivers& drivers) {
+  std::size_t bytes = 0;
+  for (std::size_t t = 0; t < weights.tracks.size() && drivers.size() > 0; ++t) {
+    const WeightTrack& before = weights.tracks[t];
+    const ExtendedTrack after = drivers.extended(weights.names[t], before, std::numeric_limits<double>::infinity());
+    const std::size_t of_key = before.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1;
+    bytes += sizeof(float) * (after.values.size() + after.times.size() - of_key * before.targets * before.size());
+  }
+  return bytes;
+}
+
+// Holds one form of a mesh against the next.
+class Choice {
+ public:
+  Choice(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options)
+      : shading_(source.shading),
+        weights_(weights),
+        options_(options),
+        rights_(shading_, source.terms, source.base_normals, source.plan.largest),
+        tolerance_(options.tolerance.value_or(kHarmlessTolerance)) {}
+
+  // Looks at a form, and returns the bytes that it takes.
+  std::size_t look_at(std::string_view name, ChosenForm form) {
+    BakeChoice choice = measured(name, form);
+    const std::size_t bytes = choice.bytes;
+    take(std::move(choice), std::move(form));
+    return bytes;
+  }
+
+  // Looks at the best of the forms that find(is_enough, take) calls take with.
+  template <class Find>
+  void look_at_best(std::string_view name, const Find& find) {
+    std::optional<ChosenForm> nearest;
+    BakeChoice of_nearest;
+    const auto is_enough = [&](std::size_t bytes) { return nearest && of_nearest.within && of_nearest.bytes <= bytes; };
+    find(is_enough, [&](ChosenForm form) {
+      BakeChoice choice = measured(name, form);
+      if (!nearest || is_better(choice, of_nearest)) {
+        nearest = std::move(form);
+        of_nearest = std::move(choice);
+      }
+      return false;
+    });
+    if (nearest) take(std::move(of_nearest), std::move(*nearest));
+  }
+
+  [[nodiscard]] std::size_t most_bytes() const {
+    return options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
+  }
+  [[nodiscard]] bool is_within() const { return best_ && of_best_.within; }
+  // Whether a form is near enough, of no more bytes than these, and no plan asks for all the others.
+  [[nodiscard]] bool is_found() const { return is_found_below(std::numeric_limits<std::size_t>::max()); }
+  [[nodiscard]] bool is_found_below(std::size_t bytes) const {
+    return is_within() && of_best_.bytes <= bytes && !options_.plan;
+  }
+
+  [[nodiscard]] ChosenForm take_best() {
+    // What is stored is measured beside every other form.
+    const auto measured =
+        std::find_if(choices_.begin(), choices_.end(), [](const auto& c) { return !c.hosts.empty(); });
+    for (BakeChoice& choice : choices_) {
+      if (!choice.hosts.empty() || measured == choices_.end()) continue;
+      choice.hosts = measured->hosts;
+      for (HostChange& host : choice.hosts)
+        for (HostChange::Errors& errors : host.poses) errors.after = errors.before;
+    }
+    for (BakeChoice& choice : choices_)
+      choice.chosen =
+          choice.form == of_best_.form && choice.targets == of_best_.targets && choice.bytes == of_best_.bytes;
+    best_->choices = std::move(choices_);
+    return std::move(*best_);
+  }
+
+ private:
+  [[nodiscard]] bool is_affordable(const BakeChoice& choice) const {
+    const std::size_t targets = shading_.set.targets.size();
+    return choice.bytes <= most_bytes() && choice.targets - targets <= most_extras(options_, targets);
+  }
+
+  [[nodiscard]] BakeChoice measured(std::string_view name, const ChosenForm& form) const {
+    const std::size_t targets = shading_.set.targets.size();
+    BakeChoice choice{name, targets + form.drivers.size(), form.bytes(shading_), {}, form.hosts, false, false};
+    choice.bytes += bytes_of_tracks(weights_, form.drivers);
+    choice.played = errors_in_hosts(rights_, shading_, options_.hosts, form.judged(), form.columns(shading_),
+                                    played_poses(weights_, form.drivers, targets, kMostPlayed));
+    choice.within = is_affordable(choice) && choice.played.worst <= tolerance_;
+    return choice;
+  }
+
+  // The smallest that is near enough is better, and before there is one, the nearest.
+  static bool is_better(const BakeChoice& choice, const BakeChoice& than) {
+    if (choice.within != than.within) return choice.within;
+    if (choice.within) return choice.bytes < than.bytes;
+    const bool is_alike = std::fabs(choice.played.mean - than.played.mean) <= kAlike * than.played.mean;
+    return is_alike ? choice.bytes < than.bytes : choice.played.mean < than.played.mean;
+  }
+
+  void take(BakeChoice choice, ChosenForm form) {
+    choices_.push_back(choice);
+    if (best_ && (!is_affordable(choice) || !is_better(choice, of_best_))) return;
+    best_ = std::move(form);
+    of_best_ = std::move(choice);
+  }
+
+  const GltfShading& shading_;
+  const MeshWeights& weights_;
+  const BakeOptions& options_;
+  RightNormals rights_;
+  double tolerance_;
+  std::optional<ChosenForm> best_;
+  BakeChoice of_best_;
+  std::vector<BakeChoice> choices_;
+};
+
 }  // namespace
 
 ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
@@ -196,54 +328,33 @@ ChosenForm keep_stored(const DeltaSource& source) {
 }
 
 ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
-  const GltfShading& shading = source.shading;
-  const std::size_t targets = shading.set.targets.size(), most = most_extras(options, targets);
+  Choice choice(source, weights, options);
   const FormLengths lengths = lengths_for(options.hosts);
-  const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
-  const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
-  const std::size_t most_bytes = options.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
-
-  std::optional<ChosenForm> best;
-  BakeChoice of_best;
-  std::vector<BakeChoice> choices;
-  // Looks at a form: the smallest that is near enough is the best, and before there is one, the nearest.
-  const auto look_at = [&](std::string_view name, ChosenForm form) {
-    BakeChoice choice{name, targets + form.drivers.size(), form.bytes(shading), {}, form.hosts, false, false};
-    for (const auto& [track, curve] : form.drivers.curves) choice.bytes += sizeof(float) * curve.values.size();
-    choice.played = played_errors(rights, form.judged(), shading.element_of_vertex, form.columns(shading),
-                                  played_poses(weights, form.drivers, targets, kMostPlayed));
-    const bool is_affordable = choice.bytes <= most_bytes && form.drivers.size() <= most;
-    choice.within = is_affordable && choice.played.worst <= tolerance;
-    choices.push_back(choice);
-    if (best && !is_affordable) return;
-    const bool is_better = !best || (choice.within != of_best.within ? choice.within
-                                     : choice.within                 ? choice.bytes < of_best.bytes
-                                                                     : choice.played.mean < of_best.played.mean);
-    if (!is_better) return;
-    best = std::move(form);
-    of_best = std::move(choice);
-  };
-  const auto is_found = [&] { return of_best.within && !options.plan; };
-  const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != shading.normals.data();
-  if (!has_new_base) look_at("as it is", keep_stored(source));
-  if (!is_found()) look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
-  if (!is_found() && source.plan.is_driven && source.plan.products_fit && most > 0) {
-    if (active_pairs(source, weights) <= kMostPairs && !options.animations_only)
-      look_at("pairs", choose_of_lengths(source, weights, options, lengths));
+  const std::size_t most = most_extras(options, source.shading.set.targets.size());
+  const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
+  if (!has_new_base) choice.look_at("as it is", keep_stored(source));
+  if (choice.is_found_below(0)) return choice.take_best();
+  // All other forms with extra targets that nothing but animations drive have the deltas of all targets.
+  const std::size_t of_deltas = choice.look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
+  bool have_products = false;
+  choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
+    have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
+  });
+  if (!choice.is_found_below(of_deltas) && source.plan.is_driven && source.plan.products_fit && most > 0) {
     std::size_t extras = most;
     for (int tries = 0; tries < kTries && extras > 0; ++tries) {
       ChosenForm form = choose_low_rank(source, weights, options, lengths, extras);
-      const std::size_t bytes = form.bytes(shading), count = form.drivers.size();
-      look_at("low rank", std::move(form));
-      if (bytes <= most_bytes || count == 0) break;
-      const double part = static_cast<double>(most_bytes) / static_cast<double>(bytes);
+      const std::size_t count = form.drivers.size();
+      const std::size_t bytes = choice.look_at("low rank", std::move(form));
+      if (bytes <= choice.most_bytes() || count == 0) break;
+      const double part = static_cast<double>(choice.most_bytes()) / static_cast<double>(bytes);
       extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
     }
   }
-  for (BakeChoice& choice : choices)
-    choice.chosen = choice.form == of_best.form && choice.targets == of_best.targets && choice.bytes == of_best.bytes;
-  best->choices = std::move(choices);
-  return std::move(*best);
+  // Where nothing is near enough, nothing may be farther off than harmless, but where that has too many products.
+  if (!choice.is_found() && !options.animations_only && (have_products || !source.plan.is_driven))
+    choice.look_at("harmless", choose_harmless(source, weights, options));
+  return choice.take_best();
 }
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,12 @@
 /// The cheapest form of a mesh that is within a tolerance in the hosts that are named. Private to workflow.
 ///
-///     left as it is | deltas of the mesh's own targets | and of pairs, pruned | and of low rank
+///     as it is     what the file stores
+///     own deltas   one delta for each target of the mesh
+///     pruned       deltas, self terms and pairs that are worth their bytes                worthwhile_form
+///     low rank     one delta for each target, and extra targets that animations drive     low_rank_form
+///     harmless     where none of these is near enough                                     chosen_form
 ///
-/// Every one of them is a choice for each vertex among what the file stores and what does no harm (host_judge.h).
+/// Each of them does no harm: vertices for which that cannot be said keep what the file stores (host_judge.h).
 #ifndef CHRONORMAL_WORKFLOW_BAKE_FORMS_SMALLEST_FORM_H_
 #define CHRONORMAL_WORKFLOW_BAKE_FORMS_SMALLEST_FORM_H_
 

@@ -20,19 +20,6 @@ constexpr int kFineBits = 16;
 constexpr std::size_t kMostRounded = 32;  // poses in which rounding is measured
 constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
 
-// The same without what is too fine, or a compressor's own: halves, and numbers of so many bits. What is left is what
-// becomes of lengths: they are kept, or made 1, or cut.
-Host judged_as(Host host) {
-  host.bits = host.normals == NormalRule::kClamped ? kFineBits : 32;
-  host.octahedral_base = false;
-  return host;
-}
-
-bool shows_alike(const Host& a, const Host& b) {
-  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
-         a.octahedral_base == b.octahedral_base;
-}
-
 bool is_rounding(const Host& host) { return host.normals == NormalRule::kClamped && host.bits < kFineBits; }
 
 // Whether all hosts that do not round show the same of these deltas.
@@ -200,6 +187,17 @@ VertexColumns chosen_form(std::span<const VertexColumns> forms, std::span<const 
 }
 
 }  // namespace
+
+Host judged_as(Host host) {
+  host.bits = host.normals == NormalRule::kClamped ? kFineBits : 32;
+  host.octahedral_base = false;
+  return host;
+}
+
+bool shows_alike(const Host& a, const Host& b) {
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base;
+}
 
 Vec3f VertexVectors::at(std::size_t vertex) const noexcept {
   const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);

@@ -30,6 +30,12 @@ namespace chronormal::inline internal {
 /// By how much an error may grow where nothing else is said: what the rounding of float32 and of float16 may turn.
 inline constexpr double kHarmless = 0.02;
 
+/// The same host without what is too fine to choose by, or a compressor's own: halves, and numbers of so many bits. What is
+/// left is what becomes of lengths: they are kept, or made 1, or cut.
+[[nodiscard]] Host judged_as(Host host);
+/// Whether two such hosts show the same of all deltas.
+[[nodiscard]] bool shows_alike(const Host& a, const Host& b);
+
 /// Vectors of some vertices, ascending; all others are zero.
 struct VertexVectors {
   std::vector<std::uint32_t> vertices;
@@ -43,6 +49,8 @@ struct VertexColumns {
   struct Entry {
     std::uint32_t column = 0;
     Vec3f delta;
+
+    friend bool operator==(const Entry&, const Entry&) = default;
   };
   std::vector<std::size_t> first;  ///< (n + 1)
   std::vector<Entry> entries;

@@ -1,5 +1,8 @@
 #include "workflow/bake/write/messages.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <map>
 #include <numbers>
 #include <string_view>
@@ -84,11 +87,32 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
                       "products of weights between them: normals may be anything there"});
 }
 
+void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
+                    std::vector<MeshWarning>& warnings) {
+  const auto chosen = std::find_if(baked.choices.begin(), baked.choices.end(), [](const auto& c) { return c.chosen; });
+  if (chosen == baked.choices.end() || chosen->within) return;
+  std::string remedies;
+  const auto add_remedy = [&](const char* remedy) { remedies.append(remedies.empty() ? "" : ", ").append(remedy); };
+  if (options.most_targets || options.most_delta_bytes) add_remedy("allow more by --max-targets and --max-bytes");
+  if (std::any_of(options.hosts.begin(), options.hosts.end(),
+                  [](const Host& h) { return h.normals != NormalRule::kSum; }))
+    add_remedy("name the hosts that count by --for");
+  add_remedy("or take a larger --tolerance");
+  std::array<char, 32> tolerance{};
+  const auto end = std::to_chars(tolerance.data(), tolerance.data() + tolerance.size(),
+                                 options.tolerance.value_or(kHarmlessTolerance));
+  warnings.push_back({label_of(mesh, baked), std::string("no form that does no harm is within ")
+                                                 .append(tolerance.data(), end.ptr)
+                                                 .append(" degrees throughout, and the nearest was taken (--plan lists "
+                                                         "them all); to come nearer, ")
+                                                 .append(remedies)});
+}
+
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
                    const BakedMesh& baked, std::vector<MeshWarning>& warnings) {
   const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
-  const bool is_harmless = plan.encoding == BakeEncoding::kHarmless;
+  const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
   if (!plan.is_driven && is_harmless) {
     warn(
         "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
