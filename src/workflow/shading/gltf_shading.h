@@ -88,6 +88,23 @@ struct GltfShading {
 /// looks to the other side than n(0), both are those of the other side: -n(0) and -n(w).
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
+/// The same for one vertex and many normals: a linear map, which keeps their lengths.
+class ShownTurn {
+ public:
+  ShownTurn() = default;
+  ShownTurn(const Vec3d& stored, const Vec3d& base_normal) noexcept
+      : x_(shown_direction(stored, base_normal, {1, 0, 0})),
+        y_(shown_direction(stored, base_normal, {0, 1, 0})),
+        z_(shown_direction(stored, base_normal, {0, 0, 1})) {}
+
+  [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {
+    return normal.x * x_ + normal.y * y_ + normal.z * z_;
+  }
+
+ private:
+  Vec3d x_ = {1, 0, 0}, y_ = {0, 1, 0}, z_ = {0, 0, 1};
+};
+
 /// The weight of every target where those of the mesh's own targets are given: extra ones get theirs.
 /// weights must have one for each target; those of extra ones are written
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;

@@ -10,7 +10,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256, kBetweenKeys = 3, kSteps = 8;
+constexpr std::size_t kBlock = 256, kPosesAtOnce = 8, kBetweenKeys = 3, kSteps = 8;
 constexpr double kPhase = 0.61, kLeastLength = 1e-3;
 // Errors are counted in bins of a tenth of themselves.
 constexpr std::size_t kBins = 400;
@@ -51,30 +51,35 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
                           std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
                           const PoseList& poses) {
   Found all;
-  for (const std::vector<double>& pose : poses) {
-    const std::vector<Vec3d> normals = rights.of_elements(std::span(pose).first(rights.targets()));
-    const auto look = [&](std::size_t n, Found& found) {
-      const Vec3d right = rights.of_vertex(vertices[n], normals[element_of_vertex[vertices[n]]]);
-      if (!(length(right) > kLeastLength)) return;
-      Vec3d shown = rights.stored(vertices[n]);
-      for (const auto& [column, delta] : form.of(n)) shown = shown + pose[column] * to_double(delta);
-      const double error = max_abs(shown) > 0 ? kDegreesPerRadian * angle_between(shown, right) : 180;
-      ++found.count;
-      found.sum += error;
-      found.worst = std::fmax(found.worst, error);
-      const double bin = kBinsPerUnit * std::log(std::fmax(error, kLeast) / kLeast);
-      ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
-    };
-    const Found of_pose = parallel_fold<Found>(vertices.size(), kBlock, look, [](Found& to, const Found& each) {
-      to.count += each.count;
-      to.sum += each.sum;
-      to.worst = std::fmax(to.worst, each.worst);
-      for (std::size_t b = 0; b < kBins; ++b) to.bins[b] += each.bins[b];
+  const auto add = [](Found& to, const Found& each) {
+    to.count += each.count;
+    to.sum += each.sum;
+    to.worst = std::fmax(to.worst, each.worst);
+    for (std::size_t b = 0; b < kBins; ++b) to.bins[b] += each.bins[b];
+  };
+  for (std::size_t first = 0; first < poses.size(); first += kPosesAtOnce) {
+    const std::size_t count = std::min(kPosesAtOnce, poses.size() - first);
+    std::vector<std::vector<Vec3d>> normals(count);
+    parallel_for(count, [&](std::size_t p) {
+      normals[p] = rights.of_elements(std::span(poses[first + p]).first(rights.targets()));
     });
-    all.count += of_pose.count;
-    all.sum += of_pose.sum;
-    all.worst = std::fmax(all.worst, of_pose.worst);
-    for (std::size_t b = 0; b < kBins; ++b) all.bins[b] += of_pose.bins[b];
+    const auto look = [&](std::size_t n, Found& found) {
+      std::array<Vec3d, kPosesAtOnce> shown;
+      shown.fill(rights.stored(vertices[n]));
+      for (const auto& [column, delta] : form.of(n))
+        for (std::size_t p = 0; p < count; ++p) shown[p] = shown[p] + poses[first + p][column] * to_double(delta);
+      for (std::size_t p = 0; p < count; ++p) {
+        const Vec3d right = rights.of_vertex(vertices[n], normals[p][element_of_vertex[vertices[n]]]);
+        if (!(length(right) > kLeastLength)) continue;
+        const double error = max_abs(shown[p]) > 0 ? kDegreesPerRadian * angle_between(shown[p], right) : 180;
+        ++found.count;
+        found.sum += error;
+        found.worst = std::fmax(found.worst, error);
+        const double bin = kBinsPerUnit * std::log(std::fmax(error, kLeast) / kLeast);
+        ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
+      }
+    };
+    add(all, parallel_fold<Found>(vertices.size(), kBlock, look, add));
   }
   ShownErrors result{all.count, all.count > 0 ? all.sum / static_cast<double>(all.count) : 0, 0, all.worst};
   std::size_t beyond = all.count / 1000, b = kBins - 1;
