@@ -79,8 +79,8 @@ void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> pos
 
 Vec3f BlendSource::shown(const JudgedOutput& output) const {
   const std::size_t i = number(output);
-  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(shown_now_[i])));
-  return blend_stored(rule_, to_double(shown_start_[i]), to_double(shown_end_[i]), t_);
+  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(vector_at(shown_now_, i))));
+  return blend_stored(rule_, to_double(vector_at(shown_start_, i)), to_double(vector_at(shown_end_, i)), t_);
 }
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal) const {
@@ -128,20 +128,30 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// N + sum w D in float32, target after target, as hosts add.
-void BlendSource::add_up(const std::vector<double>& weights, std::vector<Vec3f>& sums) const {
+// N + sum w D in float32, target after target, as hosts add. Where outputs are one run of vertices, so are their deltas.
+void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) const {
   const std::span<const JudgedOutput> outputs = part_.outputs();
-  sums.resize(outputs.size());
+  sums.resize(3 * outputs.size());
   parallel_blocks(outputs.size(), kBlock, [&](IndexRange range) {
-    const std::size_t end = range.first + range.count;
-    for (std::size_t i = range.first; i < end; ++i) sums[i] = vector_at(shading_.normals, outputs[i].vertex);
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      const std::vector<float>& deltas = shading_.normal_deltas[k];
-      if (weights[k] == 0 || deltas.empty()) continue;
-      const auto weight = static_cast<float>(weights[k]);
-      for (std::size_t i = range.first; i < end; ++i)
-        sums[i] = sums[i] + weight * vector_at(deltas, outputs[i].vertex);
-    }
+    const std::size_t first = outputs[range.first].vertex;
+    const std::span<float> here = std::span(sums).subspan(3 * range.first, 3 * range.count);
+    const bool is_run = outputs[range.first + range.count - 1].vertex == first + range.count - 1;
+    const auto add = [&](const std::vector<float>& vectors, float weight) {
+      if (is_run) {
+        const float* const from = vectors.data() + 3 * first;
+        for (std::size_t n = 0; n < here.size(); ++n) here[n] += weight * from[n];
+        return;
+      }
+      for (std::size_t i = 0; i < range.count; ++i) {
+        const float* const from = vectors.data() + 3 * std::size_t{outputs[range.first + i].vertex};
+        for (std::size_t c = 0; c < 3; ++c) here[3 * i + c] += weight * from[c];
+      }
+    };
+    std::fill(here.begin(), here.end(), 0.0F);
+    add(shading_.normals, 1);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      if (weights[k] != 0 && !shading_.normal_deltas[k].empty())
+        add(shading_.normal_deltas[k], static_cast<float>(weights[k]));
   });
 }
 

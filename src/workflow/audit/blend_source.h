@@ -53,7 +53,7 @@ class BlendSource {
   void place_base(std::span<Vec3d> positions) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
-  void add_up(const std::vector<double>& weights, std::vector<Vec3f>& sums) const;
+  void add_up(const std::vector<double>& weights, std::vector<float>& sums) const;
 
   const GltfShading& shading_;
   const JudgedPart& part_;
@@ -65,7 +65,7 @@ class BlendSource {
   bool known_ = false;
   double t_ = 0;
   std::vector<double> now_, start_, end_;
-  std::vector<Vec3f> shown_now_, shown_start_, shown_end_;  // of outputs
+  std::vector<float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
 };
 
 /// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their

@@ -122,29 +122,37 @@ void drop_unused(std::span<const std::uint32_t> vertices, std::span<const std::u
 
 }  // namespace
 
-ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                           FormLengths lengths, std::size_t most_extras) {
+OwnForm own_form(const DeltaSource& source, const RightNormals& rights, const BakeOptions& options,
+                 FormLengths lengths) {
+  OwnForm own;
+  own.stored = stored_deltas(source.shading);
+  own.vertices = judged_vertices(source, own.stored);
+  double unused = 0;  // the judge measures what is left
+  own.deltas = lengths == FormLengths::kFree ? endpoint_deltas(source, unused)
+                                             : end_point_form(source.shading, source.terms, rights, lengths).own;
+  if (!options.animations_only)
+    make_harmless_alone(source, own.stored, lengths, options.tolerance.value_or(kHarmlessTolerance), own.deltas);
+  return own;
+}
+
+ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
+                           const BakeOptions& options, FormLengths lengths, const OwnForm& own,
+                           std::size_t most_extras) {
   const GltfShading& shading = source.shading;
-  const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
   const std::span<const Host> hosts = options.hosts;
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
 
   ChosenForm result;
-  const std::vector<VertexVectors> stored = stored_deltas(shading);
-  result.vertices_ = judged_vertices(source, stored);
+  result.vertices_ = own.vertices;
   const std::vector<std::uint32_t>& vertices = result.vertices_;
-  result.own_of_form_.push_back(lengths == FormLengths::kFree
-                                    ? endpoint_deltas(source, result.fit_error)
-                                    : end_point_form(shading, source.terms, rights, lengths).own);
-  result.fit_error = 0;  // the judge measures what is left
-  if (!options.animations_only) make_harmless_alone(source, stored, lengths, tolerance, result.own_of_form_[0]);
-  std::vector<VertexColumns> forms = {by_vertex(columns_of(stored), vertices),
-                                      by_vertex(columns_of(result.own_of_form_[0]), vertices)};
+  result.own_of_form_.push_back(own.deltas);
+  std::vector<VertexColumns> forms = {by_vertex(columns_of(own.stored), vertices),
+                                      by_vertex(columns_of(own.deltas), vertices)};
   ExtraDrivers& drivers = result.drivers;
   if (most_extras > 0 && source.plan.is_driven) {
     const bool refits_own = options.animations_only && lengths == FormLengths::kFree;
     const std::size_t for_each = lengths == FormLengths::kFree ? 1 : 2;
-    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, result.own_of_form_[0],
+    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, own.deltas,
                                      {most_extras / for_each, tolerance, refits_own});
     const std::size_t extras = form.extras.size();
     std::vector<Share> shares = shares_of(rights, std::move(form.extras), lengths);
@@ -174,7 +182,7 @@ ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights
   const std::vector<bool> is_new = new_bases(source);
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
                         std::vector<bool>(hosts.size(), true), tolerance);
-  const auto numbers = numbers_of_targets(source, stored, vertices);
+  const auto numbers = numbers_of_targets(source, own.stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, drivers, hosts, numbers, sampling);
   };
@@ -226,13 +234,27 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   const auto is_found = [&] { return of_best.within && !options.plan; };
   const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != shading.normals.data();
   if (!has_new_base) look_at("as it is", keep_stored(source));
-  if (!is_found()) look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
-  if (!is_found() && source.plan.is_driven && source.plan.products_fit && most > 0) {
+  std::optional<OwnForm> own;
+  if (!is_found()) own = own_form(source, rights, options, lengths);
+  const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
+  // Where no choice between these and what is stored is near enough, they are looked at when nothing else is.
+  bool waits = false;
+  if (!is_found() && has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree) {
+    const std::array<VertexColumns, 2> forms = {by_vertex(columns_of(own->stored), own->vertices),
+                                                by_vertex(columns_of(own->deltas), own->vertices)};
+    waits = least_worst(rights, own->vertices, shading.element_of_vertex, forms,
+                        played_poses(weights, {}, targets, kMostPlayed)) > tolerance;
+  }
+  const auto look_at_own = [&] {
+    look_at("own deltas", choose_low_rank(source, rights, weights, options, lengths, *own, 0));
+  };
+  if (!is_found() && !waits) look_at_own();
+  if (!is_found() && has_extras) {
     if (active_pairs(source, weights) <= kMostPairs && !options.animations_only)
       look_at("pairs", choose_of_lengths(source, weights, options, lengths));
     std::size_t extras = most;
     for (int tries = 0; tries < kTries && extras > 0; ++tries) {
-      ChosenForm form = choose_low_rank(source, weights, options, lengths, extras);
+      ChosenForm form = choose_low_rank(source, rights, weights, options, lengths, *own, extras);
       const std::size_t bytes = form.bytes(shading), count = form.drivers.size();
       look_at("low rank", std::move(form));
       if (bytes <= most_bytes || count == 0) break;
@@ -240,6 +262,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
       extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
     }
   }
+  if (waits && !of_best.within) look_at_own();
   for (BakeChoice& choice : choices)
     choice.chosen = choice.form == of_best.form && choice.targets == of_best.targets && choice.bytes == of_best.bytes;
   best->choices = std::move(choices);
