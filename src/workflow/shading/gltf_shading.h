@@ -15,6 +15,7 @@
 #ifndef CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -92,17 +93,17 @@ struct GltfShading {
 class ShownTurn {
  public:
   ShownTurn() = default;
-  ShownTurn(const Vec3d& stored, const Vec3d& base_normal) noexcept
-      : x_(shown_direction(stored, base_normal, {1, 0, 0})),
-        y_(shown_direction(stored, base_normal, {0, 1, 0})),
-        z_(shown_direction(stored, base_normal, {0, 0, 1})) {}
+  ShownTurn(const Vec3d& stored, const Vec3d& base_normal) noexcept;
 
   [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {
-    return normal.x * x_ + normal.y * y_ + normal.z * z_;
+    const double cosine = std::fabs(cosine_);
+    const Vec3d turned = cosine * normal + cross(axis_, normal) + (dot(axis_, normal) / (1 + cosine)) * axis_;
+    return std::signbit(cosine_) ? -turned : turned;
   }
 
  private:
-  Vec3d x_ = {1, 0, 0}, y_ = {0, 1, 0}, z_ = {0, 0, 1};
+  Vec3d axis_;         // as long as the sine of the angle
+  double cosine_ = 1;  // with a sign where both are those of the other side
 };
 
 /// The weight of every target where those of the mesh's own targets are given: extra ones get theirs.
