@@ -18,9 +18,10 @@ constexpr std::size_t kParts = 32;          // sums over points, each in the mem
 constexpr std::size_t kColumnsAtOnce = 64;  // of a symmetric matrix
 constexpr std::size_t kPadding = 16;
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth.
+// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it lacks
+// at most: what is off by a right angle can be off by no more, and must not drown the others.
 constexpr double kShortQuantile = 0.02;
-constexpr float kShortest = 1e-3F;
+constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kRounds = 3;
 // Of the tolerance: what points beyond it count more for, and what they are fitted by themselves from.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
@@ -63,18 +64,22 @@ LowRankFit::LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRow
 void LowRankFit::set_first_importance() {
   parallel_blocks(missing_.points(), kBlock, [&](IndexRange points) {
     std::vector<float> lengths;
+    const std::size_t stride = missing_.stride();
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       lengths.clear();
+      float most = kShortest;
       for (std::size_t r = 0; r < missing_.rows(); ++r) {
-        float square = 0;
+        float square = 0, of_lack = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-          const float right = shown[c * missing_.stride() + r] + lack[c * missing_.stride() + r];
+          const float right = shown[c * stride + r] + lack[c * stride + r];
           square += right * right;
+          of_lack += lack[c * stride + r] * lack[c * stride + r];
         }
         if (square > 0) lengths.push_back(std::sqrt(square));
+        most = std::fmax(most, kPartOfLack * std::sqrt(of_lack));
       }
-      importance_[p] = 1 / std::fmax(static_cast<float>(quantile(lengths, kShortQuantile)), kShortest);
+      importance_[p] = 1 / std::fmax(static_cast<float>(quantile(lengths, kShortQuantile)), most);
     }
   });
 }
