@@ -1,19 +1,23 @@
 // The captured face: what the smallest form leaves between the keys, at instants that nothing was fitted to or judged by.
-// The environment variable CHRONORMAL_DATA says where it is; CHRONORMAL_FULL asks for all of it instead of a second.
+// The environment variable CHRONORMAL_DATA says where it is; CHRONORMAL_FULL asks for all of its keys instead of the first few.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/bake_fixture.h"
+#include "tests/support/child_process.h"
 
 namespace chronormal::bake_capture_test {
 namespace {
@@ -23,7 +27,7 @@ using test::GltfPlayer;
 using test::Real;
 using test::Vector;
 
-constexpr std::size_t kTargets = 57, kMostTargets = 112, kBetweenKeys = 8, kKeysOfPart = 13;
+constexpr std::size_t kTargets = 57, kMostTargets = 112, kBetweenKeys = 8, kKeysOfPart = 7, kGapsApart = 4;
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
@@ -68,6 +72,7 @@ struct Errors {
     for (const float error : degrees) sum += static_cast<double>(error);
     return sum / static_cast<double>(degrees.size());
   }
+  // The error that a part of all are not beyond.
   [[nodiscard]] float at(double part) {
     const auto place = degrees.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(degrees.size() - 1));
     std::nth_element(degrees.begin(), place, degrees.end());
@@ -118,6 +123,7 @@ Errors errors_between_keys(const Baked& baked, std::size_t gaps_apart) {
 class BakeCapture : public testing::Test {
  protected:
   void SetUp() override {
+    if (test::is_sanitized()) GTEST_SKIP() << "sanitizers make minutes of it";
     const char* const folder = std::getenv("CHRONORMAL_DATA");
     if (folder == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
     std::ifstream file(std::filesystem::path(folder) / "rigs" / "ict_capture.glb", std::ios::binary);
@@ -149,7 +155,7 @@ class BakeCapture : public testing::Test {
   void expect_near(const Baked& baked) const {
     ASSERT_TRUE(baked.ok()) << baked.error;
     EXPECT_LE(kTargets + baked.report.added_targets, kMostTargets);
-    Errors errors = errors_between_keys(baked, is_full_ ? 1 : 4);
+    Errors errors = errors_between_keys(baked, is_full_ ? 1 : kGapsApart);
     EXPECT_GT(errors.degrees.size(), 100 * errors.excused);
     EXPECT_LE(errors.mean(), 0.01);
     EXPECT_LE(errors.at(0.999), 0.15F);
@@ -160,12 +166,10 @@ class BakeCapture : public testing::Test {
   bool is_full_ = false;
 };
 
-TEST_F(BakeCapture, a_captured_face_is_right_between_all_keys_within_112_targets) {
-  expect_near(baked(own_tracks(), options()));
-}
-
-TEST_F(BakeCapture, another_animation_of_the_same_targets_is_right_too) {
+TEST_F(BakeCapture, a_captured_face_is_right_between_all_keys_within_112_targets_whichever_target_has_which_track) {
   std::vector<std::size_t> from = own_tracks();
+  expect_near(baked(from, options()));
+  if (!is_full_) return;
   std::mt19937 random(kSeed);
   for (std::size_t i = kTargets; i-- > 1;) std::swap(from[i], from[random() % (i + 1)]);
   expect_near(baked(from, options()));
