@@ -43,7 +43,7 @@ run_ctest() {
 
 # expect_skipped PRESET NAME: no test of run_ctest was skipped but those on real meshes where CHRONORMAL_DATA is not set,
 # and a few that ask for a file system or a terminal of a kind, so that nothing that is missing drops a test unseen.
-real_mesh_tests=43
+real_mesh_tests=44
 expect_skipped() {
   local log=build/$1/$2.log expected=$real_mesh_tests skipped
   [ -z "${CHRONORMAL_DATA-}" ] || expected=0
@@ -57,7 +57,7 @@ expect_skipped() {
 }
 
 # expect_skipped_under_sanitizers PRESET: the same of the shards, whose tests say in XML why they were skipped.
-tests_without_sanitizers=9
+tests_without_sanitizers=10
 expect_skipped_under_sanitizers() {
   local reasons elsewhere
   reasons=$(sed -nE 's/.*<skipped message="([^"]*)".*/\1/p' build/"$1"/sanitized_*.xml)

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/blocks.h"
 #include "workflow/audit/measure.h"
 
 namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 2048;
+
+}  // namespace
 
 AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
   const auto after = std::upper_bound(shading.parts.begin(), shading.parts.end(), vertex,
@@ -26,7 +32,11 @@ BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, Aud
   place_base(positions);
   PartNormals normals;
   part.normals(positions, normals);
-  base_normals_ = std::move(normals.elements);
+  turns_.resize(part.outputs().size());
+  parallel_each(turns_.size(), kBlock, [&](std::size_t i) {
+    const JudgedOutput& output = part.outputs()[i];
+    turns_[i] = ShownTurn(to_double(vector_at(shading.normals, output.vertex)), normals.elements[output.element]);
+  });
 }
 
 bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> positions) {
@@ -41,25 +51,44 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   if (same) return false;
   now_ = std::move(now);
   place_at(now_, positions);
+  if (rule_ == AuditRule::kGltf) {
+    add_up(now_, shown_now_);
+  } else if (rule_ != AuditRule::kFlat) {
+    add_up(start_, shown_start_);
+    add_up(end_, shown_end_);
+  }
   return true;
 }
 
 void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> positions) {
   place_base(positions);
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (weights[k] == 0) continue;
-    for (const auto& [vertex, delta] : moved(k)) positions[vertex] = positions[vertex] + weights[k] * to_double(delta);
-  }
+  std::vector<std::size_t> active;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    if (weights[k] != 0 && !moved(k).empty()) active.push_back(k);
+  parallel_blocks(positions.size(), kBlock, [&](IndexRange range) {
+    const std::size_t end = range.first + range.count;
+    for (const std::size_t k : active) {
+      const std::vector<Delta>& deltas = *moved_[k];
+      auto at = std::lower_bound(deltas.begin(), deltas.end(), range.first,
+                                 [](const Delta& delta, std::size_t vertex) { return delta.first < vertex; });
+      for (; at != deltas.end() && at->first < end; ++at)
+        positions[at->first] = positions[at->first] + weights[k] * to_double(at->second);
+    }
+  });
 }
 
 Vec3f BlendSource::shown(const JudgedOutput& output) const {
-  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(sum(output.vertex, now_))));
-  return blend_stored(rule_, to_double(sum(output.vertex, start_)), to_double(sum(output.vertex, end_)), t_);
+  const std::size_t i = number(output);
+  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(vector_at(shown_now_, i))));
+  return blend_stored(rule_, to_double(vector_at(shown_start_, i)), to_double(vector_at(shown_end_, i)), t_);
 }
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal) const {
-  const Vec3d stored = to_double(vector_at(shading_.normals, output.vertex));
-  return shown_direction(stored, base_normals_[output.element], normal);
+  return turns_[number(output)](unit(normal));
+}
+
+std::size_t BlendSource::number(const JudgedOutput& output) const {
+  return static_cast<std::size_t>(&output - part_.outputs().data());
 }
 
 AuditPlace BlendSource::at(std::size_t segment, double t, const JudgedOutput& output) const {
@@ -99,14 +128,31 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// N + sum w D in float32, target after target, as hosts add.
-Vec3f BlendSource::sum(std::size_t vertex, const std::vector<double>& weights) const {
-  Vec3f normal = vector_at(shading_.normals, vertex);
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (weights[k] == 0 || shading_.normal_deltas[k].empty()) continue;
-    normal = normal + static_cast<float>(weights[k]) * vector_at(shading_.normal_deltas[k], vertex);
-  }
-  return normal;
+// N + sum w D in float32, target after target, as hosts add. Where outputs are one run of vertices, so are their deltas.
+void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) const {
+  const std::span<const JudgedOutput> outputs = part_.outputs();
+  sums.resize(3 * outputs.size());
+  parallel_blocks(outputs.size(), kBlock, [&](IndexRange range) {
+    const std::size_t first = outputs[range.first].vertex;
+    const std::span<float> here = std::span(sums).subspan(3 * range.first, 3 * range.count);
+    const bool is_run = outputs[range.first + range.count - 1].vertex == first + range.count - 1;
+    const auto add = [&](const std::vector<float>& vectors, float weight) {
+      if (is_run) {
+        const float* const from = vectors.data() + 3 * first;
+        for (std::size_t n = 0; n < here.size(); ++n) here[n] += weight * from[n];
+        return;
+      }
+      for (std::size_t i = 0; i < range.count; ++i) {
+        const float* const from = vectors.data() + 3 * std::size_t{outputs[range.first + i].vertex};
+        for (std::size_t c = 0; c < 3; ++c) here[3 * i + c] += weight * from[c];
+      }
+    };
+    std::fill(here.begin(), here.end(), 0.0F);
+    add(shading_.normals, 1);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      if (weights[k] != 0 && !shading_.normal_deltas[k].empty())
+        add(shading_.normal_deltas[k], static_cast<float>(weights[k]));
+  });
 }
 
 std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,

@@ -33,7 +33,7 @@ class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading and part must outlive this.
+  /// shading and part must outlive this. Outputs are those of the part.
   BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
@@ -52,7 +52,8 @@ class BlendSource {
   [[nodiscard]] std::vector<double> weights(std::size_t segment, double t) const;
   void place_base(std::span<Vec3d> positions) const;
   const std::vector<Delta>& moved(std::size_t k);
-  [[nodiscard]] Vec3f sum(std::size_t vertex, const std::vector<double>& weights) const;
+  [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
+  void add_up(const std::vector<double>& weights, std::vector<float>& sums) const;
 
   const GltfShading& shading_;
   const JudgedPart& part_;
@@ -60,10 +61,11 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
-  std::vector<Vec3d> base_normals_;                       // of elements
+  std::vector<ShownTurn> turns_;                          // of outputs
   bool known_ = false;
   double t_ = 0;
   std::vector<double> now_, start_, end_;
+  std::vector<float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
 };
 
 /// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their

@@ -40,7 +40,9 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
     for (const std::uint32_t v : topology.face(f)) vertex[v] = 0;
   vertices_ = number_used(vertex);
 
-  constexpr std::size_t kSmallFace = 4;
+  // Their normals are kept where elements would take long to compute them again, or they take little memory.
+  constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
+  keeps_faces_ = keeps_faces_ || faces.size() <= kFewFaces;
   std::size_t face_corners = 0, element_corners = 0;
   for (const std::uint32_t f : faces) {
     face_corners += topology.face(f).size();

@@ -77,7 +77,9 @@ template <class Source>
   };
   source.forget();
   for (std::size_t s = 0; s < segments; ++s) {
-    const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5), end = normals_at(s, 1);
+    const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
+    placed.place(source, s, 1);
+    const std::vector<Vec3d>& end = placed.normals.elements;
     parallel_each(largest.size(), kRange, [&](std::size_t e) {
       const Vec3d m = 2.0 * middle[e] - 0.5 * (start[e] + end[e]);
       largest[e] = std::max({largest[e], length(start[e]), length(m), length(end[e])});

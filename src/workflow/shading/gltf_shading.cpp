@@ -368,6 +368,14 @@ Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d
   return dot(from, to) < 0 ? turned(-from, to, -now) : turned(from, to, now);
 }
 
+ShownTurn::ShownTurn(const Vec3d& stored, const Vec3d& base_normal) noexcept {
+  const Vec3d from = unit(base_normal), to = unit(stored);
+  if (from == Vec3d{} || to == Vec3d{}) return;
+  const double along = dot(from, to), side = std::copysign(1.0, along);
+  axis_ = side * cross(from, to);
+  cosine_ = along;
+}
+
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept {
   assert(weights.size() == shading.set.targets.size());
   if (!shading.mark) return;

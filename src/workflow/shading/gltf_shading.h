@@ -15,6 +15,7 @@
 #ifndef CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_GLTF_SHADING_H_
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -87,6 +88,23 @@ struct GltfShading {
 /// turned. Where N
 /// looks to the other side than n(0), both are those of the other side: -n(0) and -n(w).
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
+
+/// The same for one vertex and many normals: a linear map, which keeps their lengths.
+class ShownTurn {
+ public:
+  ShownTurn() = default;
+  ShownTurn(const Vec3d& stored, const Vec3d& base_normal) noexcept;
+
+  [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {
+    const double cosine = std::fabs(cosine_);
+    const Vec3d turned = cosine * normal + cross(axis_, normal) + (dot(axis_, normal) / (1 + cosine)) * axis_;
+    return std::signbit(cosine_) ? -turned : turned;
+  }
+
+ private:
+  Vec3d axis_;         // as long as the sine of the angle
+  double cosine_ = 1;  // with a sign where both are those of the other side
+};
 
 /// The weight of every target where those of the mesh's own targets are given: extra ones get theirs.
 /// weights must have one for each target; those of extra ones are written

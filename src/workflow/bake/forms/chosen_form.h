@@ -23,6 +23,8 @@
 
 namespace chronormal::inline internal {
 
+struct OwnForm;  // smallest_form.h
+
 class ChosenForm {
  public:
   ExtraDrivers drivers;             ///< of extra targets
@@ -50,8 +52,8 @@ class ChosenForm {
   friend ChosenForm choose_endpoint(const DeltaSource&, const MeshWeights&, const BakeOptions&);
   friend ChosenForm keep_stored(const DeltaSource&);
   friend class WorthwhileForms;
-  friend ChosenForm choose_low_rank(const DeltaSource&, const MeshWeights&, const BakeOptions&, FormLengths,
-                                    std::size_t);
+  friend ChosenForm choose_low_rank(const DeltaSource&, const RightNormals&, const MeshWeights&, const BakeOptions&,
+                                    FormLengths, const OwnForm&, std::size_t);
 
   // The deltas of the mesh's own targets in a form other than the stored one.
   [[nodiscard]] const std::vector<VertexVectors>& own_of(std::uint8_t form) const;

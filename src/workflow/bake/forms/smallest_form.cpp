@@ -184,6 +184,14 @@ class Choice {
     if (nearest) take(std::move(of_nearest), std::move(*nearest));
   }
 
+  [[nodiscard]] const RightNormals& rights() const noexcept { return rights_; }
+  // Whether no choice of each vertex between what is stored and these deltas is near enough.
+  [[nodiscard]] bool is_far(const OwnForm& own) const {
+    const std::array<VertexColumns, 2> forms = {by_vertex(columns_of(own.stored), own.vertices),
+                                                by_vertex(columns_of(own.deltas), own.vertices)};
+    const PoseList poses = played_poses(weights_, {}, shading_.set.targets.size(), kMostPlayed);
+    return least_worst(rights_, own.vertices, shading_.element_of_vertex, forms, poses) > tolerance_;
+  }
   [[nodiscard]] std::size_t most_bytes() const {
     return options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
   }
@@ -254,29 +262,37 @@ class Choice {
 
 }  // namespace
 
-ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                           FormLengths lengths, std::size_t most_extras) {
+OwnForm own_form(const DeltaSource& source, const RightNormals& rights, const BakeOptions& options,
+                 FormLengths lengths) {
+  OwnForm own;
+  own.stored = stored_deltas(source.shading);
+  own.vertices = judged_vertices(source, own.stored);
+  double unused = 0;  // the judge measures what is left
+  own.deltas = lengths == FormLengths::kFree ? endpoint_deltas(source, unused)
+                                             : end_point_form(source.shading, source.terms, rights, lengths).own;
+  if (!options.animations_only)
+    make_harmless_alone(source, own.stored, lengths, options.tolerance.value_or(kHarmlessTolerance), own.deltas);
+  return own;
+}
+
+ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
+                           const BakeOptions& options, FormLengths lengths, const OwnForm& own,
+                           std::size_t most_extras) {
   const GltfShading& shading = source.shading;
-  const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
   const std::span<const Host> hosts = options.hosts;
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
 
   ChosenForm result;
-  const std::vector<VertexVectors> stored = stored_deltas(shading);
-  result.vertices_ = judged_vertices(source, stored);
+  result.vertices_ = own.vertices;
   const std::vector<std::uint32_t>& vertices = result.vertices_;
-  result.own_of_form_.push_back(lengths == FormLengths::kFree
-                                    ? endpoint_deltas(source, result.fit_error)
-                                    : end_point_form(shading, source.terms, rights, lengths).own);
-  result.fit_error = 0;  // the judge measures what is left
-  if (!options.animations_only) make_harmless_alone(source, stored, lengths, tolerance, result.own_of_form_[0]);
-  std::vector<VertexColumns> forms = {by_vertex(columns_of(stored), vertices),
-                                      by_vertex(columns_of(result.own_of_form_[0]), vertices)};
+  result.own_of_form_.push_back(own.deltas);
+  std::vector<VertexColumns> forms = {by_vertex(columns_of(own.stored), vertices),
+                                      by_vertex(columns_of(own.deltas), vertices)};
   ExtraDrivers& drivers = result.drivers;
   if (most_extras > 0 && source.plan.is_driven) {
     const bool refits_own = options.animations_only && lengths == FormLengths::kFree;
     const std::size_t for_each = lengths == FormLengths::kFree ? 1 : 2;
-    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, result.own_of_form_[0],
+    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, own.deltas,
                                      {most_extras / for_each, tolerance, refits_own});
     const std::size_t extras = form.extras.size();
     std::vector<Share> shares = shares_of(rights, std::move(form.extras), lengths);
@@ -306,7 +322,7 @@ ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights
   const std::vector<bool> is_new = new_bases(source);
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
                         std::vector<bool>(hosts.size(), true), tolerance);
-  const auto numbers = numbers_of_targets(source, stored, vertices);
+  const auto numbers = numbers_of_targets(source, own.stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, drivers, hosts, numbers, sampling);
   };
@@ -331,19 +347,30 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   Choice choice(source, weights, options);
   const FormLengths lengths = lengths_for(options.hosts);
   const std::size_t most = most_extras(options, source.shading.set.targets.size());
+  const RightNormals& rights = choice.rights();
   const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
   if (!has_new_base) choice.look_at("as it is", keep_stored(source));
   if (choice.is_found_below(0)) return choice.take_best();
-  // All other forms with extra targets that nothing but animations drive have the deltas of all targets.
-  const std::size_t of_deltas = choice.look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
+  const OwnForm own = own_form(source, rights, options, lengths);
+  const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
+  // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no choice
+  // between these and what is stored is near enough, they are looked at when nothing else is.
+  const bool waits = has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree &&
+                     choice.is_far(own);
+  std::optional<std::size_t> of_deltas;
+  const auto look_at_own = [&] {
+    of_deltas = choice.look_at("own deltas", choose_low_rank(source, rights, weights, options, lengths, own, 0));
+  };
+  if (!waits) look_at_own();
   bool have_products = false;
   choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
     have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
   });
-  if (!choice.is_found_below(of_deltas) && source.plan.is_driven && source.plan.products_fit && most > 0) {
+  if (!of_deltas && choice.is_found()) look_at_own();
+  if (has_extras && !(of_deltas && choice.is_found_below(*of_deltas))) {
     std::size_t extras = most;
     for (int tries = 0; tries < kTries && extras > 0; ++tries) {
-      ChosenForm form = choose_low_rank(source, weights, options, lengths, extras);
+      ChosenForm form = choose_low_rank(source, rights, weights, options, lengths, own, extras);
       const std::size_t count = form.drivers.size();
       const std::size_t bytes = choice.look_at("low rank", std::move(form));
       if (bytes <= choice.most_bytes() || count == 0) break;
@@ -351,6 +378,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
       extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
     }
   }
+  if (!of_deltas && !choice.is_within()) look_at_own();
   // Where nothing is near enough, nothing may be farther off than harmless, but where that has too many products.
   if (!choice.is_found() && !options.animations_only && (have_products || !source.plan.is_driven))
     choice.look_at("harmless", choose_harmless(source, weights, options));

@@ -11,16 +11,30 @@
 #define CHRONORMAL_WORKFLOW_BAKE_FORMS_SMALLEST_FORM_H_
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "workflow/bake/forms/chosen_form.h"
 
 namespace chronormal::inline internal {
 
-/// Chooses among what the file stores, deltas of the mesh's own targets of these lengths, and these with extra targets
-/// of low rank (low_rank_form.h); no more than so many targets in all that hosts add up. Without extra targets the
-/// deltas of free length are the best single ones.
-[[nodiscard]] ChosenForm choose_low_rank(const DeltaSource& source, const MeshWeights& weights,
-                                         const BakeOptions& options, FormLengths lengths, std::size_t most_extras);
+/// What forms with extra targets of low rank begin with.
+struct OwnForm {
+  std::vector<VertexVectors> stored;    ///< the deltas of the file
+  std::vector<VertexVectors> deltas;    ///< new ones of the mesh's own targets
+  std::vector<std::uint32_t> vertices;  ///< that are judged
+};
+
+/// Computes deltas of these lengths: right at the end of each target, or where they may have any length, the best single
+/// ones. Unless nothing but animations is ever played, they do no harm to targets alone.
+[[nodiscard]] OwnForm own_form(const DeltaSource& source, const RightNormals& rights, const BakeOptions& options,
+                               FormLengths lengths);
+
+/// Chooses among what the file stores, the new deltas of the mesh's own targets, and these with extra targets of low rank
+/// (low_rank_form.h); no more than so many extra ones in all that hosts add up.
+[[nodiscard]] ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights,
+                                         const MeshWeights& weights, const BakeOptions& options, FormLengths lengths,
+                                         const OwnForm& own, std::size_t most_extras);
 
 /// Chooses the smallest of all forms that are within the tolerance; where there is none, the nearest one within the
 /// limits of options.

@@ -164,13 +164,18 @@ struct GatheredPairs {
 
 // Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
 // those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where 99.9 %
-// are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below.
+// are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below. Where there are
+// now no more of these than before, a vertex that is nearer in the mean may be farther off at worst, as long as it is not
+// the worst of all.
 void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
   const ShownErrors then = before.spread().errors(), now = after.spread().errors();
   const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.most, tolerance);
   for (std::size_t n = 0; n < noted.size(); ++n) {
-    const bool grew = after.worst[n] > before.worst[n] && static_cast<double>(after.worst[n]) > high;
-    if (grew || (now.mean > then.mean && after.sum[n] > before.sum[n])) noted[n] = 1;
+    const bool is_farther = after.sum[n] > before.sum[n];
+    const auto worst = static_cast<double>(after.worst[n]);
+    const bool grew = after.worst[n] > before.worst[n] && worst > high;
+    const bool has_room = now.most <= then.most && !is_farther && worst <= then.worst;
+    if ((grew && !has_room) || (now.mean > then.mean && is_farther)) noted[n] = 1;
   }
 }
 
@@ -363,24 +368,29 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
     Spread before, after;
   };
   std::array<std::vector<Errors>, kPoseKinds> of_hosts;
-  for (int round = 0; round < kMostRounds; ++round) {
-    of_hosts.fill(std::vector<Errors>(hosts_.size()));
-    std::vector<char> is_harmful(vertices_.size(), 0), makes_worse(vertices_.size(), 0);
+  of_hosts.fill(std::vector<Errors>(hosts_.size()));
+  // Measures poses of the file, or all others, and returns to the stored form what does harm there.
+  const auto measure = [&](bool of_file) {
+    std::vector<char> noted(vertices_.size(), 0);
     const std::array<VertexColumns, 2> both = {forms[0], chosen_form(forms, choice)};
+    for (std::size_t kind = 0; kind < kPoseKinds; ++kind)
+      if ((static_cast<PoseSet::Kind>(kind) == PoseSet::Kind::kFile) == of_file)
+        of_hosts[kind].assign(hosts_.size(), Errors());
     for (const PoseSet& set : sets) {
+      if ((set.kind == PoseSet::Kind::kFile) != of_file) continue;
       const std::vector<Kind> kinds = kinds_of(set);
       GatheredPairs gathered(kinds.size(), vertices_.size());
       compare(both, set, kinds, [&](std::size_t n, std::size_t kind, std::span<const float> errors) {
         if (is_new_[vertices_[n]]) return;
         gathered.add(n, kind, errors);
         const std::span<const float> then = errors.first(errors.size() / 2), now = errors.last(errors.size() / 2);
-        if (set.kind != PoseSet::Kind::kFile || !kinds[kind].is_binding) return;
+        if (!of_file || !kinds[kind].is_binding) return;
         for (std::size_t p = 0; p < then.size(); ++p)
-          if (is_harmed(then[p], now[p])) is_harmful[n] = 1;
+          if (is_harmed(then[p], now[p])) noted[n] = 1;
       });
       for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-        if (set.kind != PoseSet::Kind::kFile && kinds[kind].is_binding)
-          note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, makes_worse);
+        if (!of_file && kinds[kind].is_binding)
+          note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, noted);
         const Spread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
         for (const std::size_t h : set.hosts) {
           if (!shows_alike(judged_as(hosts_[h]), kinds[kind].host)) continue;
@@ -390,10 +400,13 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
         }
       }
     }
-    // What is judged pose by pose comes first: it may be all that made the mixed poses worse.
-    const bool any_harmful = std::find(is_harmful.begin(), is_harmful.end(), 1) != is_harmful.end();
-    if (!return_to_stored(any_harmful ? is_harmful : makes_worse, choice)) break;
-  }
+    return return_to_stored(noted, choice);
+  };
+  // What is judged pose by pose comes first: it may be all that made the mixed poses worse. What is stored does no harm,
+  // so that one look at those of the file is enough, but for the figures.
+  bool any_returned = measure(true);
+  for (int round = 0; round < kMostRounds && measure(false); ++round) any_returned = true;
+  if (any_returned) (void)measure(true);
   // What a compressor rounds is measured too, at some of the poses of the file.
   const std::array<VertexColumns, 2> both = {forms[0], chosen_form(forms, choice)};
   std::vector<Errors>& of_file = of_hosts[static_cast<std::size_t>(PoseSet::Kind::kFile)];

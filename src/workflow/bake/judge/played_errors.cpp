@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256, kBetweenKeys = 3, kSteps = 8;
+constexpr std::size_t kBlock = 256, kPosesAtOnce = 8, kBetweenKeys = 3, kSteps = 8;
 constexpr double kPhase = 0.61, kLeastLength = 1e-3;
 // Errors are counted in bins of a tenth of themselves.
 constexpr std::size_t kBins = 400;
@@ -22,6 +22,41 @@ struct Found {
   double sum = 0, worst = 0;
   std::array<std::uint32_t, kBins> bins{};
 };
+
+// Some poses at once, and the right normals there.
+struct Batch {
+  const RightNormals& rights;
+  std::span<const std::vector<double>> poses;
+  std::vector<std::vector<Vec3d>> normals;  // of elements
+
+  // Calls visit(error) for the poses in which the normal of a vertex is judged.
+  template <class Visit>
+  void visit(std::uint32_t vertex, std::uint32_t element, std::span<const VertexColumns::Entry> entries,
+             const Visit& visit) const {
+    std::array<Vec3d, kPosesAtOnce> shown;
+    shown.fill(rights.stored(vertex));
+    for (const auto& [column, delta] : entries)
+      for (std::size_t p = 0; p < poses.size(); ++p) shown[p] = shown[p] + poses[p][column] * to_double(delta);
+    for (std::size_t p = 0; p < poses.size(); ++p) {
+      const Vec3d right = rights.of_vertex(vertex, normals[p][element]);
+      if (length(right) > kLeastLength)
+        visit(max_abs(shown[p]) > 0 ? kDegreesPerRadian * angle_between(shown[p], right) : 180);
+    }
+  }
+};
+
+// Calls body(batch) for all poses, one batch after the other.
+template <class Body>
+void for_batches(const RightNormals& rights, const PoseList& poses, const Body& body) {
+  for (std::size_t first = 0; first < poses.size(); first += kPosesAtOnce) {
+    const std::size_t count = std::min(kPosesAtOnce, poses.size() - first);
+    Batch batch{rights, std::span(poses).subspan(first, count), std::vector<std::vector<Vec3d>>(count)};
+    parallel_for(count, [&](std::size_t p) {
+      batch.normals[p] = rights.of_elements(std::span(batch.poses[p]).first(rights.targets()));
+    });
+    body(batch);
+  }
+}
 
 }  // namespace
 
@@ -51,36 +86,50 @@ PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, s
 ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                           std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
                           const PoseList& poses) {
+  const auto add = [](Found& to, const Found& each) {
+    to.count += each.count;
+    to.sum += each.sum;
+    to.worst = std::fmax(to.worst, each.worst);
+    for (std::size_t b = 0; b < kBins; ++b) to.bins[b] += each.bins[b];
+  };
   Found all;
-  for (const std::vector<double>& pose : poses) {
-    const std::vector<Vec3d> normals = rights.of_elements(std::span(pose).first(rights.targets()));
+  for_batches(rights, poses, [&](const Batch& batch) {
     const auto look = [&](std::size_t n, Found& found) {
-      const Vec3d right = rights.of_vertex(vertices[n], normals[element_of_vertex[vertices[n]]]);
-      if (!(length(right) > kLeastLength)) return;
-      Vec3d shown = rights.stored(vertices[n]);
-      for (const auto& [column, delta] : form.of(n)) shown = shown + pose[column] * to_double(delta);
-      const double error = max_abs(shown) > 0 ? kDegreesPerRadian * angle_between(shown, right) : 180;
-      ++found.count;
-      found.sum += error;
-      found.worst = std::fmax(found.worst, error);
-      const double bin = kBinsPerUnit * portable::log(std::fmax(error, kLeast) / kLeast);
-      ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
+      batch.visit(vertices[n], element_of_vertex[vertices[n]], form.of(n), [&](double error) {
+        ++found.count;
+        found.sum += error;
+        found.worst = std::fmax(found.worst, error);
+        const double bin = kBinsPerUnit * portable::log(std::fmax(error, kLeast) / kLeast);
+        ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
+      });
     };
-    const Found of_pose = parallel_fold<Found>(vertices.size(), kBlock, look, [](Found& to, const Found& each) {
-      to.count += each.count;
-      to.sum += each.sum;
-      to.worst = std::fmax(to.worst, each.worst);
-      for (std::size_t b = 0; b < kBins; ++b) to.bins[b] += each.bins[b];
-    });
-    all.count += of_pose.count;
-    all.sum += of_pose.sum;
-    all.worst = std::fmax(all.worst, of_pose.worst);
-    for (std::size_t b = 0; b < kBins; ++b) all.bins[b] += of_pose.bins[b];
-  }
+    add(all, parallel_fold<Found>(vertices.size(), kBlock, look, add));
+  });
   ShownErrors result{all.count, all.count > 0 ? all.sum / static_cast<double>(all.count) : 0, 0, all.worst};
   std::size_t beyond = all.count / 1000, b = kBins - 1;
   while (b > 0 && all.bins[b] <= beyond) beyond -= all.bins[b--];
   if (b > 0) result.most = std::fmin(kLeast * portable::exp(static_cast<double>(b + 1) / kBinsPerUnit), all.worst);
+  return result;
+}
+
+double least_worst(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                   std::span<const std::uint32_t> element_of_vertex, std::span<const VertexColumns> forms,
+                   const PoseList& poses) {
+  std::vector<double> worst(vertices.size() * forms.size(), 0.0);
+  for_batches(rights, poses, [&](const Batch& batch) {
+    parallel_each(vertices.size(), kBlock, [&](std::size_t n) {
+      for (std::size_t f = 0; f < forms.size(); ++f) {
+        double& most = worst[n * forms.size() + f];
+        batch.visit(vertices[n], element_of_vertex[vertices[n]], forms[f].of(n),
+                    [&](double error) { most = std::fmax(most, error); });
+      }
+    });
+  });
+  double result = 0;
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    const auto of_vertex = worst.begin() + static_cast<std::ptrdiff_t>(n * forms.size());
+    result = std::fmax(result, *std::min_element(of_vertex, of_vertex + static_cast<std::ptrdiff_t>(forms.size())));
+  }
   return result;
 }
 

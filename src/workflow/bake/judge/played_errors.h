@@ -26,6 +26,12 @@ namespace chronormal::inline internal {
                                         std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
                                         const PoseList& poses);
 
+/// What no choice of one of these forms for each vertex can be below: the largest of the least errors at worst, over the
+/// same pairs.
+[[nodiscard]] double least_worst(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                                 std::span<const std::uint32_t> element_of_vertex, std::span<const VertexColumns> forms,
+                                 const PoseList& poses);
+
 }  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_

@@ -22,11 +22,16 @@ RightNormals::RightNormals(const GltfShading& shading, const NormalTerms& terms,
       largest_(largest),
       base_(shading.groups.size()),
       base_lengths_(base_.size()),
-      all_elements_(base_.size()) {
+      all_elements_(base_.size()),
+      turns_(shading.element_of_vertex.size()) {
   parallel_each(base_.size(), kBlock, [&](std::size_t e) {
     base_[e] = terms_.base_of(static_cast<std::uint32_t>(e));
     base_lengths_[e] = length(base_[e]);
     all_elements_[e] = static_cast<std::uint32_t>(e);
+  });
+  parallel_each(turns_.size(), kBlock, [&](std::size_t v) {
+    const std::uint32_t element = shading_.element_of_vertex[v];
+    if (element != GltfShading::kNoElement) turns_[v] = ShownTurn(stored(v), base_[element]);
   });
 }
 
@@ -39,14 +44,6 @@ RightNormals::Places::Places(const GltfShading& shading, std::span<const std::ui
     elements.push_back(e);
   }
   for (const std::uint32_t v : vertices) of_vertices.push_back(place[shading.element_of_vertex[v]]);
-}
-
-RightNormals::Turn::Turn(const RightNormals& rights, std::size_t vertex) noexcept {
-  const Vec3d stored = rights.stored(vertex);
-  const Vec3d base = rights.base_[rights.shading_.element_of_vertex[vertex]];
-  x_ = shown_direction(stored, base, {1, 0, 0});
-  y_ = shown_direction(stored, base, {0, 1, 0});
-  z_ = shown_direction(stored, base, {0, 0, 1});
 }
 
 Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
@@ -79,9 +76,7 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
 }
 
 Vec3d RightNormals::of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept {
-  if (of_element == Vec3d{}) return {};
-  const std::uint32_t element = shading_.element_of_vertex[vertex];
-  return length(of_element) * shown_direction(stored(vertex), base_[element], of_element);
+  return turns_[vertex](of_element);
 }
 
 }  // namespace chronormal::inline internal

@@ -56,7 +56,7 @@ class RightNormals {
       parallel_blocks(vertices.size(), kVertices, [&](IndexRange range) {
         std::vector<Vec3f> right(count);
         for (std::size_t n = range.first; n < range.first + range.count; ++n) {
-          const Turn turn(*this, vertices[n]);
+          const ShownTurn& turn = turns_[vertices[n]];
           const Vec3d* const of_element = of_elements_in_poses.data() + places.of_vertices[n] * count;
           for (std::size_t p = 0; p < count; ++p) right[p] = to_float(turn(unit(of_element[p])));
           visit(n, first, std::span<const Vec3f>(right));
@@ -72,15 +72,6 @@ class RightNormals {
     std::vector<std::uint32_t> elements;
     std::vector<std::size_t> of_vertices;
   };
-  // What takes the direction that an element has to that which a vertex should show: a linear map.
-  class Turn {
-   public:
-    Turn(const RightNormals& rights, std::size_t vertex) noexcept;
-    Vec3d operator()(const Vec3d& v) const noexcept { return v.x * x_ + v.y * y_ + v.z * z_; }
-
-   private:
-    Vec3d x_, y_, z_;
-  };
   [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept;
 
   const GltfShading& shading_;
@@ -90,6 +81,7 @@ class RightNormals {
   std::vector<Vec3d> base_;           // n(0) of each element: many ask for it
   std::vector<double> base_lengths_;  // and how long it is
   std::vector<std::uint32_t> all_elements_;
+  std::vector<ShownTurn> turns_;  // of each vertex
 };
 
 }  // namespace chronormal::inline internal

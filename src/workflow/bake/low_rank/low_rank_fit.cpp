@@ -18,9 +18,10 @@ constexpr std::size_t kParts = 32;          // sums over points, each in the mem
 constexpr std::size_t kColumnsAtOnce = 64;  // of a symmetric matrix
 constexpr std::size_t kPadding = 16;
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth.
+// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it lacks
+// at most: what is off by a right angle can be off by no more, and must not drown the others.
 constexpr double kShortQuantile = 0.02;
-constexpr float kShortest = 1e-3F;
+constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kRounds = 3;
 // Of the tolerance: what points beyond it count more for, and what they are fitted by themselves from.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
@@ -50,26 +51,35 @@ double quantile(std::vector<float>& errors, double part) {
 
 }  // namespace
 
-LowRankFit::LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places)
-    : missing_(missing), places_(places), importance_(missing.points(), 1.0F), errors_(missing.points(), 0.0F) {
+LowRankFit::LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places,
+                       std::span<const PlaceOfRows> unseen)
+    : missing_(missing),
+      places_(places),
+      unseen_(unseen),
+      importance_(missing.points(), 1.0F),
+      errors_(missing.points(), 0.0F) {
   set_first_importance();
 }
 
 void LowRankFit::set_first_importance() {
   parallel_blocks(missing_.points(), kBlock, [&](IndexRange points) {
     std::vector<float> lengths;
+    const std::size_t stride = missing_.stride();
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       lengths.clear();
+      float most = kShortest;
       for (std::size_t r = 0; r < missing_.rows(); ++r) {
-        float square = 0;
+        float square = 0, of_lack = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-          const float right = shown[c * missing_.stride() + r] + lack[c * missing_.stride() + r];
+          const float right = shown[c * stride + r] + lack[c * stride + r];
           square += right * right;
+          of_lack += lack[c * stride + r] * lack[c * stride + r];
         }
         if (square > 0) lengths.push_back(std::sqrt(square));
+        most = std::fmax(most, kPartOfLack * std::sqrt(of_lack));
       }
-      importance_[p] = 1 / std::fmax(static_cast<float>(quantile(lengths, kShortQuantile)), kShortest);
+      importance_[p] = 1 / std::fmax(static_cast<float>(quantile(lengths, kShortQuantile)), most);
     }
   });
 }
@@ -161,11 +171,11 @@ std::vector<double> LowRankFit::errors_with(std::span<const std::size_t> counts)
   return result;
 }
 
-LowRankFit::Basis LowRankFit::basis_of(std::span<const float> own_weights) const {
+LowRankFit::Basis LowRankFit::basis_of(std::span<const float> own_weights, std::span<const PlaceOfRows> places) const {
   Basis basis;
   basis.columns = own_targets_ + extras_;
   basis.padded = padded_to(basis.columns);
-  basis.instants = missing_.rows() + places_.size();
+  basis.instants = missing_.rows() + places.size();
   basis.stride = padded_to(basis.instants);
   basis.by_instant.assign(basis.instants * basis.padded, 0.0F);
   basis.by_column.assign(basis.columns * basis.stride, 0.0F);
@@ -174,15 +184,15 @@ LowRankFit::Basis LowRankFit::basis_of(std::span<const float> own_weights) const
     for (std::size_t r = 0; r < of_rows.size(); ++r)
       of_rows[r] = c < own_targets_ ? own_weights[r * own_targets_ + c] : weights_[r * padded_ + c - own_targets_];
     for (std::size_t n = 0; n < basis.instants; ++n) {
-      const float value = n < of_rows.size() ? of_rows[n] : at_place(places_[n - of_rows.size()], of_rows.data());
+      const float value = n < of_rows.size() ? of_rows[n] : at_place(places[n - of_rows.size()], of_rows.data());
       basis.by_instant[n * basis.padded + c] = basis.by_column[c * basis.stride + n] = value;
     }
   }
   return basis;
 }
 
-LowRankFit::Course LowRankFit::course_of(std::size_t point) const {
-  const std::size_t rows = missing_.rows(), stride = missing_.stride(), instants = rows + places_.size();
+LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const PlaceOfRows> places) const {
+  const std::size_t rows = missing_.rows(), stride = missing_.stride(), instants = rows + places.size();
   const std::size_t plane = padded_to(instants);
   Course course{std::vector<float>(3 * plane), std::vector<float>(3 * plane), std::vector<char>(instants, 0)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -193,8 +203,8 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point) const {
       to_right[r] = shown[r] + lack[r];
     }
     for (std::size_t n = rows; n < instants; ++n) {
-      to_shown[n] = at_place(places_[n - rows], to_shown);
-      to_right[n] = at_place(places_[n - rows], to_right);
+      to_shown[n] = at_place(places[n - rows], to_shown);
+      to_right[n] = at_place(places[n - rows], to_right);
     }
   }
   for (std::size_t r = 0; r < rows; ++r) {
@@ -202,21 +212,31 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point) const {
     course.is_known[r] = static_cast<char>(dot(right, right) > kLeastLength * kLeastLength);
   }
   for (std::size_t n = rows; n < instants; ++n) {
-    const auto& nodes = places_[n - rows].nodes;
+    const auto& nodes = places[n - rows].nodes;
     course.is_known[n] = static_cast<char>(course.is_known[nodes[0]] != 0 && course.is_known[nodes[1]] != 0 &&
                                            course.is_known[nodes[2]] != 0);
   }
   return course;
 }
 
-// The largest error of each point at rows and places.
-void LowRankFit::measure() {
-  const Basis basis = basis_of({});
+// The largest error of each point at rows, places and unseen ones. own_weights go with the corrections of own deltas,
+// where there are any.
+void LowRankFit::measure(std::span<const float> own_weights) {
+  std::vector<PlaceOfRows> places(places_.begin(), places_.end());
+  places.insert(places.end(), unseen_.begin(), unseen_.end());
+  const Basis basis = basis_of(own_weights, places);
   parallel_blocks(missing_.points(), kBlock, [&](IndexRange points) {
+    std::vector<float> x(3 * basis.padded);
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
-      Course course = course_of(p);
-      const StridedMatrix a{deltas_.data() + 3 * padded_ * p, extras_, 3, 1, padded_};
-      const StridedMatrix b{basis.by_column.data(), extras_, basis.stride, basis.stride, 1};
+      Course course = course_of(p, places);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < own_targets_; ++i)
+          x[axis * basis.padded + i] = own_deltas_[(3 * p + axis) * own_targets_ + i];
+        for (std::size_t k = 0; k < extras_; ++k)
+          x[axis * basis.padded + own_targets_ + k] = deltas(p)[axis * padded_ + k];
+      }
+      const StridedMatrix a{x.data(), basis.columns, 3, 1, basis.padded};
+      const StridedMatrix b{basis.by_column.data(), basis.columns, basis.stride, basis.stride, 1};
       add_products(a, b, course.shown.data(), basis.stride);
       errors_[p] = 0;
       const auto vector_at = [&](const std::vector<float>& planes, std::size_t n) {
@@ -233,7 +253,7 @@ void LowRankFit::measure() {
 // with the error and a ridge towards the singular vectors. The best of all rounds stays.
 void LowRankFit::refit(std::size_t point, const Basis& basis, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
-  const Course course = course_of(point);
+  const Course course = course_of(point, places_);
   std::vector<float> x(3 * basis.padded, 0.0F);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t k = 0; k < extras_; ++k)
@@ -311,7 +331,6 @@ void LowRankFit::refit(std::size_t point, const Basis& basis, double tolerance) 
     for (std::size_t i = 0; i < size; ++i)
       x[i / columns * basis.padded + i % columns] = static_cast<float>(unknown[i].x);
   }
-  errors_[point] = std::fmin(errors_[point], least);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < extras_; ++k)
       deltas_[(3 * point + axis) * padded_ + k] = best[axis * basis.padded + own_targets_ + k];
@@ -327,7 +346,7 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   for (int round = 0; round < kRounds; ++round) {
     take_weights(leading_vectors(gram(), missing_.rows(), extras), extras, extras);
     project();
-    measure();
+    measure({});
     if (round + 1 == kRounds) break;
     for (std::size_t p = 0; p < errors_.size(); ++p) {
       const float beyond = errors_[p] / static_cast<float>(kPartThatCounts * tolerance);
@@ -340,11 +359,12 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   for (std::size_t p = 0; p < errors_.size(); ++p)
     if (static_cast<double>(errors_[p]) > kPartToRefit * tolerance) bad.push_back(p);
   std::stable_sort(bad.begin(), bad.end(), [&](std::size_t a, std::size_t b) { return errors_[a] > errors_[b]; });
-  const Basis basis = basis_of(own_weights);
+  const Basis basis = basis_of(own_weights, places_);
   const double size = 3 * static_cast<double>(basis.columns);
   const auto most = static_cast<std::size_t>(std::fmin(kMostRefitted, kRefitWork / (size * size * size)));
   if (bad.size() > most) bad.resize(most);
   parallel_each(bad.size(), 1, [&](std::size_t n) { refit(bad[n], basis, tolerance); });
+  measure(own_weights);
 }
 
 double LowRankFit::worst() const {

@@ -21,8 +21,8 @@ using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {
  public:
-  /// Errors are measured at all rows and at these places. Both arguments must outlive this.
-  LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places);
+  /// Fits are made to all rows and these places, and judged at unseen ones too. All arguments must outlive this.
+  LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
   /// What is left with so many extra targets, of singular vectors alone: the error in degrees that 99.9 % of pairs of
   /// some points and rows are within, for each count.
@@ -46,7 +46,7 @@ class LowRankFit {
   }
   /// How much a point counts.
   [[nodiscard]] float importance(std::size_t point) const { return importance_[point]; }
-  /// The largest error of all points, degrees.
+  /// The largest error of all points, at unseen places too, degrees.
   [[nodiscard]] double worst() const;
 
  private:
@@ -65,13 +65,13 @@ class LowRankFit {
   [[nodiscard]] std::vector<double> gram() const;
   void take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras);
   void project();
-  void measure();
-  [[nodiscard]] Basis basis_of(std::span<const float> own_weights) const;
-  [[nodiscard]] Course course_of(std::size_t point) const;
+  void measure(std::span<const float> own_weights);
+  [[nodiscard]] Basis basis_of(std::span<const float> own_weights, std::span<const PlaceOfRows> places) const;
+  [[nodiscard]] Course course_of(std::size_t point, std::span<const PlaceOfRows> places) const;
   void refit(std::size_t point, const Basis& basis, double tolerance);
 
   const MissingNormals& missing_;
-  std::span<const PlaceOfRows> places_;
+  std::span<const PlaceOfRows> places_, unseen_;
   std::size_t extras_ = 0, padded_ = 0, own_targets_ = 0;
   std::vector<float> importance_, errors_;  // of each point
   std::vector<float> weights_, deltas_, own_deltas_;

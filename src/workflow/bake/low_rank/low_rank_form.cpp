@@ -26,8 +26,11 @@ constexpr std::size_t kRowsAtOnce = 64, kBlock = 16;
 // squares should then leave at worst.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// What more extra targets do not make smaller than this is not made smaller by more.
+// What so many times as many extra targets do not make smaller than this is not made smaller by more.
 constexpr double kNoGain = 1.05;
+constexpr std::size_t kManyMore = 2;
+// Parts of a gap at which a fit is judged, and not made.
+constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
 constexpr int kTries = 4;
 // Of the tolerance: how far the lack of one entry of a delta may turn a normal.
 constexpr double kPartOfEntry = 1.0 / 2000;
@@ -39,6 +42,7 @@ constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12,
 struct Rows {
   std::vector<std::size_t> instants;  // ascending
   std::vector<PlaceOfRows> places;    // half-way between neighbouring nodes of a piece
+  std::vector<PlaceOfRows> unseen;    // others, which nothing is fitted to
 };
 
 Rows choose_rows(const FileInstants& all, std::size_t most) {
@@ -63,6 +67,8 @@ Rows choose_rows(const FileInstants& all, std::size_t most) {
                                              *row_of[first + node + 2]};
       rows.places.push_back({of, {0.375, 0.75, -0.125}});
       rows.places.push_back({of, {-0.125, 0.75, 0.375}});
+      for (const double part : kUnseen)
+        rows.unseen.push_back({of, {(1 - part) * (1 - 2 * part), 4 * part * (1 - part), part * (2 * part - 1)}});
     }
   }
   const std::size_t standing = all.first.back();
@@ -137,20 +143,20 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   counts.push_back(std::min(limits.most_extras, kCounts.back()));
   const std::vector<double> errors = fit.errors_with(counts);
   const double least = kNoGain * *std::min_element(errors.begin(), errors.end());
-  const auto is_near = [&](double error) { return error <= std::fmax(kPartOfSingular * limits.tolerance, least); };
-  const auto found = std::find_if(errors.begin(), errors.end(), is_near);
-  const auto at = static_cast<std::size_t>(found - errors.begin());
+  const double near = kPartOfSingular * limits.tolerance;
+  std::size_t at = 0;
+  while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
+    ++at;
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
   // Between two counts the logarithm of the error falls about evenly.
-  if (at > 0 && errors[at] > 0 && errors[at] < kPartOfSingular * limits.tolerance) {
-    const double part = portable::log(errors[at - 1] / (kPartOfSingular * limits.tolerance)) /
-                        portable::log(errors[at - 1] / errors[at]);
+  if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
+    const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
     extras =
         counts[at - 1] + static_cast<std::size_t>(std::ceil(part * static_cast<double>(counts[at] - counts[at - 1])));
   }
   for (int tries = 1;; ++tries) {
     fit.fit(extras, limits.tolerance, weights, own_targets);
-    const bool is_hopeless = errors[std::min(at, errors.size() - 1)] > kPartOfSingular * limits.tolerance;
+    const bool is_hopeless = errors[std::min(at, errors.size() - 1)] > near;
     if (fit.worst() <= kPartOfWorst * limits.tolerance || extras >= limits.most_extras || tries == kTries ||
         is_hopeless)
       return;
@@ -245,7 +251,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
 
   const std::size_t own_targets = limits.refits_own ? targets : 0;
   const std::vector<float> more_own = limits.refits_own ? refitted_own(missing, targets) : std::vector<float>();
-  LowRankFit fit(missing, rows.places);
+  LowRankFit fit(missing, rows.places, rows.unseen);
   fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
   form.worst = fit.worst();
 

@@ -63,9 +63,10 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
   for (std::size_t p = 0; p < points.size(); ++p) numbers_[p] = p;
   for (std::size_t first = 0; first < poses_.size(); first += kPosesAtOnce) {
     const std::size_t count = std::min(kPosesAtOnce, poses_.size() - first);
-    std::vector<std::vector<Vec3d>> normals;
-    for (std::size_t r = 0; r < count; ++r)
-      normals.push_back(rights.of_elements(std::span(poses_[first + r]).first(rights.targets())));
+    std::vector<std::vector<Vec3d>> normals(count);
+    parallel_for(count, [&](std::size_t r) {
+      normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
+    });
     parallel_each(points.size(), kBlock, [&](std::size_t p) {
       const std::uint32_t vertex = points[p].front();
       const BaseNormal base(rights.stored(vertex));
