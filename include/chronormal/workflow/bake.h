@@ -28,6 +28,7 @@
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
@@ -62,6 +63,9 @@ struct BakeOptions {
   bool animations_only = false;
   /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
+  /// Of smallest: the poses that meshes are made for which nothing drives, by the names of targets or in their order; a mesh
+  /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
+  std::vector<RigPose> poses = {};
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -87,13 +91,14 @@ struct HostChange {
 
 /// A form of a mesh that --encode smallest looked at.
 struct BakeChoice {
-  std::string_view form;  ///< "as it is", "own deltas", "pairs" or "low rank"
+  std::string_view form;  ///< "as it is", "own deltas", "pairs", "low rank" or "quadratics"
   std::size_t targets = 0, bytes = 0;
   /// Along the animations of the file, between its keys, and in its standing weights, or where it has no animation of
-  /// weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  /// weights, each target alone and in poses that the mesh is made for, which nothing was fitted to: over pairs of a vertex
+  /// and a pose where n(w) is longer than a thousandth of n(0).
   ShownErrors played;
-  std::vector<HostChange> hosts;
-  bool within = false;  ///< its worst is within the tolerance, and it within the limits
+  std::vector<HostChange> hosts;  ///< empty for numbers of extra targets that were tried on all vertices alike
+  bool within = false;            ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
 };
 

@@ -13,6 +13,7 @@
 #include "workflow/bake/forms/unit_targets.h"
 #include "workflow/bake/judge/played_errors.h"
 #include "workflow/bake/low_rank/low_rank_form.h"
+#include "workflow/bake/undriven/quadratic_form.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -28,13 +29,16 @@ constexpr double kPartOfBytes = 0.95;
 
 enum Choice : std::uint8_t { kStored, kOwn, kLowRank };
 
-// How many pairs of targets the file has active at once where both move a normal; a target with itself is one.
+// How many pairs of targets the file has active at once (of a rig all) where both move a normal; a target with itself is
+// one.
 std::size_t active_pairs(const DeltaSource& source, const MeshWeights& weights) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i)
     for (std::size_t j = i; moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostPairs;
          ++j)
-      if (moves(source.shading, j) && weights.use.together(i, j) && (i == j || source.terms.overlap(i, j))) ++count;
+      if (moves(source.shading, j) && (weights.rig || weights.use.together(i, j)) &&
+          (i == j || source.terms.overlap(i, j)))
+        ++count;
   return count;
 }
 
@@ -45,15 +49,6 @@ struct Share {
   bool above_zero = false;
   VertexVectors vectors;
 };
-
-// The delta u - N of a unit normal u whose part across N is this vector, as far as that goes.
-Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) {
-  Vec3d across = vector - dot(vector, base) * base;
-  const double size = length(across);
-  if (size > 1) across = (1 / size) * across;
-  const Vec3d u = across + std::sqrt(std::fmax(0, 1 - dot(across, across))) * base;
-  return farthest_that_fits(base, unit(u)) - base;
-}
 
 // Vectors of any length as those that hosts keep.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, FormLengths lengths) {
@@ -226,7 +221,22 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   const auto is_found = [&] { return of_best.within && !options.plan; };
   const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != shading.normals.data();
   if (!has_new_base) look_at("as it is", keep_stored(source));
-  if (!is_found()) look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
+  if (!is_found() && !weights.rig) {
+    look_at("own deltas", choose_low_rank(source, weights, options, lengths, 0));
+  } else if (!is_found()) {
+    const ChosenForm own = choose_low_rank(source, weights, options, lengths, 0);
+    look_at("own deltas", own);
+    const double mean = choices.back().played.mean;
+    if (!is_found() && source.plan.products_fit && most > 0) {
+      if (active_pairs(source, weights) <= kMostPairs)
+        look_at("pairs", choose_of_lengths(source, weights, options, lengths));
+      QuadraticChoice chosen =
+          choose_quadratics(source, weights, options, lengths, own, {most, most_bytes, kMostPlayed, mean});
+      for (const QuadraticGain& gain : chosen.gains)
+        choices.push_back({"quadratics", gain.targets, gain.bytes, gain.played, {}, false, false});
+      if (chosen.form) look_at("quadratics", std::move(*chosen.form));
+    }
+  }
   if (!is_found() && source.plan.is_driven && source.plan.products_fit && most > 0) {
     if (active_pairs(source, weights) <= kMostPairs && !options.animations_only)
       look_at("pairs", choose_of_lengths(source, weights, options, lengths));
