@@ -122,6 +122,7 @@ struct BakedMesh {
   double largest_error = 0;
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool has_lone_weight = false;     ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
   bool already_baked = false;       ///< nothing was changed
   std::vector<HostChange> hosts;    ///< of harmless and endpoint: what each named host shows
   std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
@@ -150,7 +151,7 @@ struct GltfBake {
 ///
 /// Errors: of GltfDocument; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
 /// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
-/// compressed by Draco, or an extension drives weights.
+/// compressed by Draco, or of exact an extension drives a weight alone.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {

@@ -170,12 +170,15 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (Status status = writer.write_base(base.is_replaced, base.normals); !status) return status;
 
   const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
+  BakeOptions within = options;
+  baked.report.has_lone_weight = find_lone_weight(document, shading.mesh, edit).has_value();
+  if (baked.report.has_lone_weight) within.most_targets = mesh.target_count;
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
   MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
                           ? exact_deltas(source)
-                          : chosen_deltas(source, weights.value(), options, baked.report);
+                          : chosen_deltas(source, weights.value(), within, baked.report);
   for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k)
     baked.report.extras.push_back(deltas.grown.drivers.as_target(k, mesh.target_count + k));
 

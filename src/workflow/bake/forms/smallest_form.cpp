@@ -251,7 +251,8 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
     }
   }
   for (BakeChoice& choice : choices)
-    choice.chosen = choice.form == of_best.form && choice.targets == of_best.targets && choice.bytes == of_best.bytes;
+    choice.chosen = choice.form == of_best.form && choice.targets == of_best.targets && choice.bytes == of_best.bytes &&
+                    choice.hosts.size() == of_best.hosts.size();
   best->choices = std::move(choices);
   return std::move(*best);
 }

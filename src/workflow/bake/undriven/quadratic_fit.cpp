@@ -271,7 +271,7 @@ void QuadraticFit::evaluate() {
   });
 }
 
-QuadraticFit::Extras QuadraticFit::best(std::size_t count) const {
+QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) const {
   const std::size_t rows = missing_.rows(), stride = missing_.stride();
   std::vector<float> largest(count, 0.0F);
   for (std::size_t r = 0; r < rows; ++r)
@@ -281,15 +281,21 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count) const {
   std::vector<Vec3f> deltas(points_.size() * count);
   const double least = kPartOfEntry * tolerance_ / kDegreesPerRadian;
   parallel_blocks(points_.size(), kBlock, [&](IndexRange points) {
-    std::vector<float> counted(rows * padded_), products(count * padded_), of_axes(3 * padded_);
+    std::vector<float> counted(rows * padded_), products(count * padded_), of_axes(3 * padded_), wanted(3 * stride);
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
+      std::copy(lack, lack + 3 * stride, wanted.begin());
       float most = 0;  // that a row counts
       for (std::size_t r = 0; r < rows; ++r) {
-        float square = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-          const float right = shown[c * stride + r] + lack[c * stride + r];
-          square += right * right;
+        const Vec3f now = {shown[r], shown[stride + r], shown[2 * stride + r]};
+        const Vec3f right = now + Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]};
+        float square = dot(right, right);
+        if (!keeps_lengths && square > 0) {
+          const float along = std::fmax(dot(now, right) / square, 0.0F);
+          wanted[r] = along * right.x - now.x;
+          wanted[stride + r] = along * right.y - now.y;
+          wanted[2 * stride + r] = along * right.z - now.z;
+          square = dot(now, now);
         }
         const float share = square > 0 ? 1 / std::fmax(square, kShortest * kShortest) : 0;
         most = std::fmax(most, share);
@@ -299,7 +305,8 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count) const {
       std::fill(of_axes.begin(), of_axes.end(), 0.0F);
       add_products({counted.data(), rows, count, padded_, 1}, {weights_.data(), rows, padded_, padded_, 1},
                    products.data(), padded_);
-      add_products({lack, rows, 3, 1, stride}, {counted.data(), rows, padded_, padded_, 1}, of_axes.data(), padded_);
+      add_products({wanted.data(), rows, 3, 1, stride}, {counted.data(), rows, padded_, padded_, 1}, of_axes.data(),
+                   padded_);
       std::vector<double> matrix(count * count);
       double trace = 0;
       for (std::size_t i = 0; i < count; ++i) {

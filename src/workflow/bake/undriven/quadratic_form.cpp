@@ -161,7 +161,7 @@ QuadraticChoice choose_quadratics(const DeltaSource& source, const MeshWeights& 
   for (const std::size_t asked : kCounts) {
     const std::size_t count = std::min(asked, fit.extras());
     if (count == 0) break;
-    ChosenForm form = with_quadratics(source, weights, lengths, own, fit.best(count));
+    ChosenForm form = with_quadratics(source, weights, lengths, own, fit.best(count, lengths != FormLengths::kUnit));
     const ShownErrors played = played_errors(rights, form.judged(), shading.element_of_vertex, form.columns(shading),
                                              played_poses(weights, form.drivers, targets, limits.most_poses));
     result.gains.push_back({count, targets + form.drivers.size(), form.bytes(shading), played});
