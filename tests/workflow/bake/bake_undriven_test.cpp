@@ -131,7 +131,7 @@ TEST(BakeUndriven, a_pose_for_a_target_that_is_not_there_is_refused_by_its_place
   BakeOptions options = smallest();
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {R"([{"smile": 1}, {"smlie": 1}])", "p.json, /1/smlie: no mesh has a target 'smlie'; did you mean 'smile'?"},
-           {"[[1, 2]]", "p.json, /0: no mesh has 2 targets, as this has weights"}}) {
+           {"[[1, 2]]", "p.json, /0: 2 weights stand here, and no mesh has so many targets"}}) {
     options.poses = parse_poses(text, "p.json").value();
     EXPECT_EQ(test::bake_document(builder, options).error, message);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/nearest.h"
+#include "core/text.h"
 #include "workflow/bake/judge/random_numbers.h"
 
 namespace chronormal::inline internal {
@@ -168,8 +169,8 @@ Status check_poses(std::span<const RigPose> poses, const GltfDocument& document)
                                             (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
     if (!pose.named.empty() || std::find(counts.begin(), counts.end(), pose.in_order.size()) != counts.end()) continue;
-    return invalid_input(pose.place,
-                         "no mesh has " + std::to_string(pose.in_order.size()) + " targets, as this has weights");
+    return invalid_input(pose.place, counted(pose.in_order.size(), "weight stands", "weights stand") +
+                                         " here, and no mesh has so many targets");
   }
   return Success{};
 }
