@@ -99,7 +99,7 @@ TEST(BakeUndriven, quadratics_of_many_terms_bring_a_rig_of_many_pairs_nearer) {
   EXPECT_GT(baked.report.meshes.at(0).extras.at(0).quadratic.size(), 2U);
   const auto poses = random_poses(200, 4, 98, 10);
   const double before = error_in(without, poses).mean(), after = error_in(baked, poses).mean();
-  EXPECT_LT(after, 0.6 * before) << before;
+  EXPECT_LT(after, 0.3 * before) << before;
 }
 
 TEST(BakeUndriven, no_extra_target_has_more_terms_than_are_stated) {
@@ -156,15 +156,15 @@ TEST(BakeUndriven, a_pose_for_a_target_that_is_not_there_is_refused_by_its_place
 
 TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) {
   for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
-    GltfBuilder builder = rig(9);
+    GltfBuilder builder = rig(9, 10);
     builder.add_animation("idle");
     const std::size_t of_key = std::string(interpolation) == "CUBICSPLINE" ? 3 : 1;
-    builder.add_track(0, 0, {0, 1, 2}, std::vector<float>(3 * of_key * kTargets, 0.0F), interpolation);
+    builder.add_track(0, 0, {0, 1, 2}, std::vector<float>(3 * of_key * 10, 0.0F), interpolation);
     const Baked baked = test::bake_document(builder, smallest());
     ASSERT_TRUE(baked.ok()) << baked.error;
     ASSERT_GT(baked.report.added_targets, 0U);
     for (const double time : {0.0, 0.3, 1.7})
-      EXPECT_EQ(baked.after->weights_at(0, 0, time), std::vector<float>(kTargets + baked.report.added_targets, 0.0F));
+      EXPECT_EQ(baked.after->weights_at(0, 0, time), std::vector<float>(10 + baked.report.added_targets, 0.0F));
   }
 }
 
