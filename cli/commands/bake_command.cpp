@@ -10,6 +10,7 @@
 #endif
 
 #include "chronormal/io/output.h"
+#include "chronormal/io/poses_file.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/options/command.h"
 #include "cli/reports/bake_report.h"
@@ -35,6 +36,7 @@ struct Options {
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
   std::optional<std::string> drivers;  // where to write them beside the result
+  std::optional<std::string> poses;    // a file of what rigs are made for
   bool json = false, no_audit = false;
 };
 
@@ -76,6 +78,7 @@ Result<BakeOptions> understand(const Options& options) {
     if (options.most_targets) return misuse("--max-targets", kNeedsSmallest);
     if (options.animations_only) return misuse("--animations-only", kNeedsSmallest);
     if (options.plan) return misuse("--plan", kNeedsSmallest);
+    if (options.poses) return misuse("--poses", kNeedsSmallest);
   }
   if (options.json && !options.plan && is_stream(options.common.output))
     return misuse("--json", "it goes to the standard output: write the result to a file");
@@ -84,6 +87,11 @@ Result<BakeOptions> understand(const Options& options) {
     if (*options.drivers == options.common.output) return misuse("--drivers", "it must be another file than OUT");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
+  if (options.poses) {
+    Result<std::vector<RigPose>> poses = read_poses_file(*options.poses);
+    if (!poses) return poses.error();
+    how.poses = std::move(poses).value();
+  }
   return how;
 }
 
@@ -330,6 +338,9 @@ Command bake_command() {
         {"--animations-only", &options->animations_only,
          "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
          "fitted to these: a target that is set by itself shows anything"},
+        {"--poses FILE", &options->poses,
+         "of smallest: the poses that meshes are made for which no animation drives, as JSON:\n"
+         "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: random poses)"},
         {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
         {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
         {"--tolerance DEG", &options->tolerance,

@@ -40,6 +40,7 @@
 #include "chronormal/io/gltf_edit.h"       // changes to a glTF file that keep every other byte
 #include "chronormal/io/input.h"           // the one door: motions, meshes and documents from files of every format
 #include "chronormal/io/output.h"          // files that nobody ever sees half of, motions among them
+#include "chronormal/io/poses_file.h"      // poses of a rig from a JSON file
 #include "chronormal/io/target_names.h"    // morph targets by name
 
 #include "chronormal/workflow/audit.h"    // what a host shows against what it should

@@ -220,6 +220,7 @@ const std::map<std::string, std::string> kUses = {
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
     {"--output", "a.obj b.obj"},
     {"--plan", "face.glb --plan"},
+    {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"--rule", "a.obj b.obj --rule slerp"},
@@ -254,6 +255,7 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
   test::GltfBuilder face = test::quad_document();
   face.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   write("face.glb", face.glb());
+  write("poses.json", "[[1, 1]]");
   std::set<std::string> all;
   for (const std::string& command : command_names())
     for (const std::string& name : option_names(command)) all.insert(name);

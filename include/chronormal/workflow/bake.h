@@ -29,6 +29,7 @@
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
@@ -64,6 +65,9 @@ struct BakeOptions {
   bool animations_only = false;
   /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
+  /// Of smallest: the poses that meshes are made for which nothing drives, by the names of targets or in their order; a mesh
+  /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
+  std::vector<RigPose> poses = {};
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -89,14 +93,17 @@ struct HostChange {
 
 /// A form of a mesh that smallest looked at.
 struct BakeChoice {
-  std::string_view form;               ///< "as it is", "own deltas", "pruned", "low rank" or "harmless"
+  /// "as it is", "own deltas", "pruned", "pairs", "quadratics", "low rank" or "harmless"
+  std::string_view form;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas, and those by which tracks grow
   /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights, or
-  /// where it has no animation of weights, each target alone: over pairs of a vertex and a pose where n(w) is longer than a
-  /// thousandth of n(0).
+  /// where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing was
+  /// fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
   ShownErrors played;
-  std::vector<HostChange> hosts;  ///< none where no other form than "as it is" was looked at
-  bool within = false;            ///< its worst is within the tolerance, and it within the limits
+  /// None where no other form than "as it is" was looked at, and for numbers of "quadratics" that were tried on all vertices
+  /// alike.
+  std::vector<HostChange> hosts;
+  bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
 };
 
@@ -120,6 +127,7 @@ struct BakedMesh {
   double largest_error = 0;
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool has_lone_weight = false;     ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
   bool already_baked = false;       ///< nothing was changed
   std::vector<HostChange> hosts;    ///< but of exact: what each named host shows, where the mesh changed
   std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
@@ -148,7 +156,7 @@ struct GltfBake {
 ///
 /// Errors: of GltfDocument; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
 /// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
-/// compressed by Draco, or an extension drives weights.
+/// compressed by Draco, or of exact an extension drives a weight alone.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {

@@ -23,6 +23,7 @@
 #include "workflow/bake/forms/smallest_form.h"
 #include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/terms.h"
+#include "workflow/bake/undriven/rig_poses.h"
 #include "workflow/bake/write/messages.h"
 #include "workflow/bake/write/write_mesh.h"
 #include "workflow/bake/write/write_tracks.h"
@@ -103,6 +104,14 @@ void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.resampling_error = plan.left_out;
 }
 
+// What a mesh that nothing drives is made for.
+RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given) {
+  std::vector<std::size_t> moving;
+  for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
+    if (moves(shading, i)) moving.push_back(i);
+  return {mesh.target_names, std::move(moving), mesh.target_count, std::move(given)};
+}
+
 // The arrays of a mesh, one target at a time.
 struct MeshDeltas {
   std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing where it stays as it is
@@ -114,7 +123,7 @@ struct MeshDeltas {
 MeshDeltas exact_deltas(const DeltaSource& source) {
   return {[&source](std::size_t i) { return own_target_deltas(source, i); },
           [&source](std::size_t k) { return extra_target_deltas(source, source.plan.extras[k]); },
-          {source.shading.mesh, {source.plan.extras, {}, {}, {}}, false},
+          {source.shading.mesh, {source.plan.extras, {}, {}, {}, {}}, false},
           true};
 }
 
@@ -144,7 +153,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
                     const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   if (Status status = check_extras(document, edit, shading.mesh); !status) return status;
-  const Result<MeshWeights> weights = read_weights(document, shading);
+  Result<MeshWeights> weights = read_weights(document, shading);
   if (!weights) return weights.error();
   const NormalTerms terms(shading, baked.report.weighting);
   const Result<MeshPlan> planned =
@@ -152,6 +161,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (!planned) return planned.error();
   const MeshPlan& plan = planned.value();
   report_plan(plan, baked.report);
+  if (plan.encoding == BakeEncoding::kSmallest && !plan.is_driven)
+    weights.value().rig = rig_of(mesh, shading, poses_of_mesh(options.poses, mesh));
 
   const std::size_t bytes_before = edit.added_bytes();
   MeshWriter writer(document, shading, options.smooth, zeros, edit);
@@ -160,15 +171,18 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (Status status = writer.write_base(base.is_replaced, base.normals); !status) return status;
 
   const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
+  BakeOptions within = options;
+  baked.report.has_lone_weight = find_lone_weight(document, shading.mesh, edit).has_value();
+  if (baked.report.has_lone_weight) within.most_targets = mesh.target_count;
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
   MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
                           ? exact_deltas(source)
-                          : chosen_deltas(source, weights.value(), options, baked.report);
+                          : chosen_deltas(source, weights.value(), within, baked.report);
   warn_of_choice(mesh, options, baked.report, baked.warnings);
   for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k)
-    baked.report.extras.push_back(deltas.grown.drivers.formulas[k].as_target(mesh.target_count + k));
+    baked.report.extras.push_back(deltas.grown.drivers.as_target(k, mesh.target_count + k));
 
   const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
   if (!deltas.is_new && !any_base) return Success{};
@@ -242,6 +256,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
 
 Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit) {
   assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
+  if (const Status poses = check_poses(options.poses, document); !poses) return poses.error();
   const std::vector<std::size_t> candidates = candidate_meshes(document);
   std::size_t done = 0, total = 0;
   for (const std::size_t mesh : candidates) total += document.meshes()[mesh].target_count;

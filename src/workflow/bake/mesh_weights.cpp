@@ -6,7 +6,7 @@
 namespace chronormal::inline internal {
 Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
   const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
-  MeshWeights weights{{}, {}, {}, {}, WeightUse(targets), false};
+  MeshWeights weights{{}, {}, {}, {}, WeightUse(targets), false, {}};
   for (std::size_t a = 0; a < document.animations().size(); ++a) {
     std::set<std::size_t> seen;
     const std::vector<GltfTrack>& tracks = document.animations()[a].tracks;

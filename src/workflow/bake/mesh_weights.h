@@ -3,9 +3,11 @@
 #define CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "workflow/bake/undriven/rig_poses.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
@@ -24,7 +26,8 @@ struct MeshWeights {
   std::vector<TimeRange> ranges;    ///< of the animation of each track
   PoseList poses;                   ///< that stand still: of the mesh, its nodes, and the expressions of an avatar
   WeightUse use;
-  bool is_driven = false;  ///< an animation gives some moving target a weight
+  bool is_driven = false;       ///< an animation gives some moving target a weight
+  std::optional<RigPoses> rig;  ///< where nothing drives it and a bake looks for extra targets: what it is made for
 };
 
 /// Reads them. Tracks with the same keys, which drive the mesh through several nodes, count once. Errors: of

@@ -509,9 +509,20 @@ TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targe
          {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
     return builder;
   };
-  for (const char* const pointer : {"/meshes/0/weights/1", "/nodes/0/weights/1"})
-    EXPECT_NE(test::bake_document(with_single(pointer)).error.find("KHR_animation_pointer"), std::string::npos)
-        << pointer;
+  for (const char* const pointer : {"/meshes/0/weights/1", "/nodes/0/weights/1"}) {
+    const BakeOptions exact = {.encoding = BakeEncoding::kExact};
+    EXPECT_NE(test::bake_document(with_single(pointer), exact).error.find("drives a weight alone"), std::string::npos);
+    const BakeOptions harmless = {.encoding = BakeEncoding::kHarmless};
+    const Baked without = test::bake_document(with_single(pointer), harmless);
+    ASSERT_EQ(without.error, "") << pointer;
+    EXPECT_EQ(without.report.added_targets, 0U);
+    EXPECT_TRUE(without.report.changed);
+    EXPECT_TRUE(std::any_of(without.report.warnings.begin(), without.report.warnings.end(), [](const auto& warning) {
+      return warning.find("drives a weight alone") != std::string::npos;
+    }));
+    const Baked other = test::bake_document(with_single("/cameras/0/weights/1"), harmless);
+    EXPECT_GT(other.report.added_targets, 0U);
+  }
   for (const char* const pointer : {"/meshes/0/extras/weights", "/materials/0/weights", "/cameras/0/weights/1"})
     EXPECT_EQ(baked(with_single(pointer)).error, "") << pointer;
 }

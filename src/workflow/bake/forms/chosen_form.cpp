@@ -15,7 +15,7 @@ namespace {
 constexpr double kPartOfTracks = 0.25;
 // Of the errors: what twice as many targets must leave at most.
 constexpr double kBetterByFar = 0.6;
-constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
+constexpr unsigned kFirstSeed = 1, kSecondSeed = 2, kRigSeed = 4;
 
 // The forms with extra targets: those of each target alone, or all.
 enum Choice : std::uint8_t { kStored, kEnds, kSelf, kAll };
@@ -86,8 +86,9 @@ VertexColumns ChosenForm::columns(const GltfShading& shading) const {
 }
 
 std::size_t ChosenForm::bytes(const GltfShading& shading) const {
-  constexpr std::size_t kVector = 12, kIndex = 4;
+  constexpr std::size_t kVector = 12, kIndex = 4, kTerm = 40;  // a term stands in the mesh and in its node
   std::size_t total = 0;
+  for (const GltfExtraTarget& sum : drivers.sums) total += kTerm * (sum.linear.size() + sum.quadratic.size());
   const auto add = [&](const TargetDeltas& deltas) {
     for (const std::vector<float>& of_part : deltas.of_parts) {
       std::size_t used = 0;
@@ -143,8 +144,10 @@ ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weigh
   HarmlessForm form = end_point_form(shading, source.terms, rights, limits.lengths);
   std::vector<VertexColumns> forms = {by_vertex(columns_of(stored), vertices),
                                       by_vertex(columns_of(form.own), vertices)};
-  if (source.plan.is_driven && source.plan.products_fit) {
-    const PoseList samples = weights.use.samples_with_keys(enough_poses(shading, forms));
+  if ((source.plan.is_driven || weights.rig) && source.plan.products_fit) {
+    const std::size_t enough = enough_poses(shading, forms);
+    const PoseList samples =
+        weights.rig ? weights.rig->sample(enough, kRigSeed) : weights.use.samples_with_keys(enough);
     add_corrections(shading, source.terms, rights, samples, vertices, judge.worst(forms[1], samples), limits, form);
   }
   result.left_out = form.left_out;

@@ -20,6 +20,7 @@
 #include "workflow/bake/judge/host_judge.h"
 #include "workflow/bake/low_rank/extra_curves.h"
 #include "workflow/bake/mesh_weights.h"
+#include "workflow/bake/undriven/quadratic_fit.h"
 
 namespace chronormal::inline internal {
 
@@ -38,7 +39,9 @@ class ChosenForm {
   /// What is written for each of the judged vertices.
   [[nodiscard]] VertexColumns columns(const GltfShading& shading) const;
   [[nodiscard]] std::span<const std::uint32_t> judged() const { return vertices_; }
-  /// About how many bytes the arrays of deltas take.
+  /// The deltas of the mesh's own targets where these are other than what the file stores.
+  [[nodiscard]] const std::vector<VertexVectors>& own() const { return own_of_form_.back(); }
+  /// About how many bytes the arrays of deltas take, and the sums that drive extra targets.
   [[nodiscard]] std::size_t bytes(const GltfShading& shading) const;
   /// Whether anything becomes other than it is stored.
   [[nodiscard]] bool changes(const GltfShading& shading) const;
@@ -54,6 +57,9 @@ class ChosenForm {
   friend class WorthwhileForms;
   friend ChosenForm choose_low_rank(const DeltaSource&, const RightNormals&, const MeshWeights&, const BakeOptions&,
                                     FormLengths, const OwnForm&, std::size_t);
+  friend ChosenForm with_quadratics(const DeltaSource&, const MeshWeights&, FormLengths, const ChosenForm&,
+                                    QuadraticFit::Extras);
+  friend ChosenForm settled_quadratics(const DeltaSource&, const MeshWeights&, const BakeOptions&, ChosenForm);
 
   // The deltas of the mesh's own targets in a form other than the stored one.
   [[nodiscard]] const std::vector<VertexVectors>& own_of(std::uint8_t form) const;

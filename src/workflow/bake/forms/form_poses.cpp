@@ -229,12 +229,18 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = changing[n * changing.size() / count];
     if (!numbers[i].empty())
-      sets.push_back({PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras.formulas, steps, sampling.phase),
-                      numbers[i]});
+      sets.push_back(
+          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
   }
   const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
-  sets.push_back(
-      {PoseSet::Kind::kRandom, all, random_poses(changing, targets, extras.formulas, mixed, sampling.seed), {}});
+  PoseList random;
+  if (weights.rig) {
+    for (std::vector<double>& pose : weights.rig->sample(mixed, sampling.seed))
+      random.push_back(extras.with_extras(std::move(pose)));
+  } else {
+    random = random_poses(changing, targets, extras, mixed, sampling.seed);
+  }
+  sets.push_back({PoseSet::Kind::kRandom, all, std::move(random), {}});
   sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
   return sets;
 }

@@ -58,7 +58,8 @@ struct Sampling {
   bool animations_only = false;  ///< no targets alone, no mixed poses
 };
 
-/// The poses of the file as hosts play it, its targets alone, random poses and cross-fades.
+/// The poses of the file as hosts play it, its targets alone, random poses (of a rig those that it is made for) and
+/// cross-fades.
 [[nodiscard]] std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& weights,
                                              const ExtraDrivers& extras, std::span<const Host> hosts,
                                              std::span<const std::vector<std::uint32_t>> numbers,

@@ -15,6 +15,7 @@
 #include "workflow/bake/forms/worthwhile_form.h"
 #include "workflow/bake/judge/played_errors.h"
 #include "workflow/bake/low_rank/low_rank_form.h"
+#include "workflow/bake/undriven/quadratic_form.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -25,12 +26,27 @@ constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
 // Poses that a choice is made by, and how often the limit of bytes is tried.
 constexpr std::size_t kMostPlayed = 200;
+// Pairs of the targets of a rig that are worth a look.
+constexpr std::size_t kMostPairs = 48;
 constexpr int kTries = 4;
 constexpr double kPartOfBytes = 0.95;
 // Means that differ by no more of themselves are alike.
 constexpr double kAlike = 1e-3;
 
+constexpr std::string_view kQuadratics = "quadratics";
+
 enum VertexForm : std::uint8_t { kStored, kOwn, kLowRank };
+
+// How many pairs of the targets of a rig move a normal both; a target with itself is one. No more than one beyond the
+// limit are counted.
+std::size_t pairs_of_rig(const DeltaSource& source) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i)
+    for (std::size_t j = i; moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostPairs;
+         ++j)
+      if (moves(source.shading, j) && (i == j || source.terms.overlap(i, j))) ++count;
+  return count;
+}
 
 // One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
 struct Share {
@@ -39,15 +55,6 @@ struct Share {
   bool above_zero = false;
   VertexVectors vectors;
 };
-
-// The delta u - N of a unit normal u whose part across N is this vector, as far as that goes.
-Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) {
-  Vec3d across = vector - dot(vector, base) * base;
-  const double size = length(across);
-  if (size > 1) across = (1 / size) * across;
-  const Vec3d u = across + std::sqrt(std::fmax(0, 1 - dot(across, across))) * base;
-  return farthest_that_fits(base, unit(u)) - base;
-}
 
 // Vectors of any length as those that hosts keep.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, FormLengths lengths) {
@@ -202,24 +209,30 @@ class Choice {
     return is_within() && of_best_.bytes <= bytes && !options_.plan;
   }
 
+  // Notes what was tried and not made.
+  void note_draft(std::string_view name, std::size_t targets, std::size_t bytes, const ShownErrors& played) {
+    choices_.push_back({name, targets, bytes, played, {}, false, false});
+  }
+
   [[nodiscard]] ChosenForm take_best() {
     // What is stored is measured beside every other form.
     const auto measured =
         std::find_if(choices_.begin(), choices_.end(), [](const auto& c) { return !c.hosts.empty(); });
     for (BakeChoice& choice : choices_) {
-      if (!choice.hosts.empty() || measured == choices_.end()) continue;
+      if (!choice.hosts.empty() || measured == choices_.end() || is_draft(choice)) continue;
       choice.hosts = measured->hosts;
       for (HostChange& host : choice.hosts)
         for (HostChange::Errors& errors : host.poses) errors.after = errors.before;
     }
     for (BakeChoice& choice : choices_)
-      choice.chosen =
-          choice.form == of_best_.form && choice.targets == of_best_.targets && choice.bytes == of_best_.bytes;
+      choice.chosen = !is_draft(choice) && choice.form == of_best_.form && choice.targets == of_best_.targets &&
+                      choice.bytes == of_best_.bytes;
     best_->choices = std::move(choices_);
     return std::move(*best_);
   }
 
  private:
+  static bool is_draft(const BakeChoice& choice) { return choice.form == kQuadratics && choice.hosts.empty(); }
   [[nodiscard]] bool is_affordable(const BakeChoice& choice) const {
     const std::size_t targets = shading_.set.targets.size();
     return choice.bytes <= most_bytes() && choice.targets - targets <= most_extras(options_, targets);
@@ -343,6 +356,21 @@ ChosenForm keep_stored(const DeltaSource& source) {
   return result;
 }
 
+// Looks at extra targets for a mesh that nothing drives: for all pairs where these are few, and quadratics.
+void look_at_rig(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, FormLengths lengths,
+                 const ChosenForm& own, Choice& choice) {
+  const std::size_t targets = source.shading.set.targets.size();
+  if (pairs_of_rig(source) <= kMostPairs) choice.look_at("pairs", choose_of_lengths(source, weights, options, lengths));
+  const ShownErrors without =
+      played_errors(choice.rights(), own.judged(), source.shading.element_of_vertex, own.columns(source.shading),
+                    played_poses(weights, own.drivers, targets, kMostPlayed));
+  QuadraticChoice chosen =
+      choose_quadratics(source, weights, options, lengths, own,
+                        {most_extras(options, targets), choice.most_bytes(), kMostPlayed, without.mean});
+  for (const QuadraticGain& gain : chosen.gains) choice.note_draft(kQuadratics, gain.targets, gain.bytes, gain.played);
+  if (chosen.form) choice.look_at(kQuadratics, std::move(*chosen.form));
+}
+
 ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
   Choice choice(source, weights, options);
   const FormLengths lengths = lengths_for(options.hosts);
@@ -355,8 +383,8 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
   // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no choice
   // between these and what is stored is near enough, they are looked at when nothing else is.
-  const bool waits = has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree &&
-                     choice.is_far(own);
+  const bool waits =
+      has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree && choice.is_far(own);
   std::optional<std::size_t> of_deltas;
   const auto look_at_own = [&] {
     of_deltas = choice.look_at("own deltas", choose_low_rank(source, rights, weights, options, lengths, own, 0));
@@ -367,6 +395,9 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
     have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
   });
   if (!of_deltas && choice.is_found()) look_at_own();
+  if (weights.rig && !choice.is_found() && source.plan.products_fit && most > 0)
+    look_at_rig(source, weights, options, lengths, choose_low_rank(source, rights, weights, options, lengths, own, 0),
+                choice);
   if (has_extras && !(of_deltas && choice.is_found_below(*of_deltas))) {
     std::size_t extras = most;
     for (int tries = 0; tries < kTries && extras > 0; ++tries) {

@@ -102,4 +102,12 @@ std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& ve
   return best;
 }
 
+Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) noexcept {
+  Vec3d across = vector - dot(vector, base) * base;
+  const double size = length(across);
+  if (size > 1) across = (1 / size) * across;
+  const Vec3d u = across + std::sqrt(std::fmax(0, 1 - dot(across, across))) * base;
+  return farthest_that_fits(base, unit(u)) - base;
+}
+
 }  // namespace chronormal::inline internal

@@ -44,6 +44,9 @@ struct BaseNormal {
 [[nodiscard]] std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right,
                                                 double weight) noexcept;
 
+/// The delta u - base of a unit vector u that fits and whose part across base is this vector, as far as that goes.
+[[nodiscard]] Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) noexcept;
+
 /// Two unit vectors that fit and of which the difference u - v is this vector (eq. 48). Nothing where there are none.
 [[nodiscard]] std::optional<std::array<Vec3d, 2>> opposite_units(const Vec3d& base, const Vec3d& vector) noexcept;
 

@@ -12,6 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 256, kPosesAtOnce = 8, kBetweenKeys = 3, kSteps = 8;
+constexpr unsigned kRigSeed = 3;
 constexpr double kPhase = 0.61, kLeastLength = 1e-3;
 // Errors are counted in bins of a tenth of themselves.
 constexpr std::size_t kBins = 400;
@@ -77,9 +78,12 @@ PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, s
   if (weights.is_driven) return poses;
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < targets; ++i) all.push_back(i);
-  const PoseList alone = alone_poses(all, targets, drivers.formulas, kSteps, kPhase);
+  const PoseList alone = alone_poses(all, targets, drivers, kSteps, kPhase);
   for (std::size_t n = 0; n < std::min(most, alone.size()); ++n)
     poses.push_back(alone[n * alone.size() / std::min(most, alone.size())]);
+  if (!weights.rig) return poses;
+  for (std::vector<double>& pose : weights.rig->sample(most, kRigSeed))
+    poses.push_back(drivers.with_extras(std::move(pose)));
   return poses;
 }
 

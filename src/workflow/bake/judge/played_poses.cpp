@@ -4,16 +4,12 @@
 #include <cmath>
 #include <random>
 
+#include "workflow/bake/judge/random_numbers.h"
+
 namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostActive = 16;
-
-// A number from 0 to 1 that is the same with every library.
-double random_part(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
-std::size_t random_below(std::mt19937& random, std::size_t count) {
-  return std::min(count - 1, static_cast<std::size_t>(random_part(random) * static_cast<double>(count)));
-}
 
 std::vector<double> mixed(const std::vector<double>& a, const std::vector<double>& b, double part) {
   std::vector<double> result(a.size());
@@ -45,21 +41,21 @@ void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t
   }
 }
 
-PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count,
-                     std::span<const ExtraWeight> extras, std::size_t steps, double phase) {
+PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, const ExtraDrivers& extras,
+                     std::size_t steps, double phase) {
   PoseList poses;
   for (const std::size_t i : targets) {
     for (std::size_t step = 1; step <= steps; ++step) {
       std::vector<double> own(target_count, 0.0);
       own[i] = (static_cast<double>(step) - phase) / static_cast<double>(steps);
-      poses.push_back(with_extras(std::move(own), extras));
+      poses.push_back(extras.with_extras(std::move(own)));
     }
   }
   return poses;
 }
 
-PoseList random_poses(std::span<const std::size_t> targets, std::size_t target_count,
-                      std::span<const ExtraWeight> extras, std::size_t count, unsigned seed) {
+PoseList random_poses(std::span<const std::size_t> targets, std::size_t target_count, const ExtraDrivers& extras,
+                      std::size_t count, unsigned seed) {
   PoseList poses;
   if (targets.size() < 2) return poses;
   std::mt19937 random(seed);
@@ -71,7 +67,7 @@ PoseList random_poses(std::span<const std::size_t> targets, std::size_t target_c
       std::swap(order[k], order[k + random_below(random, order.size() - k)]);
       own[order[k]] = random_part(random);
     }
-    poses.push_back(with_extras(std::move(own), extras));
+    poses.push_back(extras.with_extras(std::move(own)));
   }
   return poses;
 }

@@ -32,11 +32,11 @@ void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t
 
 /// Each of these targets alone, at `steps` weights up to 1, the first of which is 1 / steps minus phase / steps.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count,
-                                   std::span<const ExtraWeight> extras, std::size_t steps, double phase);
+                                   const ExtraDrivers& extras, std::size_t steps, double phase);
 
 /// Poses with 2 to 16 of these targets active, at weights from 0 to 1. None where there are less than two.
 [[nodiscard]] PoseList random_poses(std::span<const std::size_t> targets, std::size_t target_count,
-                                    std::span<const ExtraWeight> extras, std::size_t count, unsigned seed);
+                                    const ExtraDrivers& extras, std::size_t count, unsigned seed);
 
 /// Poses on the way from one track to another, as mixers blend them: all weights linearly. None where there are less than
 /// two tracks.

@@ -156,7 +156,7 @@ ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& cur
 PoseList ExtraDrivers::standing(const PoseList& poses) const {
   PoseList result;
   for (std::size_t n = 0; n < poses.size(); ++n) {
-    result.push_back(with_extras(poses[n], formulas));
+    result.push_back(with_extras(poses[n]));
     if (!rest.empty())
       std::copy(rest[n].begin(), rest[n].end(), result.back().end() - static_cast<std::ptrdiff_t>(size()));
   }
@@ -174,10 +174,21 @@ ExtendedTrack ExtraDrivers::extended(const TrackName& name, const WeightTrack& t
   return extended_track(track, formulas, tolerance, most_keys);
 }
 
-std::vector<double> with_extras(std::vector<double> own, std::span<const ExtraWeight> extras) {
-  own.reserve(own.size() + extras.size());
-  for (const ExtraWeight& extra : extras) own.push_back(extra.at(own[extra.i], own[extra.j]));
+std::vector<double> ExtraDrivers::with_extras(std::vector<double> own) const {
+  const std::size_t targets = own.size();
+  own.reserve(targets + size());
+  for (std::size_t k = 0; k < size(); ++k) {
+    const ExtraWeight& of_one = formulas[k];
+    own.push_back(sums.empty() ? of_one.at(own[of_one.i], own[of_one.j])
+                               : sums[k].weight(std::span(own).first(targets)));
+  }
   return own;
+}
+
+GltfExtraTarget ExtraDrivers::as_target(std::size_t k, std::size_t index) const {
+  GltfExtraTarget result = sums.empty() ? formulas[k].as_target(index) : sums[k];
+  result.target = index;
+  return result;
 }
 
 }  // namespace chronormal::inline internal

@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "chronormal/io/bake_mark.h"
 #include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/write/tracks.h"
 #include "workflow/shading/target_weights.h"
@@ -72,14 +73,19 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 /// How many pieces each gap between two keys of a LINEAR track is cut into.
 using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 
-/// What drives the extra targets of a mesh: formulas of the weights of its own targets, or curves.
+/// What drives the extra targets of a mesh: formulas of the weights of its own targets, of one term or of many, or curves.
 struct ExtraDrivers {
-  std::vector<ExtraWeight> formulas;  ///< one for each extra target; all zero where there are curves
+  std::vector<ExtraWeight> formulas;  ///< one for each extra target; all zero where there are sums or curves
+  std::vector<GltfExtraTarget> sums;  ///< one for each extra target, or none; tracks have curves beside them
   TrackCurves curves;                 ///< for each track; none where there are formulas
   PoseList rest;                      ///< of curves: the weights in the poses that stand still (MeshWeights::poses)
   TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }
+  /// What the file says of extra target k, which is the target of this index.
+  [[nodiscard]] GltfExtraTarget as_target(std::size_t k, std::size_t index) const;
+  /// The same pose with the weights of extra targets behind it, by formulas and sums.
+  [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
   /// The poses that stand still, with the weights of extra targets behind them.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// A track with the weights of extra targets. Cubic splines get keys for formulas until no normal is off by more than
@@ -87,9 +93,6 @@ struct ExtraDrivers {
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;
 };
-
-/// The same pose with the weights of extra targets behind it, by formulas.
-[[nodiscard]] std::vector<double> with_extras(std::vector<double> own, std::span<const ExtraWeight> extras);
 
 }  // namespace chronormal::inline internal
 

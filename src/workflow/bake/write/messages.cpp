@@ -29,6 +29,7 @@ std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
 
 std::string name_of_extra(const GltfExtraTarget& extra) {
   if (extra.quadratic.empty() && extra.linear.empty()) return "chronormal of the animations";
+  if (extra.linear.size() + extra.quadratic.size() > 2) return "chronormal of many";
   if (extra.quadratic.empty()) return "chronormal w" + std::to_string(extra.linear.front().i);
   const auto& [i, j, q] = extra.quadratic.front();
   std::string name("chronormal w");
@@ -116,10 +117,15 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   if (!plan.is_driven && is_harmless) {
     warn(
         "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
-        "(--encode exact writes extra targets all the same)");
+        "(--encode smallest and exact write extra targets all the same)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
+  }
+  if (baked.has_lone_weight && (is_harmless || plan.encoding == BakeEncoding::kSmallest)) {
+    warn(
+        "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: it gets none, and its "
+        "poses are not judged");
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;

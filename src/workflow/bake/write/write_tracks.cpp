@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -54,26 +55,24 @@ struct Sampler {
   bool has_new_input = false, is_converted = false;
 };
 
-// Whether a JSON pointer leads to weights, or to one of them, of a mesh that has extra targets.
-bool leads_to_weights(const GltfDocument& document, std::span<const GrownMesh> meshes, const std::string& pointer) {
-  std::string_view rest = pointer;
+// The mesh to the weights of which, or to one of them, a JSON pointer leads.
+std::optional<std::size_t> mesh_of_weights(const GltfDocument& document, std::string_view rest) {
   const bool of_node = rest.starts_with("/nodes/");
-  if (!of_node && !rest.starts_with("/meshes/")) return false;
+  if (!of_node && !rest.starts_with("/meshes/")) return std::nullopt;
   rest.remove_prefix(rest.find('/', 1) + 1);
   std::size_t index = 0;
   const auto [stop, code] = from_chars(rest.data(), rest.data() + rest.size(), index);
   rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
-  if (code != std::errc() || !rest.starts_with("/weights")) return false;
-  if (of_node) {
-    if (index >= document.nodes().size() || !document.nodes()[index].mesh) return false;
-    index = *document.nodes()[index].mesh;
-  }
-  return std::any_of(meshes.begin(), meshes.end(), [&](const GrownMesh& mesh) { return mesh.mesh == index; });
+  if (code != std::errc() || !rest.starts_with("/weights")) return std::nullopt;
+  if (!of_node) return index;
+  if (index >= document.nodes().size() || !document.nodes()[index].mesh) return std::nullopt;
+  return *document.nodes()[index].mesh;
 }
 
-// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the mesh.
-Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
-  for (std::size_t a = 0; a < document.animations().size() && !meshes.empty(); ++a) {
+}  // namespace
+
+std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh, const GltfEdit& edit) {
+  for (std::size_t a = 0; a < document.animations().size(); ++a) {
     const GltfAnimation& animation = document.animations()[a];
     std::set<std::size_t> of_tracks;
     for (const GltfTrack& track : animation.tracks) of_tracks.insert(track.channel);
@@ -82,12 +81,23 @@ Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> m
       const std::string pointer = channel + "/target/extensions/KHR_animation_pointer/pointer";
       if (of_tracks.count(c) > 0 || !edit.has(pointer)) continue;
       const std::string text = edit.text(pointer);
-      if (text.size() > 2 && leads_to_weights(document, meshes, text.substr(1, text.size() - 2))) {
-        return invalid_input(std::string(document.name()).append(", ").append(pointer),
-                             "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: "
-                             "let it drive all weights, or use --encode endpoint");
-      }
+      if (text.size() > 2 && mesh_of_weights(document, std::string_view(text).substr(1, text.size() - 2)) == mesh)
+        return pointer;
     }
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the mesh.
+Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
+  for (const GrownMesh& mesh : meshes) {
+    const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
+    if (!pointer) continue;
+    return invalid_input(std::string(document.name()).append(", ").append(*pointer),
+                         "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: "
+                         "let it drive all weights, or use another encoding");
   }
   return Success{};
 }

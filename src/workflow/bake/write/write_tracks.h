@@ -4,7 +4,9 @@
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -19,6 +21,11 @@ struct GrownMesh {
   ExtraDrivers drivers;
   bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
 };
+
+/// The JSON pointer of a channel in which KHR_animation_pointer drives weights of a mesh that no track has, one of them or
+/// those of a mesh without a node; nothing where there is none.
+[[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
+                                                          const GltfEdit& edit);
 
 struct WrittenTracks {
   std::vector<double> errors;  ///< of each mesh: a bound of what inserted keys leave, in radians

@@ -1,0 +1,43 @@
+#include "chronormal/io/poses_file.h"
+
+#include <utility>
+
+#include "io/bytes/file.h"
+#include "io/json/json.h"
+
+namespace chronormal {
+
+Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::string& name) {
+  const Result<nlohmann::json> parsed = parse_json(text, name, 0, {"", [](std::size_t, const nlohmann::json&) {}});
+  if (!parsed) return parsed.error();
+  const nlohmann::json& root = parsed.value();
+  if (!root.is_array() || root.empty()) return invalid_input(name, "it must be a list of one pose at least");
+  JsonComplaint complaint(name);
+  std::vector<RigPose> poses;
+  const JsonView list(root, "", complaint);
+  for (std::size_t n = 0; n < root.size(); ++n) {
+    const JsonView item = list.item(n);
+    RigPose& pose = poses.emplace_back();
+    pose.place = item.place();
+    if (root[n].is_array()) {
+      for (std::size_t i = 0; i < item.size(); ++i) pose.in_order.push_back(item.item(i).as_number());
+    } else if (root[n].is_object()) {
+      for (const auto& [target, weight] : root[n].items()) {
+        const JsonView of_target(weight, item.pointer(target), complaint);
+        pose.named.push_back({target, of_target.as_number(), of_target.place()});
+      }
+    } else {
+      item.complain("a pose must be an object of weights by the names of targets, or a list of weights");
+    }
+    if (complaint.first()) return *complaint.first();
+  }
+  return poses;
+}
+
+Result<std::vector<RigPose>> read_poses_file(const std::string& path) {
+  const Result<FileBytes> file = FileBytes::open(path);
+  if (!file) return file.error();
+  return parse_poses(file.value().bytes(), path);
+}
+
+}  // namespace chronormal
