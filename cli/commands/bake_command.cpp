@@ -87,7 +87,8 @@ Result<BakeOptions> understand(const Options& options) {
     if (*options.drivers == options.common.output) return misuse("--drivers", "it must be another file than OUT");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
-  if (options.poses) {
+  how.is_posed = options.poses.has_value();
+  if (options.poses && *options.poses != "random") {
     Result<std::vector<RigPose>> poses = read_poses_file(*options.poses);
     if (!poses) return poses.error();
     how.poses = std::move(poses).value();
@@ -338,9 +339,10 @@ Command bake_command() {
         {"--animations-only", &options->animations_only,
          "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
          "fitted to these: a target that is set by itself shows anything"},
-        {"--poses FILE", &options->poses,
-         "of smallest: the poses that meshes are made for which no animation drives, as JSON:\n"
-         "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: random poses)"},
+        {"--poses FILE|random", &options->poses,
+         "of smallest: a program poses the meshes that no animation drives, and drives their\n"
+         "extra targets as the file says; FILE has the poses that they are made for, as JSON:\n"
+         "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: such meshes get no extra targets)"},
         {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
         {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
         {"--tolerance DEG", &options->tolerance,

@@ -31,7 +31,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);
-  if (!std::isfinite(value) || value == 0) return put(first, last, value == 0 ? (std::signbit(value) ? "-0" : "0") : found);
+  if (!std::isfinite(value) || value == 0)
+    return put(first, last, value == 0 ? (std::signbit(value) ? "-0" : "0") : found);
   const std::string sign = std::signbit(value) ? "-" : "";
   const std::string_view number = std::string_view(found).substr(sign.size());
   const std::size_t e = std::min(number.find('e'), number.size());
@@ -57,7 +58,8 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
     // Beyond the digits that are needed, those of the number itself and not zeros.
     fixed = fmt::format("{:.0f}", value).substr(sign.size());
   } else {
-    fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' + digits.substr(static_cast<std::size_t>(before_point));
+    fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' +
+            digits.substr(static_cast<std::size_t>(before_point));
   }
   return put(first, last, sign + (fixed.size() <= scientific.size() ? fixed : scientific));
 }
@@ -74,7 +76,8 @@ std::to_chars_result to_chars(char* first, char* last, float value) { return sho
 std::to_chars_result to_chars(char* first, char* last, double value) { return shortest(first, last, value); }
 std::to_chars_result to_chars(char* first, char* last, double value, std::chars_format format, int precision) {
   const bool is_fixed = format == std::chars_format::fixed;
-  return put(first, last, is_fixed ? fmt::format("{:.{}f}", value, precision) : fmt::format("{:.{}e}", value, precision));
+  return put(first, last,
+             is_fixed ? fmt::format("{:.{}f}", value, precision) : fmt::format("{:.{}e}", value, precision));
 }
 
 }  // namespace chronormal::inline internal

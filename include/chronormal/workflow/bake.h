@@ -65,7 +65,10 @@ struct BakeOptions {
   bool animations_only = false;
   /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
-  /// Of smallest: the poses that meshes are made for which nothing drives, by the names of targets or in their order; a mesh
+  /// Of smallest: a program poses the meshes that no animation drives, and drives their extra targets as the file says, so that
+  /// they may get some. Without it they get none.
+  bool is_posed = false;
+  /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
   std::vector<RigPose> poses = {};
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest

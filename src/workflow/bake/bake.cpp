@@ -161,7 +161,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (!planned) return planned.error();
   const MeshPlan& plan = planned.value();
   report_plan(plan, baked.report);
-  if (plan.encoding == BakeEncoding::kSmallest && !plan.is_driven)
+  if (plan.encoding == BakeEncoding::kSmallest && !plan.is_driven && options.is_posed)
     weights.value().rig = rig_of(mesh, shading, poses_of_mesh(options.poses, mesh));
 
   const std::size_t bytes_before = edit.added_bytes();

@@ -143,7 +143,8 @@ GltfBuilder moving(std::size_t targets, unsigned seed, double size = 0.4, const 
   return builder;
 }
 
-Baked baked(const GltfBuilder& builder, const BakeOptions& options = {}) {
+Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
+  options.encoding = options.encoding.value_or(BakeEncoding::kHarmless);
   Baked result = test::bake_document(builder, options);
   EXPECT_EQ(result.error, "");
   return result;

@@ -270,7 +270,9 @@ std::vector<std::size_t> Parser::nodes_pointed_to(const JsonView& target) {
     if (!pointer.starts_with(list)) return std::nullopt;
     const char* const end = pointer.data() + pointer.size();
     const auto [stop, code] = from_chars(pointer.data() + list.size(), end, index);
-    return code == std::errc() && std::string_view(stop, static_cast<std::size_t>(end - stop)) == "/weights" ? std::optional(index) : std::nullopt;
+    return code == std::errc() && std::string_view(stop, static_cast<std::size_t>(end - stop)) == "/weights"
+               ? std::optional(index)
+               : std::nullopt;
   };
   const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
   if ((node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/blocks.h"
+#include "core/portable_math.h"
 #include "workflow/bake/forms/unit_targets.h"
 
 namespace chronormal::inline internal {
@@ -26,7 +27,7 @@ constexpr std::size_t kMostTaken = 24;
 float limit_of(double degrees) {
   const double angle = degrees / kDegreesPerRadian;
   if (degrees >= 180) return INFINITY;
-  const double tangent = std::tan(angle);
+  const double tangent = portable::sin(angle) / portable::cos(angle);
   return static_cast<float>(std::copysign(tangent * tangent, tangent));
 }
 

@@ -117,7 +117,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   if (!plan.is_driven && is_harmless) {
     warn(
         "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
-        "(--encode smallest and exact write extra targets all the same)");
+        "(--poses writes extra targets for a program that drives them, and --encode exact all the same)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
