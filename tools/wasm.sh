@@ -1,19 +1,19 @@
 # Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and the npm package around it.
 
-# fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] there, from the
-# archive that this machine installs from; silent where they are there.
+# fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] there, from
+# Debian's archive; silent where they are there.
 fetch_sources() {
   local folder=$1 listed
   listed=$(listed_packages wasm-sources)
   [ "$(cat "$folder/.fetched" 2>/dev/null)" = "$listed" ] && return 0
   say "getting the sources of" $listed
-  rm -rf "$folder" && mkdir -p "$folder/.apt/lists/partial"
+  rm -rf "$folder" && mkdir -p "$folder/.apt/lists/partial" "$folder/.apt/cache/archives/partial"
   # Lists of sources are kept here: the settings of the machine stay as they are.
   cat >"$folder/.apt/sources.list" <<'LIST'
 deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main
 LIST
   local options=(-o "Dir::Etc::SourceList=$folder/.apt/sources.list" -o Dir::Etc::SourceParts=/nonexistent
-                 -o "Dir::State::Lists=$folder/.apt/lists" -o APT::Sandbox::User="$(id -un)")
+                 -o "Dir::State::Lists=$folder/.apt/lists" -o "Dir::Cache=$folder/.apt/cache" -o APT::Sandbox::User="$(id -un)")
   if ! (cd "$folder" && apt-get -q "${options[@]}" update && apt-get -q "${options[@]}" source $listed) \
       </dev/null >"$folder/.apt/log" 2>&1; then
     say "the sources of libraries could not be fetched; the end of $folder/.apt/log says why:"
@@ -31,23 +31,12 @@ build_wasm() {
   local build=$root/build/$preset
   fetch_sources "$root/build/wasm-sources" || return 1
   mkdir -p "$build"
-  # Debian's own settings forbid to build the system's libraries, which is done once, in the folder of the cache.
-  cat >"$root/build/emscripten.py" <<SETTINGS
-EMSCRIPTEN_ROOT = '/usr/share/emscripten'
-LLVM_ROOT = '/usr/bin'
-BINARYEN_ROOT = '/usr'
-NODE_JS = '$(command -v node)'
-LLVM_ADD_VERSION = CLANG_ADD_VERSION = '14'
-CACHE = '$root/build/emscripten-cache'
-FROZEN_CACHE = False
-SETTINGS
   (
-    export EM_CONFIG=$root/build/emscripten.py NODE_PATH=/usr/share/nodejs
+    # Debian has built the libraries of the system already, for exceptions too.
+    export NODE_PATH=/usr/share/nodejs EM_NODE_JS
+    EM_NODE_JS=$(command -v node)
     unset CMAKE_CXX_COMPILER_LAUNCHER
     cd "$root"
-    # Two compilers at once would wait for each other while the first library of the system is made.
-    [ -e build/emscripten-cache/.ready ] || { embuilder build libc libc++ libc++abi sysroot >/dev/null 2>&1 || true; }
-    mkdir -p build/emscripten-cache && touch build/emscripten-cache/.ready
     [ -e "$build/build.ninja" ] || cmake --preset "$preset"
     cmake --build "$build" --target "${@:-chronormal_cli}"
   )
