@@ -1,4 +1,5 @@
 // A single target, of a single lane: no dispatch, and no fused operation.
+#undef HWY_COMPILE_ONLY_EMU128  // which the wasm build asks for
 #define HWY_COMPILE_ONLY_SCALAR
 #include "core/portable_math.h"
 
