@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include "core/charconv.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 
 namespace chronormal::inline internal {
@@ -100,8 +100,8 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
     add_remedy("name the hosts that count by --for");
   add_remedy("or take a larger --tolerance");
   std::array<char, 32> tolerance{};
-  const auto end = std::to_chars(tolerance.data(), tolerance.data() + tolerance.size(),
-                                 options.tolerance.value_or(kHarmlessTolerance));
+  const auto end =
+      to_chars(tolerance.data(), tolerance.data() + tolerance.size(), options.tolerance.value_or(kHarmlessTolerance));
   warnings.push_back({label_of(mesh, baked), std::string("no form that does no harm is within ")
                                                  .append(tolerance.data(), end.ptr)
                                                  .append(" degrees throughout, and the nearest was taken (--plan lists "
