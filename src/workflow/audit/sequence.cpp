@@ -9,6 +9,7 @@
 #include "chronormal/normals/transform.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
+#include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
@@ -58,7 +59,7 @@ class SequenceSource {
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
     if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
     // What a host computes at the keyframes, as it keeps it.
-    const auto computed = [](const Vec3d& normal) { return to_double(to_float(unit(normal))); };
+    const auto computed = [](const Vec3d& normal) { return rounded_to_float(unit(normal)); };
     return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
   }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/blocks.h"
+#include "core/float32.h"
 #include "workflow/bake/forms/unit_targets.h"
 
 namespace chronormal::inline internal {
@@ -13,8 +14,6 @@ namespace {
 constexpr std::size_t kBlock = 256;
 constexpr double kWorthIt = 2e-3;    // radians: a smaller gain would only fill the file
 constexpr std::size_t kJudged = 40;  // a segment is judged at so many instants, less the first key
-
-Vec3d rounded(const Vec3d& v) { return to_double(to_float(v)); }
 
 // The weight 4 t (1 - t) as the track has it.
 double bend_weight(double t) {
@@ -45,7 +44,7 @@ HarmlessElements harmless_elements(const SequenceNormals& normals) {
       SequenceElement& element = result.elements[e];
       const ControlNormals n = form.control_normals(e);
       if (element.has_none) {
-        element.normal = rounded(unit_normal_at(n, 0).vector);
+        element.normal = rounded_to_float(unit_normal_at(n, 0).vector);
         element.has_none = element.normal == Vec3d{};
       }
       if (!element.has_none && !fits(element.normal, unit_normal_at(n, 1).vector)) has_room[e] = 0;
@@ -77,7 +76,7 @@ SegmentEnds segment_ends(std::span<const SequenceElement> elements, const Segmen
 std::vector<Vec3d> unit_key_deltas(std::span<const SequenceElement> elements, std::span<const Vec3d> directions) {
   std::vector<Vec3d> deltas(elements.size());
   for (std::size_t e = 0; e < elements.size(); ++e)
-    if (!elements[e].has_none) deltas[e] = rounded(directions[e] - elements[e].normal);
+    if (!elements[e].has_none) deltas[e] = rounded_to_float(directions[e] - elements[e].normal);
   return deltas;
 }
 
@@ -95,7 +94,7 @@ UnitBends unit_bends(std::span<const SequenceElement> elements, const SegmentFor
     const Vec3d half = unit_normal_at(n, 0.5).vector, shown = 0.5 * (ends.from[e] + ends.to[e]);
     if (straight > kWorthIt && half != Vec3d{}) {
       if (const std::optional<Vec3d> u = turning_unit(elements[e].normal, shown, half, 1)) {
-        const Vec3d delta = rounded(*u - elements[e].normal);
+        const Vec3d delta = rounded_to_float(*u - elements[e].normal);
         const double bent = worst_angle(n, ends.from[e], ends.to[e], delta);
         if (bent < straight - kWorthIt) {
           result.deltas[e] = delta;

@@ -6,13 +6,12 @@
 
 #include "analysis/end_delta.h"
 #include "core/blocks.h"
+#include "core/float32.h"
 
 namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 256;
-
-Vec3d rounded(const Vec3d& v) { return to_double(to_float(v)); }
 
 }  // namespace
 
@@ -29,7 +28,7 @@ std::vector<SequenceElement> sequence_elements(const SequenceNormals& normals) {
     parallel_each(elements.size(), kBlock, [&](std::size_t e) {
       const ControlNormals n = form.control_normals(e);
       if (elements[e].has_none) {
-        elements[e].normal = rounded(unit_normal_at(n, 0).vector);
+        elements[e].normal = rounded_to_float(unit_normal_at(n, 0).vector);
         elements[e].has_none = elements[e].normal == Vec3d{};
       }
       const double size = std::max({length(n.n0), length(n.m), length(n.n1)});
@@ -86,7 +85,7 @@ EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentFor
     const Vec3d start = elements[e].normal + before[e];
     if (direction != Vec3d{}) {
       const double size = std::clamp(length(start) * best_end_delta(n).scale, kShortest, kLongest);
-      result.deltas[e] = rounded(size * direction - elements[e].normal);
+      result.deltas[e] = rounded_to_float(size * direction - elements[e].normal);
     }
     const double bound = bounds.empty() ? 0 : bounds[e];
     error = std::max(error, largest_line_error(n, start, elements[e].normal + result.deltas[e]) + bound);
