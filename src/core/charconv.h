@@ -2,7 +2,8 @@
 /// (libc++ 13, with which the wasm module is built): then the first comes from fast_float and the second from fmt, with
 /// the same characters. Private.
 ///
-/// What is out of range is result_out_of_range in some libraries, and infinite or 0 in others.
+/// Where a number is out of range, from_chars() of some libraries returns result_out_of_range, and that of others an infinite
+/// number or 0: callers expect both.
 #ifndef CHRONORMAL_CORE_CHARCONV_H_
 #define CHRONORMAL_CORE_CHARCONV_H_
 

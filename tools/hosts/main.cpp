@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "chronormal/chronormal.h"
+#include "support/other_files.h"
 #include "support/page.h"
 
 namespace chronormal::hosts_page {
@@ -19,26 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using pages::Cells;
+using pages::kOtherFiles;
 using pages::Page;
+using pages::value_of;
 
-// The files of the folder, but those without a target that turns stored normals.
-constexpr const char* kFiles[] = {
-    "gltf/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
-    "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
-    "gltf/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf",
-    "gltf/MorphStressTest/glTF/MorphStressTest.gltf",
-    "gltf/RobotExpressive/RobotExpressive.glb",
-    "gltf/blenderio_01_cs_morph/01_cs_morph.gltf",
-    "gltf/blenderio_01_morphed_cube/01_morphed_cube.gltf",
-    "rigs/blender_suzanne_two_keys.glb",
-};
 constexpr std::size_t kSamples = 5;  // of each segment
-
-template <class T>
-T value_of(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().text());
-  return std::move(result).value();
-}
 
 // 0 for what is only rounding, and two decimals.
 std::string degrees(double value) { return value < 0.005 ? "0" : fmt::format("{:.2f}", value); }
@@ -111,7 +97,7 @@ void write_page(const std::string& folder, bool partial) {
   std::string part;
   if (data != nullptr) {
     std::vector<Row> rows;
-    for (const char* const file : kFiles) add_rows((fs::path(data) / file).string(), rows);
+    for (const char* const file : kOtherFiles) add_rows((fs::path(data) / file).string(), rows);
     Page files("hosts/files.md.in", folder);
     files.set("samples", std::to_string(kSamples));
     set_tables(files, rows);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chronormal/chronormal.h"
+#include "support/other_files.h"
 #include "support/page.h"
 
 namespace chronormal::rigs_page {
@@ -21,28 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using pages::Cells;
+using pages::kOtherFiles;
 using pages::Page;
+using pages::value_of;
 
-// Files whose targets turn stored normals, and the captured face.
-constexpr const char* kFiles[] = {
-    "gltf/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
-    "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
-    "gltf/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf",
-    "gltf/MorphStressTest/glTF/MorphStressTest.gltf",
-    "gltf/RobotExpressive/RobotExpressive.glb",
-    "gltf/blenderio_01_cs_morph/01_cs_morph.gltf",
-    "gltf/blenderio_01_morphed_cube/01_morphed_cube.gltf",
-    "rigs/blender_suzanne_two_keys.glb",
-};
+// The captured face stands beside the other files.
 constexpr const char* kCapture = "rigs/ict_capture.glb";
 constexpr std::size_t kSamples = 3;  // of each segment
 constexpr std::size_t kExtraTargets[] = {0, 4, 16, 32, 55};
-
-template <class T>
-T value_of(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().text());
-  return std::move(result).value();
-}
 
 // 0 for what is only rounding.
 std::string degrees(double value) { return value < 0.0005 ? "0" : fmt::format("{:.3f}", value); }
@@ -125,7 +112,7 @@ enum class Extent { kPartial, kQuick, kAll };
 
 std::string files_part(const fs::path& data, Extent extent, const std::string& folder) {
   Rows rows;
-  for (const char* const file : kFiles) add_rows((data / file).string(), rows);
+  for (const char* const file : kOtherFiles) add_rows((data / file).string(), rows);
   if (extent == Extent::kAll) add_rows((data / kCapture).string(), rows);
   Page files("rigs/files.md.in", folder);
   files.set("samples", std::to_string(kSamples));

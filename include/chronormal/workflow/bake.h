@@ -40,7 +40,7 @@ inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< nothing: smallest; of sequences exact
-  /// Those in which the deltas must be right, and for which the report says what they show.
+  /// The deltas must be right in these hosts, and the report says what each of them shows.
   std::vector<Host> hosts = {kHosts.begin(), kHosts.end()};
   /// Others than area are fitted, with a stated error. Nothing: for each mesh the one that its stored base normals
   /// follow clearly (as audit has it), or else area; area where normals are made anew: of sequences, recompute_base.
@@ -103,8 +103,8 @@ struct BakeChoice {
   /// where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing was
   /// fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
   ShownErrors played;
-  /// None where no other form than "as it is" was looked at, and for numbers of "quadratics" that were tried on all vertices
-  /// alike.
+  /// What each named host shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
+  /// "quadratics" that bake tried on all vertices alike.
   std::vector<HostChange> hosts;
   bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;

@@ -104,7 +104,7 @@ void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.resampling_error = plan.left_out;
 }
 
-// What a mesh that nothing drives is made for.
+// The poses that a mesh is made for when a program poses it.
 RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)

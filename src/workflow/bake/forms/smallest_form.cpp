@@ -215,7 +215,7 @@ class Choice {
   }
 
   [[nodiscard]] ChosenForm take_best() {
-    // What is stored is measured beside every other form.
+    // The judge measures the stored deltas whenever it measures another form, so that every other form knows their errors.
     const auto measured =
         std::find_if(choices_.begin(), choices_.end(), [](const auto& c) { return !c.hosts.empty(); });
     for (BakeChoice& choice : choices_) {

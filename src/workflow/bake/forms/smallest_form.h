@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// What forms with extra targets of low rank begin with.
+/// The deltas that a form with extra targets of low rank starts from.
 struct OwnForm {
   std::vector<VertexVectors> stored;    ///< the deltas of the file
   std::vector<VertexVectors> deltas;    ///< new ones of the mesh's own targets

@@ -17,7 +17,7 @@ constexpr std::size_t kBlock = 16;
 // Selections that are looked at one by one, and sums that this may take; those of a walk from the fullest one.
 constexpr std::size_t kMostSelections = 8192;
 constexpr double kMostSums = 1e9;
-// What a limit lets a normal be off beyond what it is with all columns, or with what is stored.
+// A limit lets a normal be farther off than it is with all columns, or with the stored deltas, by so many degrees.
 constexpr double kSlack = 0.01;
 constexpr double kLeastLength = 1e-3;
 // Selections that a limit lets through and that may turn out to be worse than it in the tracks of a file.
@@ -97,7 +97,7 @@ class Search {
   }
 
  private:
-  // What some of the hosts keep of all columns, and the limits of each vertex at each pose.
+  // One kind of host: the part of all columns that it keeps, and how far off each vertex may be at each pose.
   struct Kind {
     VertexColumns deltas;
     std::vector<float> limits;

@@ -13,9 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 16;          // points at a time
-constexpr std::size_t kParts = 32;          // sums over points, each in the memory of a whole matrix
-constexpr std::size_t kColumnsAtOnce = 64;  // of a symmetric matrix
+constexpr std::size_t kBlock = 16;  // points at a time
 constexpr std::size_t kPadding = 16;
 constexpr std::size_t kSampledPoints = 1500;
 // A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it lacks
@@ -84,41 +82,6 @@ void LowRankFit::set_first_importance() {
   });
 }
 
-// The inner products of rows, each point as important as it is: (rows, rows). Sums of a few points are float32, those
-// of all double.
-std::vector<double> LowRankFit::gram() const {
-  const std::size_t rows = missing_.rows(), stride = missing_.stride(), points = missing_.points();
-  std::vector<std::vector<double>> of_parts(kParts);
-  parallel_for(kParts, [&](std::size_t part) {
-    std::vector<double>& sum = of_parts[part];
-    sum.assign(rows * stride, 0.0);
-    std::vector<float> scaled(3 * kBlock * stride), products(rows * stride);
-    const std::size_t end = points * (part + 1) / kParts;
-    for (std::size_t first = points * part / kParts; first < end; first += kBlock) {
-      const std::size_t count = std::min(kBlock, end - first);
-      for (std::size_t p = 0; p < count; ++p) {
-        const float* const lack = missing_.missing(first + p);
-        for (std::size_t n = 0; n < 3 * stride; ++n) scaled[3 * stride * p + n] = importance_[first + p] * lack[n];
-      }
-      std::fill(products.begin(), products.end(), 0.0F);
-      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {
-        const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride, 1};
-        const StridedMatrix b{scaled.data() + i, 3 * count, stride - i, stride, 1};
-        add_products(a, b, products.data() + i * stride + i, stride);
-      }
-      for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += static_cast<double>(products[n]);
-    }
-  });
-  std::vector<double> result(rows * rows, 0.0);
-  for (const std::vector<double>& sum : of_parts) {
-    for (std::size_t i = 0; i < rows; ++i)
-      for (std::size_t j = i; j < rows; ++j) result[i * rows + j] += sum[i * stride + j];
-  }
-  for (std::size_t i = 0; i < rows; ++i)
-    for (std::size_t j = 0; j < i; ++j) result[i * rows + j] = result[j * rows + i];
-  return result;
-}
-
 void LowRankFit::take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras) {
   extras_ = extras;
   padded_ = padded_to(extras);
@@ -139,7 +102,7 @@ void LowRankFit::project() {
 
 std::vector<double> LowRankFit::errors_with(std::span<const std::size_t> counts) {
   const std::size_t most = std::min(counts.back(), missing_.rows());
-  const std::vector<double> vectors = leading_vectors(gram(), missing_.rows(), most);
+  const std::vector<double> vectors = leading_vectors(missing_.inner_products(importance_), missing_.rows(), most);
   take_weights(vectors, most, most);
   project();
   const std::size_t rows = missing_.rows(), stride = missing_.stride(), points = missing_.points();
@@ -344,7 +307,7 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   set_first_importance();
   own_targets_ = 0;
   for (int round = 0; round < kRounds; ++round) {
-    take_weights(leading_vectors(gram(), missing_.rows(), extras), extras, extras);
+    take_weights(leading_vectors(missing_.inner_products(importance_), missing_.rows(), extras), extras, extras);
     project();
     measure({});
     if (round + 1 == kRounds) break;

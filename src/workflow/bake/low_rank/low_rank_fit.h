@@ -62,7 +62,6 @@ class LowRankFit {
   };
 
   void set_first_importance();
-  [[nodiscard]] std::vector<double> gram() const;
   void take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras);
   void project();
   void measure(std::span<const float> own_weights);

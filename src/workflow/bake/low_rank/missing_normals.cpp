@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "analysis/kernels/products.h"
+#include "chronormal/core/parallel.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
 #include "workflow/bake/forms/unit_targets.h"
@@ -86,6 +88,41 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
       }
     });
   }
+}
+
+std::vector<double> MissingNormals::inner_products(std::span<const float> importance, std::size_t step) const {
+  constexpr std::size_t kPoints = 16, kParts = 32, kColumnsAtOnce = 64;
+  const std::size_t rows = this->rows(), sampled = (points() + step - 1) / step;
+  std::vector<std::vector<double>> of_parts(kParts);  // sums over points, each in the memory of a whole matrix
+  parallel_for(kParts, [&](std::size_t part) {
+    std::vector<double>& sum = of_parts[part];
+    sum.assign(rows * stride_, 0.0);
+    std::vector<float> scaled(3 * kPoints * stride_), products(rows * stride_);
+    const std::size_t end = sampled * (part + 1) / kParts;
+    for (std::size_t first = sampled * part / kParts; first < end; first += kPoints) {
+      const std::size_t count = std::min(kPoints, end - first);
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t point = (first + n) * step;
+        const float* const lack = missing(point);
+        for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
+      }
+      std::fill(products.begin(), products.end(), 0.0F);
+      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // what is right of the diagonal
+        const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
+        const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};
+        add_products(a, b, products.data() + i * stride_ + i, stride_);
+      }
+      for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += static_cast<double>(products[n]);
+    }
+  });
+  std::vector<double> result(rows * rows, 0.0);
+  for (const std::vector<double>& sum : of_parts) {
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t j = i; j < rows; ++j) result[i * rows + j] += sum[i * stride_ + j];
+  }
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < i; ++j) result[i * rows + j] = result[j * rows + i];
+  return result;
 }
 
 void MissingNormals::show_more(std::size_t point, std::span<const float> more) {

@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr unsigned kFitSeed = 101, kTermSeed = 102;
-constexpr std::size_t kBlock = 16, kPadding = 16, kParts = 32;
+constexpr std::size_t kBlock = 16, kPadding = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kSampledPoints = 8000;
 // Beyond so many products, weights would have more terms than anybody could evaluate.
@@ -122,7 +122,10 @@ QuadraticFit::QuadraticFit(const DeltaSource& source, const RightNormals& rights
     }
     importance_[p] = static_cast<float>(std::sqrt(sum / static_cast<double>(rows)));
   });
-  project(source, columns_of_points(points_, own), directions(leading_vectors(gram(), rows, extras_)));
+  project(source, columns_of_points(points_, own),
+          directions(leading_vectors(
+              missing_.inner_products(importance_, std::max<std::size_t>(1, missing_.points() / kSampledPoints)), rows,
+              extras_)));
   leave_out_small(rig);
   evaluate();
 }
@@ -135,36 +138,6 @@ void QuadraticFit::find_features(const DeltaSource& source) {
   for (std::size_t a = 0; a < moving.size() && features_.size() <= kMostFeatures; ++a)
     for (std::size_t b = a; b < moving.size(); ++b)
       if (a == b || source.terms.overlap(moving[a], moving[b])) features_.push_back({moving[a], moving[b], false});
-}
-
-// The inner products of rows over some of the points: (rows, rows). Sums of a few points are float32, those of all double.
-std::vector<double> QuadraticFit::gram() const {
-  const std::size_t rows = missing_.rows(), stride = missing_.stride(), points = missing_.points();
-  const std::size_t step = std::max<std::size_t>(1, points / kSampledPoints), sampled = block_count(points, step);
-  std::vector<std::vector<double>> of_parts(kParts);
-  parallel_for(kParts, [&](std::size_t part) {
-    std::vector<double>& sum = of_parts[part];
-    sum.assign(rows * stride, 0.0);
-    std::vector<float> scaled(3 * kBlock * stride), products(rows * stride);
-    const std::size_t end = sampled * (part + 1) / kParts;
-    for (std::size_t first = sampled * part / kParts; first < end; first += kBlock) {
-      const std::size_t count = std::min(kBlock, end - first);
-      for (std::size_t n = 0; n < count; ++n) {
-        const std::size_t p = (first + n) * step;
-        const float* const lack = missing_.missing(p);
-        for (std::size_t c = 0; c < 3 * stride; ++c) scaled[3 * stride * n + c] = importance_[p] * lack[c];
-      }
-      std::fill(products.begin(), products.end(), 0.0F);
-      add_products({scaled.data(), 3 * count, rows, stride, 1}, {scaled.data(), 3 * count, stride, stride, 1},
-                   products.data(), stride);
-      for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += static_cast<double>(products[n]);
-    }
-  });
-  std::vector<double> result(rows * rows, 0.0);
-  for (const std::vector<double>& sum : of_parts)
-    for (std::size_t i = 0; i < rows; ++i)
-      for (std::size_t j = 0; j < rows; ++j) result[i * rows + j] += sum[std::min(i, j) * stride + std::max(i, j)];
-  return result;
 }
 
 // What is missing along some poses (rows, extras), for each point: (points, 3, padded).

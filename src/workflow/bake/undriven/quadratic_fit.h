@@ -60,7 +60,6 @@ class QuadraticFit {
   };
 
   void find_features(const DeltaSource& source);
-  [[nodiscard]] std::vector<double> gram() const;
   [[nodiscard]] std::vector<float> directions(std::span<const double> vectors) const;
   void project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions);
   void leave_out_small(const RigPoses& rig);
