@@ -13,6 +13,7 @@
 #include "cli/options/help.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/process.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
@@ -241,6 +242,7 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   }
   const auto chosen = std::find_if(commands.begin(), commands.end(),
                                    [&](const Command& command) { return program.got_subcommand(command.name); });
+  prepare_threads();
   const Result<int> result = chosen->run();
   return result ? result.value() : report(chosen->name, result.error());
 }

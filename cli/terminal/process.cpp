@@ -5,9 +5,11 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <exception>
 #include <new>
 
+#include "chronormal/core/parallel.h"
 #include "chronormal/io/output.h"
 #include "cli/terminal/print.h"
 
@@ -110,6 +112,16 @@ void prepare_process() noexcept {
 #endif
   std::set_new_handler(end_for_want_of_memory);
   std::set_terminate(end_by_exception);
+}
+
+void prepare_threads() noexcept {
+#ifdef NDEBUG
+  install(SIGSEGV, end_by_abort);
+#endif
+  parallel_for(2, [](std::size_t) {});
+#ifdef NDEBUG
+  install(SIGSEGV, SIG_DFL);
+#endif
 }
 
 }  // namespace chronormal::cli

@@ -18,6 +18,11 @@ namespace chronormal::cli {
 /// reading and writing there stays an error. Installs the handlers. To be called first of all.
 void prepare_process() noexcept;
 
+/// Has oneTBB load what it needs, so that it happens once and here: where memory runs out just then, dlopen() of the C
+/// library 2.36 writes to address 0, and the program ends with exit code 1 and a line all the same. To be called before a
+/// command runs.
+void prepare_threads() noexcept;
+
 }  // namespace chronormal::cli
 
 #endif  // CLI_TERMINAL_PROCESS_H_
