@@ -178,6 +178,9 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   Result<std::vector<std::string>> pointers = edit.pointers(output);
   if (!pointers) return pointers.error();
   baked.value().pointers = std::move(pointers).value();
+  const Result<std::size_t> left_out = edit.unused_bytes(output);
+  if (!left_out) return left_out.error();
+  baked.value().left_out_bytes = left_out.value();
   std::vector<std::string> warnings = baked.value().warnings;
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
   // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.

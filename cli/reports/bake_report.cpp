@@ -217,6 +217,9 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   text.append("\n").append(table.text()).append("\n");
   text += formatted("{} and {} were added", counted(bake.added_targets, "target", "targets"),
                     counted(bake.added_bytes, "byte of arrays", "bytes of arrays"));
+  if (bake.left_out_bytes > 0)
+    text += formatted("; {} that nothing refers to any more are left out",
+                      counted(bake.left_out_bytes, "byte of arrays", "bytes of arrays"));
   if (bake.converted_tracks > 0)
     text += formatted("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
                                           "weight tracks are cubic splines"));
@@ -228,6 +231,11 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     text += counted(fitted, "normal that several targets move at once has deltas",
                     "normals that several targets move at once have deltas") +
             " fitted to the weights of the file\n";
+  std::size_t tangents = 0;
+  for (const BakedMesh& mesh : bake.meshes) tangents += mesh.new_tangents;
+  if (tangents > 0)
+    text += counted(tangents, "target has new tangents: its", "targets have new tangents: their") +
+            " stored ones leaned on the right normals\n";
   return text + left_text(bake) + hosts_text(bake) + lines_after(report);
 }
 

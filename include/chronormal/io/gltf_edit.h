@@ -2,7 +2,7 @@
 ///
 /// The JSON is not printed anew: what changes is spliced into the text of the source, so that every token that is not
 /// named by a pointer keeps its bytes (64-bit integers, 1e400, unknown extensions, the order of members, blanks). New
-/// arrays go behind the BIN chunk of the source, which stays a prefix of the new one.
+/// arrays go behind the BIN chunk of the source, which stays a prefix of the new one unless leave_out_unused() is called.
 ///
 ///     GltfEdit edit(document);
 ///     const std::size_t a = edit.add_vectors(deltas, {});               // a new accessor
@@ -68,6 +68,11 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
+  /// From now on leaves out what the changes leave unused: the bytes of arrays that the source refers to and its result
+  /// does not, where buffer 0 of the source and of the result is the BIN chunk. What follows them moves towards the
+  /// front; all indices stay. Files with extensions that may refer to arrays in ways of their own keep all their bytes.
+  void leave_out_unused();
+
   /// What a file at this path has otherwise than the source: pointers that are replaced or added, as they are in the
   /// result, sorted; /accessors/N, /buffers/N and so on of what is new among them. Of what was added together, the
   /// outermost. Without a path: in the container and the folder of the source. Errors: as of write(), but for the file.
@@ -76,6 +81,8 @@ class GltfEdit {
   [[nodiscard]] std::vector<std::string> warnings(const std::string& path) const;
   /// How many bytes of arrays were added.
   [[nodiscard]] std::size_t added_bytes() const noexcept;
+  /// How many bytes of the source a file at this path is without, by leave_out_unused(). Errors: as of pointers().
+  [[nodiscard]] Result<std::size_t> unused_bytes(const std::string& path = "") const;
 
   /// The whole new file in memory, as write() would write it to path.
   [[nodiscard]] Result<std::string> bytes(const std::string& path) const;

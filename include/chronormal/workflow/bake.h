@@ -123,7 +123,9 @@ struct BakedMesh {
   std::size_t left_flat = 0;               ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
-  std::size_t stilled = 0;   ///< targets that moved normals and no position: their deltas are zero now
+  /// Targets whose tangents leaned on the right normals: they are made anew, for hosts that add up tangents.
+  std::size_t new_tangents = 0;
+  std::size_t stilled = 0;       ///< targets that moved normals and no position: their deltas are zero now
   std::size_t without_base = 0;  ///< vertices whose faces have no area in the base: see docs/cli.md
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
   /// active together are held against the weights of the file, at keys and up to fifteen instants between any two.
@@ -145,6 +147,7 @@ struct GltfBake {
   std::vector<std::string> pointers;  ///< JSON pointers that were replaced or added
   std::vector<std::string> warnings;  ///< for a person: one sentence each
   std::size_t added_targets = 0, added_bytes = 0;
+  std::size_t left_out_bytes = 0;    ///< of arrays of the source that nothing refers to any more
   std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
   bool changed = false;
   std::string drivers;  ///< what drives the extra targets of all meshes, as JSON of its own (docs/extras.md)

@@ -62,6 +62,7 @@ struct Host {
   TrackRule tracks = TrackRule::kSpecified;
   int weight_bits = 32;  ///< of a weight in a track
   double least_weight = 0;
+  bool adds_tangents = true;     ///< of targets; else the tangents of the base stay, whatever the targets do
   std::size_t most_targets = 0;  ///< of a primitive; 0: no limit is known
   std::string_view beyond = "";  ///< what becomes of a file with more targets, where there is a limit
   std::string_view source = "";  ///< where this can be read
@@ -73,6 +74,7 @@ struct Host {
 inline constexpr std::array<Host, 9> kHosts = {{
     {.name = "three",
      .title = "three.js",
+     .adds_tangents = false,
      .source = "three.js r187, src/renderers/shaders/ShaderChunk/morphnormal_vertex.glsl.js and "
                "examples/jsm/loaders/GLTFLoader.js"},
     {.name = "babylon",
@@ -83,6 +85,7 @@ inline constexpr std::array<Host, 9> kHosts = {{
      .bits = 16,
      .tracks = TrackRule::kSplinesMisread,
      .least_weight = 1e-5,
+     .adds_tangents = false,
      .source = "PlayCanvas 2.23, src/scene/morph.js, src/scene/morph-instance.js, "
                "src/framework/parsers/glb-parser.js (createMorphTargetCurves) and "
                "src/framework/anim/evaluator/anim-cache.js"},

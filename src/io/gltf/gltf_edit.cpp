@@ -36,6 +36,7 @@ struct GltfEdit::State {
   JsonText source;
   std::vector<Change> changes;
   gltf::NewArrays arrays;
+  bool without_unused = false;
 };
 
 namespace {
@@ -90,8 +91,8 @@ Result<gltf::EditLayout> GltfEdit::State::lay_out(gltf::LayoutTarget target) {
   for (const Change& change : changes) {
     if (Status status = apply(change, json); !status) return status.error();
   }
-  gltf::EditLayout layout({document.model, document.bytes, document.chunks, is_glb, source, arrays}, std::move(target),
-                          std::move(json));
+  gltf::EditLayout layout({document.model, document.bytes, document.chunks, is_glb, source, arrays, without_unused},
+                          std::move(target), std::move(json));
   if (Status status = layout.run(); !status) return status.error();
   return layout;
 }
@@ -140,6 +141,8 @@ std::size_t GltfEdit::add_scalars(std::span<const float> scalars, const GltfVect
   return state_->document.model.accessors.size() + state_->arrays.add(scalars, 1, options);
 }
 
+void GltfEdit::leave_out_unused() { state_->without_unused = true; }
+
 Result<std::vector<std::string>> GltfEdit::pointers(const std::string& path) const {
   Result<gltf::LayoutTarget> target = state_->target_of(path);
   if (!target) return target.error();
@@ -158,6 +161,15 @@ std::vector<std::string> GltfEdit::warnings(const std::string& path) const {
 }
 
 std::size_t GltfEdit::added_bytes() const noexcept { return state_->arrays.byte_count(); }
+
+Result<std::size_t> GltfEdit::unused_bytes(const std::string& path) const {
+  Result<gltf::LayoutTarget> target = state_->target_of(path);
+  if (!target) return target.error();
+  target.value().with_bytes = false;
+  const Result<gltf::EditLayout> layout = state_->lay_out(std::move(target).value());
+  if (!layout) return layout.error();
+  return layout.value().unused_bytes();
+}
 
 Result<std::string> GltfEdit::bytes(const std::string& path) const {
   Result<gltf::LayoutTarget> target = state_->target_of(path);

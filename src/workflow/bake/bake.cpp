@@ -22,6 +22,7 @@
 #include "workflow/bake/forms/chosen_form.h"
 #include "workflow/bake/forms/smallest_form.h"
 #include "workflow/bake/mesh_weights.h"
+#include "workflow/bake/tangents.h"
 #include "workflow/bake/terms.h"
 #include "workflow/bake/undriven/rig_poses.h"
 #include "workflow/bake/write/messages.h"
@@ -185,20 +186,29 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     baked.report.extras.push_back(deltas.grown.drivers.as_target(k, mesh.target_count + k));
 
   const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
-  if (!deltas.is_new && !any_base) return Success{};
+  const bool any_new = deltas.is_new || any_base;
+  const std::vector<bool> is_stale = find_stale_tangents(source, options.hosts);
+  baked.report.new_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
+  if (!any_new && baked.report.new_tangents == 0) return Success{};
+  if (baked.report.new_tangents > 0) writer.add_tangents();
 
   const auto check_size = [&] { return document.expansion().check(edit.added_bytes(), document.name()); };
   for (std::size_t i = 0; i < mesh.target_count; ++i) {
-    std::optional<TargetDeltas> of_target;
-    if (changes(shading, i)) {
+    std::optional<TargetDeltas> of_target, tangents;
+    if (any_new && changes(shading, i)) {
       of_target = deltas.own(i);
       if (!moves(shading, i) && of_target) ++baked.report.stilled;
       if (of_target)
         baked.report.largest_error = std::fmax(baked.report.largest_error, of_target->error * kDegreesPerRadian);
     }
-    writer.write_target(i, of_target);
+    if (is_stale[i]) tangents = tangent_deltas(source, i);
+    writer.write_target(i, of_target, tangents);
     step();
     if (Status status = check_size(); !status) return status;
+  }
+  if (!any_new) {
+    baked.report.bytes = edit.added_bytes() - bytes_before;
+    return Success{};
   }
   for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k) {
     writer.append_target(deltas.extra(k));
@@ -221,6 +231,11 @@ bool is_baked(const GltfShading& shading, const BakeOptions& options) {
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
+bool any_tangents(const GltfMesh& mesh) {
+  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                     [](const GltfPrimitive& primitive) { return primitive.has_tangents; });
+}
+
 // Nothing for a mesh that does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
                                           const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit) {
@@ -229,7 +244,8 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   baked.report.mesh = index;
   baked.report.name = mesh.name;
   Result<GltfShading> shading = read_gltf_shading(
-      document, index, {options.smooth, options.crease_angle, options.encoding != BakeEncoding::kExact});
+      document, index,
+      {options.smooth, options.crease_angle, options.encoding != BakeEncoding::kExact || any_tangents(mesh)});
   if (!shading) return shading.error();
   if (is_baked(shading.value(), options)) {
     const GltfBakeMark& mark = *shading.value().mark;
@@ -292,6 +308,10 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   }
   result.converted_tracks = tracks.value().converted;
 
+  edit.leave_out_unused();
+  const Result<std::size_t> left_out = edit.unused_bytes();
+  if (!left_out) return left_out.error();
+  result.left_out_bytes = left_out.value();
   Result<std::vector<std::string>> pointers = edit.pointers();
   if (!pointers) return pointers.error();
   result.pointers = std::move(pointers).value();

@@ -81,6 +81,7 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
           {"vertices_without_base", mesh.without_base},
           {"vertices_without_stored_normal", mesh.without_stored},
           {"rescaled_normals", mesh.rescaled},
+          {"new_tangents", mesh.new_tangents},
           {"stilled_targets", mesh.stilled},
           {"fitted_normals", mesh.fitted_elements},
           {"kept_normals", mesh.kept},
@@ -109,6 +110,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
   json["meshes"] = std::move(meshes);
   json["added_targets"] = bake.added_targets;
   json["added_bytes"] = bake.added_bytes;
+  json["left_out_bytes"] = bake.left_out_bytes;
   json["converted_tracks"] = bake.converted_tracks;
   json["pointers"] = bake.pointers;
   json["warnings"] = bake.warnings;

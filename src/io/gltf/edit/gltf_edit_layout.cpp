@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/gltf/edit/unused_arrays.h"
 #include "io/gltf/model/gltf_uri.h"
 #include "io/json/json_writer.h"
 
@@ -164,6 +165,21 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
+// The BIN chunk, which is buffer 0, without the arrays that the changes leave unused.
+Status EditLayout::leave_out_unused() {
+  const std::string_view bin = *document_.chunks.bin;
+  const UnusedArrays unused =
+      find_unused_arrays(document_.model, bin.size(), document_.chunks.json, join(json_.pieces()));
+  unused_bytes_ = unused.bytes();
+  if (unused_bytes_ == 0 || unused_bytes_ == bin.size()) return Success{};
+  for (const auto& [pointer, value] : unused.changes) {
+    if (Status status = set(pointer, value); !status) return status;
+  }
+  bin_ = unused.kept(bin);
+  bin_size_ -= unused_bytes_;
+  return Success{};
+}
+
 Status EditLayout::lay_out_glb() {
   const std::vector<Buffer>& buffers = document_.model.buffers;
   if (document_.chunks.bin) {
@@ -188,6 +204,9 @@ Status EditLayout::lay_out_glb() {
     if (!bytes) return bytes.error();
   }
 
+  if (document_.without_unused && !must_move && !buffers.empty() && is_bin(0)) {
+    if (Status status = leave_out_unused(); !status) return status;
+  }
   std::size_t arrays_at = 0;
   if (array_bytes > 0) {
     arrays_at = add_to_bin("", 4);
@@ -213,7 +232,7 @@ Status EditLayout::lay_out_glb() {
     add_other_members(first_buffer_, {"uri", "byteLength"}, buffer);
     return set("/buffers", "[" + buffer.text() + other_buffers_ + "]");
   }
-  if (!grows) return Success{};
+  if (!grows && unused_bytes_ == 0) return Success{};
   if (!buffers.empty()) return set("/buffers/0/byteLength", std::to_string(bin_size_));
   return append("/buffers", buffer.text());
 }

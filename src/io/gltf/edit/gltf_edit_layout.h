@@ -28,6 +28,7 @@ struct EditedDocument {
   bool is_glb;
   JsonText& source;  ///< the JSON as it was
   const NewArrays& arrays;
+  bool without_unused = false;  ///< whether arrays are left out that nothing refers to any more
 };
 
 struct LayoutTarget {
@@ -50,6 +51,8 @@ class EditLayout {
   /// After run().
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// How many bytes of the source are left out.
+  [[nodiscard]] std::size_t unused_bytes() const noexcept { return unused_bytes_; }
   /// The file, in pieces that live as long as this.
   [[nodiscard]] Result<GlbPieces> file() const;
 
@@ -70,6 +73,7 @@ class EditLayout {
   [[nodiscard]] std::size_t add_to_bin(std::string_view bytes, std::size_t alignment);
   [[nodiscard]] Status find_images();
   [[nodiscard]] Status add_arrays(std::size_t buffer, std::size_t offset);
+  [[nodiscard]] Status leave_out_unused();
   [[nodiscard]] Status lay_out_glb();
   [[nodiscard]] Status move_buffers();
   [[nodiscard]] Status move_view(const std::string& pointer, const std::vector<Moved>& moved);
@@ -82,7 +86,7 @@ class EditLayout {
   LayoutTarget target_;
   JsonText json_;
   std::optional<std::vector<std::string_view>> bin_;
-  std::size_t bin_size_ = 0;
+  std::size_t bin_size_ = 0, unused_bytes_ = 0;
   std::vector<JsonMember> first_buffer_;  // after move_buffers(): what buffer 0 was
   std::string other_buffers_;             // after move_buffers(): each with a comma before it
   std::vector<Image> images_;

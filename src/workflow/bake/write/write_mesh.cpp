@@ -82,7 +82,13 @@ Status MeshWriter::write_base(const std::vector<bool>& is_replaced, std::span<co
   return Success{};
 }
 
-void MeshWriter::write_target(std::size_t target, const std::optional<TargetDeltas>& deltas) {
+void MeshWriter::add_tangents() {
+  for (std::size_t p = 0; p < mesh_.primitives.size(); ++p)
+    attributes_[p].tangents |= is_shaded(p) && mesh_.primitives[p].has_tangents;
+}
+
+void MeshWriter::write_target(std::size_t target, const std::optional<TargetDeltas>& deltas,
+                              const std::optional<TargetDeltas>& tangents) {
   for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
@@ -92,6 +98,10 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
       edit_.set(pointer + "/NORMAL", std::to_string(deltas_of(p, *deltas)));
     else if (attributes_[p].normals && !has.normals)
       edit_.set(pointer + "/NORMAL", std::to_string(zeros_of(p)));
+    if (tangents && is_shaded(p) && mesh_.primitives[p].has_tangents)
+      edit_.set(pointer + "/TANGENT", std::to_string(deltas_of(p, *tangents)));
+    else if (attributes_[p].tangents && !has.tangents)
+      edit_.set(pointer + "/TANGENT", std::to_string(zeros_of(p)));
   }
 }
 

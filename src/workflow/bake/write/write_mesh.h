@@ -43,8 +43,12 @@ class MeshWriter {
   /// Replaces the base normals of some parts; normals are those of all, (V, 3). Errors: kInvalidInput where Draco
   /// compresses them.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
-  /// Writes the deltas of a target of the mesh; without them it only gets the attributes that it lacks.
-  void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas);
+  /// Has all targets get tangents in primitives that have some.
+  void add_tangents();
+  /// Writes the deltas of a target of the mesh, of normals and of tangents; without them it only gets the attributes that it
+  /// lacks.
+  void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas,
+                    const std::optional<TargetDeltas>& tangents = {});
   /// Adds a target that moves no vertex.
   void append_target(const TargetDeltas& deltas);
   /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,

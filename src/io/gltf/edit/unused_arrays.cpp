@@ -1,0 +1,289 @@
+#include "io/gltf/edit/unused_arrays.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io/json/json.h"
+#include "io/json/json_writer.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+using Json = nlohmann::json;
+using Range = UnusedArrays::Range;
+
+constexpr std::size_t kAlignment = 4;
+
+// Extensions whose objects refer to textures, nodes and materials, but neither to accessors nor to buffer views.
+constexpr std::string_view kKnownExtensions[] = {"KHR_materials_",
+                                                 "KHR_texture_",
+                                                 "EXT_texture_",
+                                                 "KHR_lights_",
+                                                 "KHR_animation_pointer",
+                                                 "KHR_node_",
+                                                 "KHR_mesh_quantization",
+                                                 "KHR_xmp",
+                                                 "MSFT_lod",
+                                                 "MSFT_texture_",
+                                                 "VRM",
+                                                 "GODOT_",
+                                                 "FB_",
+                                                 "AGI_"};
+
+bool is_known(std::string_view extension) {
+  return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),
+                     [&](std::string_view known) { return extension.starts_with(known); });
+}
+
+// Whether every extension that is used anywhere in a value is a known one.
+bool has_known_extensions_only(const Json& value) {
+  if (value.is_object()) {
+    const auto extensions = value.find("extensions");
+    if (extensions != value.end() && extensions->is_object()) {
+      for (const auto& [name, content] : extensions->items())
+        if (!is_known(name)) return false;
+    }
+  }
+  return !value.is_structured() || std::all_of(value.begin(), value.end(), has_known_extensions_only);
+}
+
+// A member of an object or an item of an array; null where there is none.
+const Json& at(const Json& value, const char* key) {
+  static const Json kNull;
+  const auto found = value.is_object() ? value.find(key) : value.end();
+  return value.is_object() && found != value.end() ? *found : kNull;
+}
+
+// Marks the accessors that a document refers to.
+class References {
+ public:
+  References(const Json& root, std::size_t accessors) : referred_(accessors, false) {
+    for (const Json& mesh : at(root, "meshes")) {
+      for (const Json& primitive : at(mesh, "primitives")) {
+        add(at(primitive, "indices"));
+        for (const Json& accessor : at(primitive, "attributes")) add(accessor);
+        for (const Json& target : at(primitive, "targets"))
+          for (const Json& accessor : target) add(accessor);
+      }
+    }
+    for (const Json& animation : at(root, "animations")) {
+      for (const Json& sampler : at(animation, "samplers")) {
+        add(at(sampler, "input"));
+        add(at(sampler, "output"));
+      }
+    }
+    for (const Json& skin : at(root, "skins")) add(at(skin, "inverseBindMatrices"));
+  }
+
+  bool operator[](std::size_t accessor) const { return referred_[accessor]; }
+
+ private:
+  void add(const Json& index) {
+    if (!index.is_number()) return;
+    const auto number = index.get<double>();
+    if (number >= 0 && number < static_cast<double>(referred_.size()))
+      referred_[static_cast<std::size_t>(number)] = true;
+  }
+
+  std::vector<bool> referred_;
+};
+
+// The parts of views that an accessor has: its own, and those of a sparse one.
+struct Part {
+  std::size_t view = 0, offset = 0, length = 0;
+};
+
+// The bytes of elements at a stride; nothing where that is no number.
+std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std::size_t size) {
+  if (count == 0) return 0;
+  if (stride > 0 && count - 1 > (static_cast<std::size_t>(-1) - size) / stride) return std::nullopt;
+  return (count - 1) * stride + size;
+}
+
+// Nothing where a part is not inside its view.
+std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& accessor) {
+  std::vector<Part> parts;
+  if (accessor.is_matrix && component_size(accessor.component) < kAlignment) return std::nullopt;  // padded columns
+  const auto add = [&](std::size_t view, std::size_t offset, std::size_t count, std::size_t size, bool strides) {
+    if (view >= model.views.size()) return false;
+    const BufferView& of = model.views[view];
+    const std::optional<std::size_t> length = length_of(count, strides ? of.stride.value_or(size) : size, size);
+    if (!length || offset > of.length || *length > of.length - offset) return false;
+    parts.push_back({view, offset, *length});
+    return true;
+  };
+  if (accessor.view && !add(*accessor.view, accessor.offset, accessor.count, accessor.element_size(), true))
+    return std::nullopt;
+  if (accessor.sparse) {
+    const Sparse& sparse = *accessor.sparse;
+    if (!add(sparse.indices_view, sparse.indices_offset, sparse.count, component_size(sparse.indices_component),
+             false) ||
+        !add(sparse.values_view, sparse.values_offset, sparse.count, accessor.element_size(), false))
+      return std::nullopt;
+  }
+  return parts;
+}
+
+// Ascending and apart.
+std::vector<Range> joined(std::vector<Range> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  std::vector<Range> result;
+  for (const Range& range : ranges) {
+    if (range.begin == range.end) continue;
+    if (!result.empty() && range.begin <= result.back().end)
+      result.back().end = std::max(result.back().end, range.end);
+    else
+      result.push_back(range);
+  }
+  return result;
+}
+
+// What is left of some ranges without others, in whole multiples of kAlignment.
+std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const std::vector<Range>& without) {
+  std::vector<Range> result;
+  auto other = without.begin();
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    begin = (begin + kAlignment - 1) / kAlignment * kAlignment;
+    if (begin < end && end - begin >= kAlignment) result.push_back({begin, end - (end - begin) % kAlignment});
+  };
+  for (const Range& range : ranges) {
+    std::size_t begin = range.begin;
+    while (other != without.end() && other->end <= begin) ++other;
+    for (auto next = other; next != without.end() && next->begin < range.end; ++next) {
+      if (next->begin > begin) add(begin, next->begin);
+      begin = std::max(begin, next->end);
+    }
+    add(begin, range.end);
+  }
+  return result;
+}
+
+// Where a byte is once ranges are left out.
+class Moved {
+ public:
+  explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {
+    std::size_t sum = 0;
+    for (const Range& range : ranges) before_.push_back(std::exchange(sum, sum + range.end - range.begin));
+  }
+
+  std::size_t operator()(std::size_t offset) const {
+    const auto next = std::upper_bound(ranges_.begin(), ranges_.end(), offset,
+                                       [](std::size_t byte, const Range& range) { return byte < range.begin; });
+    if (next == ranges_.begin()) return offset;
+    const auto i = static_cast<std::size_t>(next - ranges_.begin()) - 1;
+    return offset - before_[i] - (std::min(offset, ranges_[i].end) - ranges_[i].begin);
+  }
+
+ private:
+  const std::vector<Range>& ranges_;
+  std::vector<std::size_t> before_;  // what is left out before each
+};
+
+}  // namespace
+
+std::size_t UnusedArrays::bytes() const noexcept {
+  std::size_t sum = 0;
+  for (const Range& range : ranges) sum += range.end - range.begin;
+  return sum;
+}
+
+std::vector<std::string_view> UnusedArrays::kept(std::string_view bin) const {
+  std::vector<std::string_view> result;
+  std::size_t begin = 0;
+  for (const Range& range : ranges) {
+    result.push_back(bin.substr(begin, range.begin - begin));
+    begin = range.end;
+  }
+  result.push_back(bin.substr(begin));
+  return result;
+}
+
+UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::string_view before,
+                                std::string_view after) {
+  const auto parse = [](std::string_view text) {
+    return parse_json(text, "", 0, {"", [](std::size_t, const Json&) {}});
+  };
+  const Result<Json> source = parse(before), edited = parse(after);
+  if (!source || !edited || !has_known_extensions_only(edited.value())) return {};
+  const std::size_t count = model.accessors.size();
+  const References was(source.value(), count), is(edited.value(), count);
+
+  // What each view is used for.
+  std::vector<bool> is_used(model.views.size(), false), is_unused(model.views.size(), false);
+  for (const Json& image : at(edited.value(), "images")) {
+    const Json& view = at(image, "bufferView");
+    if (view.is_number() && view.get<double>() < static_cast<double>(is_used.size()))
+      is_used[view.get<std::size_t>()] = true;
+  }
+  const std::vector<bool> of_images = is_used;
+  std::vector<std::vector<Part>> parts(count);
+  std::vector<Range> used, unused;
+  std::vector<std::size_t> unused_accessors;
+  for (std::size_t a = 0; a < count; ++a) {
+    std::optional<std::vector<Part>> found = parts_of(model, model.accessors[a]);
+    if (!found) return {};
+    parts[a] = std::move(*found);
+    const bool is_dead = was[a] && !is[a];
+    if (is_dead && !parts[a].empty()) unused_accessors.push_back(a);
+    for (const Part& part : parts[a]) {
+      const BufferView& view = model.views[part.view];
+      (is_dead ? is_unused : is_used)[part.view] = true;
+      if (view.buffer == 0) {
+        const std::size_t begin = view.offset + part.offset;
+        (is_dead ? unused : used).push_back({begin, begin + part.length});
+      }
+    }
+  }
+  for (std::size_t v = 0; v < model.views.size(); ++v) {
+    const BufferView& view = model.views[v];
+    if (view.buffer != 0) continue;
+    if (view.offset > bin_size || view.length > bin_size - view.offset) return {};
+    const Range whole{view.offset, view.offset + view.length};
+    if (is_unused[v] && !is_used[v])
+      unused.push_back(whole);
+    else if (of_images[v] || !is_used[v])
+      used.push_back(whole);
+  }
+
+  UnusedArrays result;
+  result.ranges = aligned_difference(joined(std::move(unused)), joined(std::move(used)));
+  if (result.ranges.empty()) return {};
+  const Moved moved(result.ranges);
+  const auto set = [&](const std::string& pointer, std::size_t offset, std::size_t now) {
+    if (now != offset) result.changes.emplace_back(pointer, std::to_string(now));
+  };
+  for (std::size_t v = 0; v < model.views.size(); ++v) {
+    const BufferView& view = model.views[v];
+    if (view.buffer != 0) continue;
+    const std::string pointer = "/bufferViews/" + std::to_string(v);
+    if (is_unused[v] && !is_used[v]) {
+      result.changes.emplace_back(pointer, R"({"buffer":0,"byteLength":1})");
+      continue;
+    }
+    const std::size_t begin = moved(view.offset);
+    set(pointer + "/byteOffset", view.offset, begin);
+    set(pointer + "/byteLength", view.length, moved(view.offset + view.length) - begin);
+  }
+  const auto set_part = [&](const std::string& pointer, const Part& part) {
+    const BufferView& view = model.views[part.view];
+    if (view.buffer == 0) set(pointer, part.offset, moved(view.offset + part.offset) - moved(view.offset));
+  };
+  auto next = unused_accessors.begin();
+  for (std::size_t a = 0; a < count; ++a) {
+    const std::string pointer = "/accessors/" + std::to_string(a);
+    if (next != unused_accessors.end() && *next == a) {
+      ++next;
+      result.changes.emplace_back(pointer, R"({"componentType":5121,"count":1,"type":"SCALAR"})");
+      continue;
+    }
+    auto part = parts[a].begin();
+    if (model.accessors[a].view) set_part(pointer + "/byteOffset", *part++);
+    if (!model.accessors[a].sparse) continue;
+    set_part(pointer + "/sparse/indices/byteOffset", *part++);
+    set_part(pointer + "/sparse/values/byteOffset", *part);
+  }
+  return result;
+}
+
+}  // namespace chronormal::inline internal::gltf

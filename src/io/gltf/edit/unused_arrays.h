@@ -1,0 +1,45 @@
+/// The arrays of a glTF file that an edit leaves without anybody who refers to them. Private to io.
+///
+///     unused    accessors that the source refers to and the edited document does not: from primitives, targets, samplers
+///               and skins. What nobody referred to before is not ours, and stays.
+///     left out  bytes of the BIN chunk that belong to such accessors and to nothing else; what follows moves towards
+///               the front by whole multiples of 4, so that every number stays aligned
+///
+/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused ones a view of one byte. An
+/// extension may refer to accessors and views where only its author knows: files with another one than those that are known
+/// to do without keep all their bytes.
+#ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
+#define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/gltf/model/gltf_model.h"
+
+namespace chronormal::inline internal::gltf {
+
+struct UnusedArrays {
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
+
+  std::vector<Range> ranges;  ///< of the BIN chunk, ascending and apart
+  /// Pointers and the values that they need once these bytes are left out.
+  std::vector<std::pair<std::string, std::string>> changes;
+
+  [[nodiscard]] std::size_t bytes() const noexcept;
+  /// What is left of the BIN chunk.
+  [[nodiscard]] std::vector<std::string_view> kept(std::string_view bin) const;
+};
+
+/// Buffer 0 of the model must be a BIN chunk of bin_size bytes; before and after are the JSON of the source, which the
+/// model was parsed from, and of the edited document. O(size of the JSON).
+[[nodiscard]] UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::string_view before,
+                                              std::string_view after);
+
+}  // namespace chronormal::inline internal::gltf
+
+#endif  // CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
