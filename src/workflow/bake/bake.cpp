@@ -149,9 +149,37 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
           chosen->changes(source.shading)};
 }
 
-// Bakes what was read of one mesh, which moves and has normals. step() is called for each target that is done.
+// How far a bake is: each target of a mesh counts once when its form is chosen, and once when it is written.
+class Course {
+ public:
+  using Tell = std::function<void(std::size_t done, std::size_t total)>;
+
+  Course(const GltfDocument& document, const std::vector<std::size_t>& meshes, Tell tell) : tell_(std::move(tell)) {
+    for (const std::size_t mesh : meshes) total_ += 2 * document.meshes()[mesh].target_count;
+  }
+  void begin_mesh(std::size_t targets) {
+    first_ = std::exchange(next_, next_ + 2 * targets);
+    targets_ = targets;
+    reach(first_);
+  }
+  // While a form is chosen.
+  [[nodiscard]] Tell of_choice() {
+    return [this](std::size_t done, std::size_t total) { reach(first_ + targets_ * done / total); };
+  }
+  void write(std::size_t target) { reach(first_ + targets_ + target + 1); }
+
+ private:
+  void reach(std::size_t done) const {
+    if (tell_) tell_(std::min(done, total_), total_);
+  }
+
+  Tell tell_;
+  std::size_t total_ = 0, first_ = 0, next_ = 0, targets_ = 0;
+};
+
+// Bakes what was read of one mesh, which moves and has normals.
 Status bake_shading(const GltfDocument& document, const GltfShading& shading, const BakeOptions& options,
-                    const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
+                    Course& course, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   if (Status status = check_extras(document, edit, shading.mesh); !status) return status;
   Result<MeshWeights> weights = read_weights(document, shading);
@@ -173,6 +201,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
 
   const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
   BakeOptions within = options;
+  within.progress = course.of_choice();
   baked.report.has_lone_weight = find_lone_weight(document, shading.mesh, edit).has_value();
   if (baked.report.has_lone_weight) within.most_targets = mesh.target_count;
   const BaseFaults faults = find_base_faults(source);
@@ -203,7 +232,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     }
     if (is_stale[i]) tangents = tangent_deltas(source, i);
     writer.write_target(i, of_target, tangents);
-    step();
+    course.write(i);
     if (Status status = check_size(); !status) return status;
   }
   if (!any_new) {
@@ -238,8 +267,9 @@ bool any_tangents(const GltfMesh& mesh) {
 
 // Nothing for a mesh that does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
-                                          const std::function<void()>& step, ZeroVectors& zeros, GltfEdit& edit) {
+                                          Course& course, ZeroVectors& zeros, GltfEdit& edit) {
   const GltfMesh& mesh = document.meshes()[index];
+  course.begin_mesh(mesh.target_count);
   MeshBake baked;
   baked.report.mesh = index;
   baked.report.name = mesh.name;
@@ -262,7 +292,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   }
   warn_of_flat(mesh, baked.report, baked.warnings);
   if (any_shaded(shading.value())) {
-    if (Status status = bake_shading(document, shading.value(), options, step, zeros, edit, baked); !status)
+    if (Status status = bake_shading(document, shading.value(), options, course, zeros, edit, baked); !status)
       return status.error();
   }
   return std::optional(std::move(baked));
@@ -274,11 +304,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
   if (const Status poses = check_poses(options.poses, document); !poses) return poses.error();
   const std::vector<std::size_t> candidates = candidate_meshes(document);
-  std::size_t done = 0, total = 0;
-  for (const std::size_t mesh : candidates) total += document.meshes()[mesh].target_count;
-  const auto step = [&] {
-    if (options.progress) options.progress(std::min(++done, total), total);
-  };
+  Course course(document, candidates, options.progress);
 
   GltfBake result;
   ZeroVectors zeros(edit, options.dense_zeros);
@@ -286,7 +312,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   std::vector<std::size_t> report_of_grown;
   std::vector<MeshWarning> warnings;
   for (const std::size_t mesh : candidates) {
-    Result<std::optional<MeshBake>> baked = bake_mesh(document, mesh, options, step, zeros, edit);
+    Result<std::optional<MeshBake>> baked = bake_mesh(document, mesh, options, course, zeros, edit);
     if (!baked) return baked.error();
     if (!baked.value()) continue;
     MeshBake& of_mesh = *baked.value();

@@ -590,5 +590,21 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
   EXPECT_GE(files, 9U);
 }
 
+// A long part of a bake is the choice of a form, in which progress goes on.
+TEST(Bake, progress_goes_forward_while_a_form_is_chosen_and_ends_with_everything_done) {
+  GltfBuilder builder = test::hills_document(3);
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1, 0.5F, 1, 0, 1});
+  std::vector<std::size_t> reached;
+  BakeOptions options;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 6U);
+    reached.push_back(done);
+  };
+  ASSERT_TRUE(test::bake_document(builder, options).ok());
+  EXPECT_TRUE(std::is_sorted(reached.begin(), reached.end()));
+  EXPECT_EQ(reached.back(), 6U);
+  EXPECT_GT(std::count_if(reached.begin(), reached.end(), [](std::size_t done) { return done < 3; }), 3);
+}
+
 }  // namespace
 }  // namespace chronormal::bake_test

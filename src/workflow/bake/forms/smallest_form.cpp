@@ -373,13 +373,19 @@ void look_at_rig(const DeltaSource& source, const MeshWeights& weights, const Ba
 
 ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
   Choice choice(source, weights, options);
+  // About how much of the time has gone by.
+  const auto reach = [&options](std::size_t percent) {
+    if (options.progress) options.progress(percent, 100);
+  };
   const FormLengths lengths = lengths_for(options.hosts);
   const std::size_t most = most_extras(options, source.shading.set.targets.size());
   const RightNormals& rights = choice.rights();
   const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
   if (!has_new_base) choice.look_at("as it is", keep_stored(source));
   if (choice.is_found_below(0)) return choice.take_best();
+  reach(5);
   const OwnForm own = own_form(source, rights, options, lengths);
+  reach(20);
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
   // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no choice
   // between these and what is stored is near enough, they are looked at when nothing else is.
@@ -394,6 +400,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
     have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
   });
+  reach(40);
   if (!of_deltas && choice.is_found()) look_at_own();
   if (weights.rig && !choice.is_found() && source.plan.products_fit && most > 0)
     look_at_rig(source, weights, options, lengths, choose_low_rank(source, rights, weights, options, lengths, own, 0),
@@ -402,6 +409,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
     std::size_t extras = most;
     for (int tries = 0; tries < kTries && extras > 0; ++tries) {
       ChosenForm form = choose_low_rank(source, rights, weights, options, lengths, own, extras);
+      reach(70);
       const std::size_t count = form.drivers.size();
       const std::size_t bytes = choice.look_at("low rank", std::move(form));
       if (bytes <= choice.most_bytes() || count == 0) break;
@@ -409,6 +417,7 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
       extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
     }
   }
+  reach(90);
   if (!of_deltas && !choice.is_within()) look_at_own();
   // Where nothing is near enough, nothing may be farther off than harmless, but where that has too many products.
   if (!choice.is_found() && !options.animations_only && (have_products || !source.plan.is_driven))

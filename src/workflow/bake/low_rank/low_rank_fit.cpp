@@ -29,7 +29,16 @@ constexpr double kRefitWork = 1e10;
 // Of n(0): the direction of a shorter normal is not fitted to.
 constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
+// Between nodes a normal may be much shorter than at them. It is looked for in so many steps, where one of the nodes is
+// shorter than this (squared, of n(0)), and counts where it is so much shorter (squared) than they are.
+constexpr int kDipSteps = 32;
+constexpr double kNearDip = 0.25, kDip = 0.5;
 constexpr double kRidge = 1e-4, kLeastSquare = 1e-6;
+
+// A place of a piece between three nodes, at 0, 1/2 and 1.
+PlaceOfRows place_at(const std::array<std::size_t, 3>& nodes, double t) {
+  return {nodes, {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}};
+}
 
 std::size_t padded_to(std::size_t count) { return (count + kPadding - 1) / kPadding * kPadding; }
 
@@ -182,41 +191,84 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
-// The largest error of each point at rows, places and unseen ones. own_weights go with the corrections of own deltas,
-// where there are any.
+// The largest error of each point at rows, places, unseen ones and its dips. own_weights go with the corrections of own
+// deltas, where there are any.
 void LowRankFit::measure(std::span<const float> own_weights) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
   const Basis basis = basis_of(own_weights, places);
   parallel_blocks(missing_.points(), kBlock, [&](IndexRange points) {
-    std::vector<float> x(3 * basis.padded);
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
-      Course course = course_of(p, places);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < own_targets_; ++i)
-          x[axis * basis.padded + i] = own_deltas_[(3 * p + axis) * own_targets_ + i];
-        for (std::size_t k = 0; k < extras_; ++k)
-          x[axis * basis.padded + own_targets_ + k] = deltas(p)[axis * padded_ + k];
+      std::vector<PlaceOfRows> of_point = dips_of(p);
+      if (of_point.empty()) {
+        errors_[p] = error_of(p, basis, places);
+        continue;
       }
-      const StridedMatrix a{x.data(), basis.columns, 3, 1, basis.padded};
-      const StridedMatrix b{basis.by_column.data(), basis.columns, basis.stride, basis.stride, 1};
-      add_products(a, b, course.shown.data(), basis.stride);
-      errors_[p] = 0;
-      const auto vector_at = [&](const std::vector<float>& planes, std::size_t n) {
-        return Vec3f{planes[n], planes[basis.stride + n], planes[2 * basis.stride + n]};
-      };
-      for (std::size_t n = 0; n < basis.instants; ++n)
-        if (course.is_known[n] != 0)
-          errors_[p] = std::fmax(errors_[p], degrees_between(vector_at(course.shown, n), vector_at(course.right, n)));
+      of_point.insert(of_point.begin(), places.begin(), places.end());
+      errors_[p] = error_of(p, basis_of(own_weights, of_point), of_point);
     }
   });
 }
 
+float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places) const {
+  std::vector<float> x(3 * basis.padded);
+  Course course = course_of(point, places);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < own_targets_; ++i)
+      x[axis * basis.padded + i] = own_deltas_[(3 * point + axis) * own_targets_ + i];
+    for (std::size_t k = 0; k < extras_; ++k)
+      x[axis * basis.padded + own_targets_ + k] = deltas(point)[axis * padded_ + k];
+  }
+  const StridedMatrix a{x.data(), basis.columns, 3, 1, basis.padded};
+  const StridedMatrix b{basis.by_column.data(), basis.columns, basis.stride, basis.stride, 1};
+  add_products(a, b, course.shown.data(), basis.stride);
+  const auto vector_at = [&](const std::vector<float>& planes, std::size_t n) {
+    return Vec3f{planes[n], planes[basis.stride + n], planes[2 * basis.stride + n]};
+  };
+  float worst = 0;
+  for (std::size_t n = 0; n < basis.instants; ++n)
+    if (course.is_known[n] != 0)
+      worst = std::fmax(worst, degrees_between(vector_at(course.shown, n), vector_at(course.right, n)));
+  return worst;
+}
+
+// The places between nodes where the right normal of a point is much shorter than at the nodes around, and still has a
+// direction: there it turns fastest, and what is missing counts most.
+std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
+  const std::size_t stride = missing_.stride();
+  const float *const shown = missing_.shown(point), *const lack = missing_.missing(point);
+  const auto right_at = [&](std::size_t row) {
+    return to_double(Vec3f{shown[row] + lack[row], shown[stride + row] + lack[stride + row],
+                           shown[2 * stride + row] + lack[2 * stride + row]});
+  };
+  std::vector<PlaceOfRows> result;
+  for (std::size_t i = 0; i < places_.size(); i += 2) {  // two of each piece
+    const std::array<std::size_t, 3>& nodes = places_[i].nodes;
+    const std::array<Vec3d, 3> normals = {right_at(nodes[0]), right_at(nodes[1]), right_at(nodes[2])};
+    double shortest = dot(normals[0], normals[0]);
+    for (const Vec3d& normal : normals) shortest = std::fmin(shortest, dot(normal, normal));
+    if (shortest > kNearDip) continue;
+    double least = kDip * shortest;
+    PlaceOfRows dip;
+    for (int step = 1; step < kDipSteps; ++step) {
+      const PlaceOfRows place = place_at(nodes, static_cast<double>(step) / kDipSteps);
+      Vec3d normal;
+      for (std::size_t n = 0; n < 3; ++n) normal = normal + place.factors[n] * normals[n];
+      const double square = dot(normal, normal);
+      if (square >= least) continue;
+      least = square;
+      dip = place;
+    }
+    if (least < kDip * shortest && least > static_cast<double>(kLeastLength * kLeastLength)) result.push_back(dip);
+  }
+  return result;
+}
+
 // Least squares of |(I - u u^T) (shown + basis x)|^2 over the instants, u the right direction, with weights that grow
 // with the error and a ridge towards the singular vectors. The best of all rounds stays.
-void LowRankFit::refit(std::size_t point, const Basis& basis, double tolerance) {
+void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
-  const Course course = course_of(point, places_);
+  const Course course = course_of(point, places);
   std::vector<float> x(3 * basis.padded, 0.0F);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t k = 0; k < extras_; ++k)
@@ -326,7 +378,12 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   const double size = 3 * static_cast<double>(basis.columns);
   const auto most = static_cast<std::size_t>(std::fmin(kMostRefitted, kRefitWork / (size * size * size)));
   if (bad.size() > most) bad.resize(most);
-  parallel_each(bad.size(), 1, [&](std::size_t n) { refit(bad[n], basis, tolerance); });
+  parallel_each(bad.size(), 1, [&](std::size_t n) {
+    std::vector<PlaceOfRows> of_point = dips_of(bad[n]);
+    if (of_point.empty()) return refit(bad[n], basis, places_, tolerance);
+    of_point.insert(of_point.begin(), places_.begin(), places_.end());
+    refit(bad[n], basis_of(own_weights, of_point), of_point, tolerance);
+  });
   measure(own_weights);
 }
 

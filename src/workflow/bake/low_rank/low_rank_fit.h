@@ -65,9 +65,11 @@ class LowRankFit {
   void take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras);
   void project();
   void measure(std::span<const float> own_weights);
+  [[nodiscard]] float error_of(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places) const;
+  [[nodiscard]] std::vector<PlaceOfRows> dips_of(std::size_t point) const;
   [[nodiscard]] Basis basis_of(std::span<const float> own_weights, std::span<const PlaceOfRows> places) const;
   [[nodiscard]] Course course_of(std::size_t point, std::span<const PlaceOfRows> places) const;
-  void refit(std::size_t point, const Basis& basis, double tolerance);
+  void refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance);
 
   const MissingNormals& missing_;
   std::span<const PlaceOfRows> places_, unseen_;
