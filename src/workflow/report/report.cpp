@@ -21,6 +21,21 @@ std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options,
   return [&options, what](std::size_t done, std::size_t total) { options.progress(what, done, total); };
 }
 
+// Compares schemes on the vertices of a motion, at the samples of its audit.
+Result<NamedComparison> compare_schemes(Input& input, const Motion& motion, const Audit& audit,
+                                        const ReportOptions& options) {
+  CompareOptions how;
+  how.samples = audit.subjects[0].samples;
+  how.elements = {ElementKind::kVertices};
+  how.keep_samples = true;
+  how.progress = told(options, "comparing");
+  Result<Comparison> compared = compare(motion, how);
+  if (!compared) return compared.error();
+  Result<TargetNames> names = target_names(input);
+  if (!names) return names.error();
+  return NamedComparison{input.name(), std::move(compared).value(), std::move(names).value()};
+}
+
 // The last part of a path.
 std::string without_folders(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
@@ -52,6 +67,28 @@ Status read_gltf(const GltfDocument& document, const ReportOptions& options, Rep
   return Success{};
 }
 
+Status read_motion(Input& input, const ReportOptions& options, Report& report, ReportModel& model) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  const Result<const StoredNormals*> normals = input.normals();
+  if (!normals) return normals.error();
+  const Result<MotionVertices> vertices = motion_vertices(*motion.value(), *normals.value());
+  if (!vertices) return vertices.error();
+  WatchedMotions watched({}, {}, vertices.value().of_corner);
+  Result<Audit> found = watched_audit(*motion.value(), *normals.value(), audit_options(options),
+                                      [&](const AuditSample& sample) { watched.add(sample); });
+  if (!found) return found.error();
+  report.audit = std::move(found).value();
+  if (report.audit.subjects.empty()) return Success{};
+  Result<NamedComparison> compared = compare_schemes(input, *motion.value(), report.audit, options);
+  if (!compared) return compared.error();
+  model.kind = motion.value()->kind == MotionKind::kTargets ? "targets" : "sequence";
+  model.parts.push_back(motion_part(*motion.value(), *normals.value(), vertices.value(), &compared.value().comparison,
+                                    std::move(watched.take().begin()->second)));
+  report.comparison = std::move(compared).value();
+  return Success{};
+}
+
 void plan(const GltfDocument& document, const ReportOptions& options, Report& report) {
   if (!options.plan) return;
   BakeOptions how;
@@ -75,7 +112,7 @@ Json head_of(const Report& report) {
   head["plan"] = Json();
   if (report.plan) head["plan"] = object(plan_json(*report.plan, {report.input, "", std::nullopt, std::nullopt}));
   head["plan_message"] = report.plan_message.empty() ? Json() : Json(report.plan_message);
-  head["compare"] = Json();
+  head["compare"] = report.comparison ? object(compare_json({*report.comparison}, false, false)) : Json();
   return head;
 }
 
@@ -88,6 +125,8 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   if (const GltfDocument* const document = input.document(); document != nullptr) {
     if (const Status status = read_gltf(*document, options, result, model); !status) return status.error();
     if (!model.parts.empty()) plan(*document, options, result);
+  } else {
+    if (const Status status = read_motion(input, options, result, model); !status) return status.error();
   }
   if (model.parts.empty())
     return invalid_input(input.name(), "nothing in it moves that could be judged, so there is nothing to show");
