@@ -10,11 +10,15 @@
 #include "workflow/report/container.h"
 #include "workflow/report/report_model.h"
 #include "workflow/report/report_parts.h"
+#include "workflow/report/thinning.h"
 #include "workflow/report/watched_motions.h"
 #include "workflow/report/worst_places.h"
 
 namespace chronormal {
 namespace {
+
+// A page that is still too large is thinned out more, by this factor, until hardly anything is left.
+constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
   if (!options.progress) return {};
@@ -116,6 +120,32 @@ Json head_of(const Report& report) {
   return head;
 }
 
+// The bytes of a page with so many of it as base64 of a container packed, beside the template.
+std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
+  constexpr std::size_t kElement = 128;
+  return options.template_bytes + kElement + (packed + 2) / 3 * 4;
+}
+
+// Writes the container, and thins the model out first where the page would be too large.
+std::string write_within(const Json& head, ReportModel& model, const ReportOptions& options) {
+  std::string container = write_container(head, model);
+  // How small arrays become is known from these; a part of them may become less so.
+  const std::size_t packed = page_bytes(gzipped(container).size(), options);
+  if (packed <= options.most_bytes) return container;
+  const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());
+  const std::size_t room =
+      options.most_bytes > options.template_bytes ? options.most_bytes - options.template_bytes : 0;
+  const ReportModel whole = std::move(model);
+  for (double share = kShare;; share *= kShare) {
+    model = whole;
+    const double most = share * static_cast<double>(room) / per_byte;
+    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));  // the JSON
+    thin_out(model, static_cast<std::size_t>(std::max(0.0, most - static_cast<double>(beside))));
+    std::string thinned = write_container(head, model);
+    if (share < kLeastShare || page_bytes(gzipped(thinned).size(), options) <= options.most_bytes) return thinned;
+  }
+}
+
 }  // namespace
 
 Result<Report> report(Input& input, const ReportOptions& options) {
@@ -131,17 +161,17 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   if (model.parts.empty())
     return invalid_input(input.name(), "nothing in it moves that could be judged, so there is nothing to show");
   model.worst = find_worst_places(model.parts);
+  result.container = write_within(head_of(result), model, options);
   for (const ModelPart& part : model.parts) {
     ReportPart& told_part = result.parts.emplace_back();
     told_part.name = part.name;
     told_part.vertices = part.vertex_count();
-    told_part.triangles = part.triangles.size() / 3;
+    told_part.triangles = (part.triangles.size() + part.coarse.size()) / 3;
     told_part.motions = part.motions.size();
     for (const ModelMotion& motion : part.motions) told_part.samples += motion.at.size();
   }
   result.worst = model.worst;
   result.thinned = model.thinned;
-  result.container = write_container(head_of(result), model);
   return result;
 }
 
