@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
 
@@ -170,15 +171,6 @@ std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::siz
   return moves;
 }
 
-// Which corners share a normal: those of smooth edges, as the stored normals of keyframe 0 say, where there are any.
-Result<NormalGroups> groups_of(const Motion& motion, const StoredNormals& normals, bool weld) {
-  const Topology& topology = motion.topology;
-  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
-  if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
-  const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
-  return NormalGroups::by_split_normals(topology, points, of_corners);
-}
-
 // A sequence is one subject; each target is one.
 std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
   const bool is_targets = motion.kind == MotionKind::kTargets;
@@ -197,7 +189,20 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 
 }  // namespace
 
+Result<NormalGroups> internal::audited_groups(const Motion& motion, const StoredNormals& normals, bool weld) {
+  const Topology& topology = motion.topology;
+  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+  if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
+  const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
+  return NormalGroups::by_split_normals(topology, points, of_corners);
+}
+
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
+  return watched_audit(motion, normals, options, {});
+}
+
+Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options,
+                                      const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting.value_or(Weighting::kArea);
@@ -208,7 +213,7 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Result<NormalGroups> groups = groups_of(motion, normals, options.weld);
+  const Result<NormalGroups> groups = audited_groups(motion, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
@@ -259,8 +264,24 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
-    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size()};
-    measure(source, part, result.rule, progress, subject, kept, [](auto&&...) {});
+    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
+                          static_cast<bool>(watch)};
+    const auto tell = [&](const MeasuredSample& sample) {
+      if (!watch) return;
+      const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;
+      watch({kept.subject,
+             subject,
+             segments[sample.segment],
+             sample.t,
+             at,
+             part,
+             sample.largest,
+             sample.error,
+             sample.each,
+             {},
+             {}});
+    };
+    measure(source, part, result.rule, progress, subject, kept, tell);
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }
