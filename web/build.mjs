@@ -1,0 +1,62 @@
+// Makes the pages, each one file with everything in it.
+//
+//   node web/build.mjs report OUT.html              the page of a report, without data (docs/report.md)
+//   node web/build.mjs page PACKAGE OUT.html        the page with the engine inside; PACKAGE is the npm package with the wasm module
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import { build } from 'esbuild';
+
+const source = (name) => fileURLToPath(new URL(`src/${name}`, import.meta.url));
+
+async function bundled(entry, options = {}) {
+  const { outputFiles } = await build({
+    entryPoints: [entry],
+    bundle: true,
+    minify: true,
+    format: 'iife',
+    target: ['es2022'],
+    legalComments: 'none',
+    write: false,
+    logLevel: 'error',
+    ...options,
+  });
+  return outputFiles[0].text;
+}
+
+const styles = () => [readFileSync(fileURLToPath(import.meta.resolve('uplot/dist/uPlot.min.css')), 'utf8'), readFileSync(source('style.css'), 'utf8')].join('\n');
+
+// What stands in a script or a style must not end it.
+const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
+
+// Fills the marks of a template; the text is taken as it is.
+const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
+
+async function reportPage() {
+  const script = await bundled(source('report.js'));
+  return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) });
+}
+
+// The module and its worker, as text that the page makes a worker of.
+async function enginePage(folder) {
+  const wasm = gzipSync(readFileSync(join(folder, 'wasm/program.wasm')), { level: 9 });
+  const program = { name: 'program', setup: (made) => made.onResolve({ filter: /wasm\/program\.js$/ }, () => ({ path: join(resolve(folder), 'wasm/program.js') })) };
+  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'] });
+  const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });
+  return filled(readFileSync(source('page.html'), 'utf8'), {
+    '/*style*/': styles(),
+    '/*script*/': inScript(script),
+    '/*wasm*/': wasm.toString('base64'),
+  });
+}
+
+const [kind, ...rest] = process.argv.slice(2), out = rest.at(-1);
+if (!(kind === 'report' && rest.length === 1) && !(kind === 'page' && rest.length === 2)) {
+  console.error('usage: node web/build.mjs report OUT.html | page PACKAGE OUT.html');
+  process.exit(2);
+}
+const page = kind === 'report' ? await reportPage() : await enginePage(rest[0]);
+mkdirSync(dirname(resolve(out)), { recursive: true });
+writeFileSync(out, page);
+console.log(`${out}: ${page.length.toLocaleString('en')} bytes`);

@@ -1,0 +1,45 @@
+// Where a motion is: `at` counts its samples, and a fraction lies between two of them.
+
+/** The time or weight at a place. */
+export function valueAt({ at: values }, at) {
+  const from = Math.min(Math.floor(at), values.length - 1), to = Math.min(from + 1, values.length - 1);
+  return values[from] + (at - from) * (values[to] - values[from]);
+}
+
+/** The place of a time or weight; where two samples have it, that of the later one. */
+export function placeOf({ at: values }, value) {
+  let low = 0, high = values.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (values[middle] <= value) low = middle;
+    else high = middle - 1;
+  }
+  if (low === values.length - 1 || !(values[low + 1] > values[low])) return low;
+  return low + Math.min(Math.max((value - values[low]) / (values[low + 1] - values[low]), 0), 1);
+}
+
+/** The sample before or after, which is at another time. */
+export function neighbour({ at: values }, at, step) {
+  const last = values.length - 1, start = valueAt({ at: values }, at);
+  let next = step > 0 ? Math.floor(at) + 1 : Math.ceil(at) - 1;
+  while (next > 0 && next < last && values[next] === start) next += step;
+  return Math.min(Math.max(next, 0), last);
+}
+
+/** Segment and t of a motion of keyframes at a place. */
+export function segmentAt({ segment, t }, at) {
+  const from = Math.min(Math.floor(at), segment.length - 1), to = Math.min(from + 1, segment.length - 1);
+  const share = segment[from] === segment[to] ? at - from : 0;
+  return [segment[from], t[from] + share * (t[to] - t[from])];
+}
+
+/** The sample at which the numbers of a motion are the worst. */
+export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (value > worst[best] || !(worst[best] >= 0) ? i : best), 0);
+
+/** What a motion is called, for people. */
+export function nameOf(motion) {
+  const name = motion.name ? `“${motion.name}”` : '';
+  if (motion.kind === 'target') return `target ${motion.target} ${name}`.trim();
+  if (motion.kind === 'track') return `animation ${motion.animation} ${name}`.trim();
+  return name || 'sequence';
+}
