@@ -8,7 +8,7 @@ export function h(tag, properties = {}, ...children) {
     else if (name.startsWith('aria-') || name.startsWith('data-') || name === 'for') made.setAttribute(name, value);
     else made[name] = value;
   }
-  made.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== false));
+  made.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
   return made;
 }
 

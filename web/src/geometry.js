@@ -115,6 +115,11 @@ export function normalsOf(part) {
   };
 }
 
+/** As set() of typed arrays, which takes five times as long where the types differ. */
+export function copy(from, to) {
+  for (let i = 0; i < from.length; ++i) to[i] = from[i];
+}
+
 /** The unit vector of three numbers from `at` on, or zero. */
 export function unitAt(array, at, result = [0, 0, 0]) {
   const length = Math.hypot(array[at], array[at + 1], array[at + 2]);

@@ -38,8 +38,7 @@ export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (valu
 
 /** What a motion is called, for people. */
 export function nameOf(motion) {
-  const name = motion.name ? `“${motion.name}”` : '';
-  if (motion.kind === 'target') return `target ${motion.target} ${name}`.trim();
-  if (motion.kind === 'track') return `animation ${motion.animation} ${name}`.trim();
-  return name || 'sequence';
+  if (motion.kind === 'target') return motion.name || `target ${motion.target}`;
+  if (motion.kind === 'track') return `animation ${motion.name || motion.animation}`;
+  return motion.name || 'sequence';
 }

@@ -13,7 +13,7 @@ const select = (label, options, value, onChoose) => {
 };
 
 const hostTitle = (report, name) =>
-  name === 'specification' ? 'a host that follows glTF to the letter' : report.audit?.hosts?.find((host) => host.name === name)?.title ?? name;
+  name === 'specification' ? 'glTF to the letter' : report.audit?.hosts?.find((host) => host.name === name)?.title ?? name;
 
 /** What a host shows, in the label above the picture. */
 export const shownBy = (report, player) => {
@@ -30,7 +30,7 @@ export function choosers(report, player) {
       fields.push(select('mesh', report.parts.map(({ name, mesh }, i) => [i, name || `mesh ${mesh ?? i}`]), player.index, (i) => player.choosePart(Number(i))));
     }
     if (part.motions.length > 0) {
-      const motions = part.motions.map((motion, i) => [i, `${nameOf(motion)}: up to ${degreesText(motion.worst[worstSample(motion)])}`]);
+      const motions = part.motions.map((motion, i) => [i, `${degreesText(motion.worst[worstSample(motion)])} · ${nameOf(motion)}`]);
       const chosen = player.byHand ? 'hand' : player.motionNumber;
       fields.push(select('motion', player.byHand ? [['hand', 'weights set by hand'], ...motions] : motions, chosen,
         (i) => i !== 'hand' && player.chooseMotion(Number(i))));
@@ -50,12 +50,8 @@ export function choosers(report, player) {
 export function worstPlaces(report, onVisit) {
   const places = report.worst.filter(({ degrees }) => degrees > 0);
   if (places.length === 0) return null;
-  const nameAt = ({ part, motion, sample }) => {
-    const found = report.parts[part].motions[motion];
-    return `${nameOf(found)}, ${found.seconds ? `at ${+found.at[sample].toFixed(3)} s` : `weight ${+found.at[sample].toFixed(3)}`}`;
-  };
   const list = h('ol', { className: 'places' }, places.map((place, i) => h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) },
-    h('b', {}, degreesText(place.degrees)), h('span', {}, place.label, h('small', {}, nameAt(place)))))));
+    h('b', {}, degreesText(place.degrees)), h('span', {}, place.label, h('small', {}, place.moment))))));
   return panel(`Worst places (${places.length})`, true, list);
 }
 

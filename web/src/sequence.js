@@ -1,6 +1,6 @@
 // A sequence of keyframes at a moment: where its vertices are, what a scheme shows that interpolates normals between keyframes,
 // what it should show, and the angle between the two. All arrays are made once; a step fills them.
-import { NONE, degreesBetween, normalsOf, unitAt } from './geometry.js';
+import { NONE, copy, degreesBetween, normalsOf, unitAt } from './geometry.js';
 import { schemeOf } from './schemes.js';
 
 // A keyframe holds all numbers, or those that differ from the first one.
@@ -135,7 +135,7 @@ export function makeSequence(part) {
       right[at] = rx;
       right[at + 1] = ry;
       right[at + 2] = rz;
-      const limit = least ? least[e] : 0, unlit = sx === 0 && sy === 0 && sz === 0;
+      const limit = least && e < least.length ? least[e] : 0, unlit = sx === 0 && sy === 0 && sz === 0;
       if (unlit && sizes[e] > limit) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
       else degrees[v] = degreesBetween(shown[at], shown[at + 1], shown[at + 2], rx, ry, rz);
@@ -148,7 +148,7 @@ export function makeSequence(part) {
     const { intervals, evaluate } = schemeOf(scheme);
     if (fit.scheme !== scheme) fit = { scheme, units: unitsAt(intervals), ends: keyframes.normals ? unitsAt(1) : undefined };
     place(segment, t);
-    surface.positions.set(p);
+    copy(p, surface.positions);
     evaluate(fit.units, t, shownOfElement, n);
     judge(t, scheme !== 'linear', fit.ends, least);
   };

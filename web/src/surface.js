@@ -1,32 +1,47 @@
 // A mesh with morph targets at given weights: where its vertices are, what a host shows, what it should show, and the angle
 // between the two (docs/hosts.md). All arrays are made once; a step fills them.
-import { NONE, degreesBetween, normalsOf } from './geometry.js';
+import { NONE, copy, degreesBetween, normalsOf } from './geometry.js';
 
-// Targets are kept as the vertices that they change: [{at, values}], `at` counting numbers (3 times the vertex).
-function changes(targets, member) {
-  return targets.map((target) => {
-    const values = target[member], { indices } = target, at = [], kept = [];
-    for (let n = 0; n < values.length; n += 3) {
-      if (values[n] === 0 && values[n + 1] === 0 && values[n + 2] === 0) continue;
-      at.push(indices ? 3 * indices[n / 3] : n);
-      kept.push(values[n], values[n + 1], values[n + 2]);
-    }
-    return { at: Uint32Array.from(at), values: Float32Array.from(kept) };
+// The deltas of all targets, vertex after vertex: those of v are from offsets[v] to offsets[v + 1], each with its target. A vertex
+// is added up in registers, which takes a quarter of the time that target after target takes.
+function byVertex(targets, member, vertices) {
+  const isMoved = (values, n) => values[n] !== 0 || values[n + 1] !== 0 || values[n + 2] !== 0;
+  const offsets = new Uint32Array(vertices + 1);
+  const walk = (visit) => targets.forEach((target, k) => {
+    const values = target[member], { indices } = target;
+    for (let n = 0; n < values.length; n += 3) if (isMoved(values, n)) visit(indices ? indices[n / 3] : n / 3, k, values, n);
   });
+  walk((v) => ++offsets[v + 1]);
+  for (let v = 0; v < vertices; ++v) offsets[v + 1] += offsets[v];
+  const next = offsets.slice(), of = new Uint16Array(offsets[vertices]), deltas = new Float32Array(3 * offsets[vertices]);
+  walk((v, k, values, n) => {
+    const at = next[v]++;
+    of[at] = k;
+    deltas[3 * at] = values[n];
+    deltas[3 * at + 1] = values[n + 1];
+    deltas[3 * at + 2] = values[n + 2];
+  });
+  return { offsets, of, deltas };
 }
 
-function addUp(base, targets, weights, least, sums) {
-  sums.set(base);
-  for (let k = 0; k < targets.length; ++k) {
-    const w = weights[k];
-    if (w === 0 || Math.abs(w) <= least) continue;
-    const { at, values } = targets[k];
-    for (let n = 0, i = 0; n < at.length; ++n, i += 3) {
-      const to = at[n];
-      sums[to] += w * values[i];
-      sums[to + 1] += w * values[i + 1];
-      sums[to + 2] += w * values[i + 2];
+// base (or zero) and weighted deltas, in double.
+function addUp(base, { offsets, of, deltas }, weights, sums) {
+  for (let v = 0, at = 0; v + 1 < offsets.length; ++v, at += 3) {
+    let x = 0, y = 0, z = 0;
+    if (base !== null) {
+      x = base[at];
+      y = base[at + 1];
+      z = base[at + 2];
     }
+    for (let i = offsets[v], end = offsets[v + 1], from = 3 * i; i < end; ++i, from += 3) {
+      const w = weights[of[i]];
+      x += w * deltas[from];
+      y += w * deltas[from + 1];
+      z += w * deltas[from + 2];
+    }
+    sums[at] = x;
+    sums[at + 1] = y;
+    sums[at + 2] = z;
   }
 }
 
@@ -57,14 +72,15 @@ function turnsOf({ element, normals }, base) {
 
 // Whether a vertex is judged: it shares its normal with a face that some target moves, or some target turns it.
 function judgedVertices({ vertices, triangles, element, elements }, moved, shown) {
-  const moves = new Uint8Array(vertices), elementMoves = new Uint8Array(elements + 1), judged = new Uint8Array(vertices);
-  for (const { at } of moved) for (const i of at) moves[i / 3] = 1;
+  const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
+  const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);
   for (let t = 0; t < triangles.length; t += 3) {
-    if (!moves[triangles[t]] && !moves[triangles[t + 1]] && !moves[triangles[t + 2]]) continue;
+    if (!has(moved, triangles[t]) && !has(moved, triangles[t + 1]) && !has(moved, triangles[t + 2])) continue;
     for (let i = t; i < t + 3; ++i) if (element[triangles[i]] !== NONE) elementMoves[element[triangles[i]]] = 1;
   }
-  for (const { targets } of shown) for (const { at } of targets) for (const i of at) judged[i / 3] = 1;
-  for (let v = 0; v < vertices; ++v) judged[v] = element[v] !== NONE && (judged[v] || elementMoves[element[v]]) ? 1 : 0;
+  for (let v = 0; v < vertices; ++v) {
+    judged[v] = element[v] !== NONE && (elementMoves[element[v]] === 1 || shown.some(({ targets }) => has(targets, v))) ? 1 : 0;
+  }
   return judged;
 }
 
@@ -87,11 +103,11 @@ export function weightsAt(motion, host, at, result) {
  */
 export function makeSurface(part) {
   const { vertices: V, elements: E, element } = part;
-  const moved = changes(part.targets, 'positions');
-  const shownBy = part.shown.map((entry) => ({ ...entry, targets: changes(entry.targets, 'deltas') }));
+  const moved = byVertex(part.targets, 'positions', V);
+  const shownBy = part.shown.map((entry) => ({ ...entry, targets: byVertex(entry.targets, 'deltas', V) }));
   const judged = judgedVertices(part, moved, shownBy);
   const computeNormals = normalsOf(part);
-  const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), zeros = new Float64Array(3 * V);
+  const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
   const n = new Float64Array(3 * E + 3), sizes = new Float64Array(E + 1);
   p.set(part.positions);
   computeNormals(p, n, sizes);
@@ -137,7 +153,7 @@ export function makeSurface(part) {
       right[at] = rx;
       right[at + 1] = ry;
       right[at + 2] = rz;
-      const limit = least ? least[e] : 0;
+      const limit = least && e < least.length ? least[e] : 0;
       if (!judged[v]) degrees[v] = 0;
       else if (unlit && sizes[e] > limit) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
@@ -147,10 +163,11 @@ export function makeSurface(part) {
 
   surface.pose = (weights, shownWeights, host, least) => {
     const entry = shownBy.find(({ hosts }) => hosts.includes(host)) ?? shownBy[0];
-    addUp(part.positions, moved, weights, 0, p);
-    surface.positions.set(p);
+    addUp(part.positions, moved, weights, p);
+    copy(p, surface.positions);
     computeNormals(p, n, sizes);
-    addUp(entry.halves ? zeros : entry.normals, entry.targets, shownWeights, entry.least_weight, sums);
+    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) > entry.least_weight ? shownWeights[k] : 0;
+    addUp(entry.halves ? null : entry.normals, entry.targets, kept, sums);
     judge(entry, least);
   };
   return surface;

@@ -73,6 +73,8 @@ export function makeView(stage, onPoint) {
     const x = pane.x + ((at.x + 1) / 2) * pane.width, y = pane.y + ((1 - at.y) / 2) * pane.height;
     const { clip } = pane;
     marker.hidden = at.z > 1 || x < clip.x || x > clip.x + clip.width || y < clip.y || y > clip.y + clip.height;
+    const normal = new Vector3().fromArray(surface.right, 3 * marked), seen = camera.position.clone().sub(new Vector3().fromArray(surface.positions, 3 * marked));
+    marker.classList.toggle('behind', normal.dot(seen) < 0);
     marker.style.transform = `translate(${x}px, ${y}px)`;
     marker.textContent = degreesText(surface.degrees[marked]);
   }

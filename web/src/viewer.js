@@ -60,7 +60,7 @@ export function makeViewer(root, report) {
     h('section', { className: 'scene' },
       h('div', { className: 'toolbar' }, modes, layouts, h('button', { type: 'button', className: 'plain', title: 'The whole mesh (F)', onclick: () => view.frame() }, 'Whole mesh'),
         h('button', { type: 'button', className: 'plain keys', 'aria-label': 'keys', title: 'Keys (?)', onclick: () => help.showModal() }, '?')),
-      stage, legend, h('div', { className: 'timeline' }, play, slider, moment), h('div', { className: 'here' }, now), plotBox),
+      stage, legend, h('div', { className: 'timeline' }, play, slider, moment), h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
     h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box, schemeTable(report, player), hostTable(report), choiceTable(report), notes(report), aboutOf(report)),
     help);
 
