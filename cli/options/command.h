@@ -61,6 +61,7 @@ struct ElementArguments {
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command inspect_command();
+[[nodiscard]] Command report_command();
 [[nodiscard]] Command sample_command();
 
 }  // namespace chronormal::cli

@@ -12,6 +12,7 @@
 #include "workflow/audit/gltf_findings.h"
 #include "workflow/audit/host_errors.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/authored_weighting.h"
@@ -29,6 +30,7 @@ struct MeshAudit {
   AuditRule rule;
   std::function<void()> progress;
   ErrorTable* errors;  // nullptr: none are kept
+  const AuditWatch& watch;
 };
 
 // Tracks by animation and index.
@@ -86,11 +88,14 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   }
   BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment);
   HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved);
-  const auto judge_hosts = [&](std::size_t segment, double t, const PlacedPart& placed,
-                               std::span<const double> largest) {
-    hosts.add_sample(source, segment, t, placed, largest);
+  const auto judge_hosts = [&](const MeasuredSample& sample) {
+    hosts.add_sample(source, sample.segment, sample.t, sample.placed, sample.largest);
+    if (!mesh.watch) return;
+    mesh.watch({index, subject, sample.segment, sample.t, moment(sample.segment, sample.t), part, sample.largest,
+                sample.error, sample.each, source.now(), hosts.now()});
   };
-  measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index}, judge_hosts);
+  const bool are_watched = static_cast<bool>(mesh.watch);
+  measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index, are_watched}, judge_hosts);
   return Measured{std::move(subject), hosts.take()};
 }
 
@@ -272,6 +277,11 @@ bool has_targets(const GltfMesh& mesh) {
 }  // namespace
 
 Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
+  return watched_audit(document, options, {});
+}
+
+Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditOptions& options,
+                                      const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
   std::optional<std::size_t> only;
   if (!options.animation.empty()) {
@@ -314,7 +324,7 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
         return status.error();
     }
     const MeshAudit mesh{
-        document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr};
+        document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr, watch};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
     const std::size_t first = result.subjects.size();
     for (std::size_t k = 0; k < document.meshes()[m].target_count && are_targets_judged; ++k)

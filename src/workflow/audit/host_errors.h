@@ -36,6 +36,9 @@ class HostErrors {
   void add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
                   std::span<const double> largest);
 
+  /// Of each host, the weights of the last sample.
+  [[nodiscard]] std::span<const std::vector<double>> now() const noexcept { return now_; }
+
   /// One for each host.
   [[nodiscard]] std::vector<HostError> take() { return std::move(errors_); }
 

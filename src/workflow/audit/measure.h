@@ -128,6 +128,19 @@ template <class Source, class Shown>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
+  bool are_watched = false;  ///< each_sample looks at them
+
+  [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
+};
+
+/// A sample that was measured.
+struct MeasuredSample {
+  std::size_t segment = 0;
+  double t = 0;
+  const PlacedPart& placed;
+  std::span<const double> largest;  ///< as largest_control_normals() has it
+  const MotionError& error;
+  std::span<const float> each;  ///< that of each output, NaN where none is judged; empty where nobody keeps them
 };
 
 /// Appends the errors of the outputs at a sample: the worst of each vertex.
@@ -135,7 +148,7 @@ void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, 
                  bool is_weight, double at);
 
 /// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
-/// is called after each segment, each_sample(segment, t, placed, largest) after each sample.
+/// is called after each segment, each_sample(measured sample) after each sample.
 template <class Source, class EachSample>
 void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {
@@ -147,7 +160,7 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
     return is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
   };
   MotionError error;  // of the last sample
-  std::vector<float> each(kept.table != nullptr ? part.outputs().size() : 0);
+  std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   for (std::size_t s = 0; s < subject.segments; ++s) {
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
@@ -164,7 +177,7 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
                     source.at(s, t, part.outputs().front()).at);
       subject.error.add(error);
       if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
-      each_sample(s, t, placed, largest);
+      each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
     progress();
   }

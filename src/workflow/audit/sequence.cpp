@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
 
@@ -198,6 +199,11 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 }  // namespace
 
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
+  return watched_audit(motion, normals, options, {});
+}
+
+Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options,
+                                      const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting.value_or(Weighting::kArea);
@@ -259,8 +265,24 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
     SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
-    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size()};
-    measure(source, part, result.rule, progress, subject, kept, [](auto&&...) {});
+    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
+                          static_cast<bool>(watch)};
+    const auto tell = [&](const MeasuredSample& sample) {
+      if (!watch) return;
+      const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;
+      watch({kept.subject,
+             subject,
+             segments[sample.segment],
+             sample.t,
+             at,
+             part,
+             sample.largest,
+             sample.error,
+             sample.each,
+             {},
+             {}});
+    };
+    measure(source, part, result.rule, progress, subject, kept, tell);
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

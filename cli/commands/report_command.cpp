@@ -1,0 +1,170 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/report.h"
+#include "cli/options/command.h"
+#include "cli/reports/report_report.h"
+#include "cli/terminal/print.h"
+#include "io/bytes/file.h"
+
+namespace chronormal::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string weighting;  // empty: what the stored base normals follow
+  std::string hosts;      // empty: the specification alone
+  std::optional<std::size_t> samples;
+  std::optional<std::string> page_template;
+  bool no_plan = false;
+  bool json = false;
+};
+
+bool has_extension(const std::string& path, std::string_view extension) {
+  std::string own = fs::path(path).extension().string();
+  for (char& c : own) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+  return own == extension;
+}
+
+bool is_container(const Options& options) { return has_extension(options.common.output, ".bin"); }
+
+// Where templates are looked for: where the program was installed, and where it was built.
+std::vector<fs::path> usual_templates() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return {};
+  const fs::path folder = program.parent_path();
+  return {folder.parent_path() / "share" / "chronormal" / "report.html", folder / "share" / "report.html"};
+}
+
+// The template of the page. It is read before anything is computed, so that nothing is in vain.
+Result<std::string> read_template(const Options& options) {
+  std::optional<std::string> path = options.page_template;
+  for (const fs::path& usual : usual_templates()) {
+    std::error_code failed;
+    if (!path && fs::is_regular_file(usual, failed)) path = usual.string();
+  }
+  if (!path)
+    return Error{ErrorCode::kFailed, "report.html",
+                 "the template of the page is not there: ./run report, in the source folder of chronormal, makes it; "
+                 "or name one with --template, or write OUT.bin, which needs none"};
+  const Result<FileBytes> file = FileBytes::open(*path);
+  if (!file) return file.error();
+  if (const Status status = check_report_template(file.value().bytes()); !status)
+    return invalid_input(*path, status.error().message);
+  return std::string(file.value().bytes());
+}
+
+Result<ReportOptions> understand(const Options& options, Progress& progress) {
+  ReportOptions how;
+  if (!options.weighting.empty()) {
+    const Result<Weighting> weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    how.weighting = weighting.value();
+  }
+  if (!options.hosts.empty()) {
+    const Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+    if (!hosts) return misuse("--host", hosts.error().message);
+    how.hosts = hosts.value();
+  }
+  if (const Status status = check_input(options.input); !status) return status.error();
+  if (!is_container(options) && !has_extension(options.common.output, ".html"))
+    return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
+  how.samples = options.samples;
+  how.animation = options.input.animation;
+  how.plan = !options.no_plan;
+  how.progress = [&progress](std::string_view what, std::size_t done, std::size_t total) {
+    if (const auto tell = progress.callback(std::string(what))) tell(done, total);
+  };
+  return how;
+}
+
+Result<int> run(const Options& options) {
+  Progress progress(options.common.quiet);
+  Result<ReportOptions> how = understand(options, progress);
+  if (!how) return how.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  std::string page_template;
+  if (!is_container(options)) {
+    Result<std::string> read = read_template(options);
+    if (!read) return read.error();
+    page_template = std::move(read).value();
+    how.value().template_bytes = page_template.size();
+  }
+  InputOptions wanted = options.input;
+  wanted.shading = KeepShading::kAll;
+  Result<Input> input = open_input(std::move(wanted), progress);
+  if (!input) return input.error();
+  if (input.value().document() == nullptr && !how.value().hosts.empty())
+    return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+  const Result<Report> found = report(input.value(), how.value());
+  progress.clear();
+  if (!found) return found.error();
+  std::string page;
+  if (!is_container(options)) {
+    Result<std::string> filled = report_page(found.value(), page_template);
+    if (!filled) return filled.error();
+    page = std::move(filled).value();
+  }
+  const std::string& bytes = is_container(options) ? found.value().container : page;
+  if (const Status written = write_output(options.common.output, bytes, options.common.force); !written)
+    return written.error();
+  const std::string text = options.json ? report_json(found.value(), options.common.output, bytes.size())
+                                        : report_text(found.value(), options.common.output, bytes.size());
+  if (const Status printed = print(text); !printed) return printed.error();
+  return kExitDone;
+}
+
+}  // namespace
+
+Command report_command() {
+  auto options = std::make_shared<Options>();
+  const std::vector<RefusedOption> refused = {
+      {"--world", "report shows each mesh in its own space, since nodes turn the shown and the right normal alike"}};
+  return {
+      "report",
+      "Write a page that shows an input as it is shown beside as it should be",
+      {input_table(options->input, refused),
+       {{"--weighting NAME", &options->weighting,
+         "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
+         "(default: as in the base normals of the file, else area)"},
+        {"--host NAME,...", &options->hosts,
+         "glTF: what these hosts show can be looked at too: three, babylon, playcanvas, godot,\n"
+         "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
+        {"--samples N",
+         &options->samples,
+         "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
+         "animations of more than 32 key intervals)",
+         {.check = check_whole(2, kMostAuditSamples)}},
+        {"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
+        {"--template FILE",
+         &options->page_template,
+         "the page that the report goes into (default: the one beside the program)",
+         {.check = check_given("it must name a file")}},
+        {"--json", &options->json, "print one JSON object, for programs"}},
+       options->common.table(true)},
+      "OUT.html is one page that needs nothing else and sends nothing: the mesh, a heat map of the errors in degrees, "
+      "a\n"
+      "slider over the motion, and a list of the worst places. It stays below 30 MB: what was left out for that is\n"
+      "said. OUT.bin is its data alone (docs/report-data.md).\n"
+      "\nExamples:\n"
+      "  chronormal report face.glb -o face.html\n"
+      "  chronormal report face.glb -o face.html --host three,godot --no-plan\n"
+      "  chronormal report walk/ -o walk.html\n"
+      "  chronormal report --base face.obj smile.obj frown.obj -o face.html\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+      [options] { return run(*options); },
+      refused};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,17 @@
+/// The result of `report` for people.
+#ifndef CLI_REPORTS_REPORT_REPORT_H_
+#define CLI_REPORTS_REPORT_REPORT_H_
+
+#include <cstddef>
+#include <string>
+
+#include "chronormal/workflow/report.h"
+
+namespace chronormal::cli {
+
+/// What was written and how large it is, a table of the parts, the worst places, and what was left out.
+[[nodiscard]] std::string report_text(const Report& report, const std::string& output, std::size_t bytes);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_REPORT_REPORT_H_

@@ -1,0 +1,108 @@
+/// A report before it becomes bytes: the parts, their motions and the worst places, as docs/report-data.md has them.
+/// Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
+#define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/bake_mark.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/report.h"
+
+namespace chronormal::inline internal {
+
+inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1);
+
+/// Vectors of some vertices, ascending, or of all where it is dense.
+struct ModelVectors {
+  bool is_dense = false;
+  std::vector<std::uint32_t> vertices;  ///< empty where it is dense
+  std::vector<float> values;            ///< (n, 3)
+};
+
+/// What hosts keep of the normals of a glTF mesh.
+struct ModelShown {
+  std::vector<std::string> hosts;
+  bool keeps_halves = false;
+  double least_weight = 0;
+  std::vector<float> normals;         ///< (V, 3)
+  std::vector<ModelVectors> targets;  ///< deltas
+};
+
+/// Weights of all targets at all samples, (S, K), as some hosts play them.
+struct ModelWeights {
+  std::vector<std::string> hosts;
+  std::vector<float> values;
+};
+
+struct ModelMotion {
+  AuditSubject subject;  ///< without its errors
+  std::size_t subject_index = 0;
+  std::vector<double> at;               ///< (S)
+  std::vector<std::uint32_t> segments;  ///< (S) of a motion that is no glTF file
+  std::vector<double> t;                ///< (S) the same
+  std::vector<ModelWeights> weights;    ///< glTF; the first is the specification
+  std::vector<float> worst, mean;       ///< (S) degrees
+  std::vector<float> least;             ///< (E) the length below which a normal has no direction
+  /// Of schemes other than that of the audit.
+  struct Scheme {
+    std::string name;
+    std::vector<float> worst, mean;  ///< (S)
+  };
+  std::vector<Scheme> schemes;
+};
+
+struct ModelPrimitive {
+  std::size_t primitive = 0, first = 0, count = 0;
+  bool is_flat = false;
+};
+
+/// What a vertex is off by, and when it is off the most.
+struct ModelPeak {
+  float degrees = 0;
+  std::uint32_t motion = 0, sample = 0;
+};
+
+struct ModelPart {
+  std::string name;
+  std::optional<std::size_t> mesh;
+  std::vector<ModelPrimitive> primitives;
+  std::vector<std::uint32_t> labels;  ///< (V) the number of each vertex in the file; empty: they count alike
+  std::vector<std::uint32_t> triangles, faces, coarse;
+  std::size_t elements = 0;
+  std::vector<std::uint32_t> element;  ///< (V)
+  Weighting weighting = Weighting::kArea;
+  std::vector<float> positions, normals;  ///< (V, 3); normals may be empty
+  // glTF
+  std::vector<std::string> target_names;
+  std::vector<ModelVectors> targets;  ///< deltas of positions
+  std::optional<GltfBakeMark> mark;
+  std::vector<ModelShown> shown;
+  // Other motions. Vectors are values, those of keyframe 0 where there are none.
+  std::vector<double> times;
+  std::vector<std::size_t> keyframe_numbers;
+  std::vector<ModelVectors> keyframe_positions, keyframe_normals;
+  std::vector<std::uint32_t> segments;  ///< (n, 2) keyframes at both ends
+
+  std::vector<ModelMotion> motions;
+  std::vector<ModelPeak> peaks;  ///< (V)
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return element.size(); }
+};
+
+struct ReportModel {
+  std::string kind;  ///< "gltf", "sequence" or "targets"
+  std::vector<ModelPart> parts;
+  std::vector<ReportPlace> worst;
+  std::vector<std::string> thinned;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_

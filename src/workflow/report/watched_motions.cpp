@@ -1,0 +1,86 @@
+#include "workflow/report/watched_motions.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "workflow/audit/measure.h"
+
+namespace chronormal::inline internal {
+
+WatchedMotions::WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
+                               std::span<const std::uint32_t> vertex_of_corner)
+    : vertex_of_corner_(vertex_of_corner) {
+  for (const Host& host : audited) {
+    const bool is_kept = std::find(kept.begin(), kept.end(), host) != kept.end();
+    played_.push_back({&host, is_kept, true, {}});
+  }
+}
+
+void WatchedMotions::add(const AuditSample& sample) {
+  if (now_ == nullptr || now_->motions.back().subject_index != sample.subject_index) {
+    end();
+    begin(sample);
+  }
+  ModelMotion& motion = now_->motions.back();
+  const auto number = static_cast<std::uint32_t>(motion.at.size());
+  const auto motion_number = static_cast<std::uint32_t>(now_->motions.size() - 1);
+  motion.at.push_back(sample.at);
+  motion.worst.push_back(static_cast<float>(sample.error.worst));
+  motion.mean.push_back(static_cast<float>(sample.error.mean()));
+  if (motion.weights.empty()) {
+    motion.segments.push_back(static_cast<std::uint32_t>(sample.segment));
+    motion.t.push_back(sample.t);
+  } else {
+    std::vector<float>& values = motion.weights[0].values;
+    values.insert(values.end(), sample.weights.begin(), sample.weights.end());
+    for (std::size_t h = 0; h < played_.size(); ++h) {
+      const std::vector<double>& played = sample.played[h];
+      played_[h].is_specified &= std::equal(played.begin(), played.end(), sample.weights.begin());
+      if (played_[h].is_kept) played_[h].values.insert(played_[h].values.end(), played.begin(), played.end());
+    }
+  }
+  const std::span<const JudgedOutput> outputs = sample.part.outputs();
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::uint32_t v = vertex_of_corner_.empty() ? outputs[i].vertex : vertex_of_corner_[outputs[i].corner];
+    if (v >= now_->peaks.size()) now_->peaks.resize(std::size_t{v} + 1);
+    if (sample.degrees[i] > now_->peaks[v].degrees) now_->peaks[v] = {sample.degrees[i], motion_number, number};
+  }
+}
+
+void WatchedMotions::begin(const AuditSample& sample) {
+  now_ = &parts_[sample.subject.mesh];
+  ModelMotion& motion = now_->motions.emplace_back();
+  motion.subject = sample.subject;
+  motion.subject_index = sample.subject_index;
+  if (!sample.weights.empty()) motion.weights.push_back({{"specification"}, {}});
+  const std::span<const std::uint32_t> elements = sample.part.elements();
+  motion.least.assign(elements.empty() ? 0 : std::size_t{elements.back()} + 1, 0.0F);
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    motion.least[elements[e]] = static_cast<float>(kVanished * sample.largest[e]);
+}
+
+// Sorts what hosts played in the motion that was told last: those that play alike stand together.
+void WatchedMotions::end() {
+  if (now_ == nullptr || now_->motions.back().weights.empty()) return;
+  std::vector<ModelWeights>& weights = now_->motions.back().weights;
+  for (Played& played : played_) {
+    const auto same = played.is_specified
+                          ? weights.begin()
+                          : std::find_if(weights.begin() + 1, weights.end(),
+                                         [&](const ModelWeights& w) { return w.values == played.values; });
+    if (same != weights.end())
+      same->hosts.emplace_back(played.host->name);
+    else if (played.is_kept)
+      weights.push_back({{std::string(played.host->name)}, std::move(played.values)});
+    played.values.clear();
+    played.is_specified = true;
+  }
+}
+
+std::map<std::optional<std::size_t>, WatchedPart> WatchedMotions::take() {
+  end();
+  now_ = nullptr;
+  return std::move(parts_);
+}
+
+}  // namespace chronormal::inline internal

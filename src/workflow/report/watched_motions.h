@@ -1,0 +1,55 @@
+/// The samples of an audit as a report keeps them: what it takes to place each, its errors, and where each vertex is off the
+/// most. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
+#define CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "workflow/audit/watched_audit.h"
+#include "workflow/report/report_model.h"
+
+namespace chronormal::inline internal {
+
+/// The motions of one mesh.
+struct WatchedPart {
+  std::vector<ModelMotion> motions;
+  std::vector<ModelPeak> peaks;  ///< of vertices, as far as some were judged
+};
+
+class WatchedMotions {
+ public:
+  /// audited are the hosts of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must outlive
+  /// this, says which vertex of the report shows a corner; where it is empty, vertices are those of the audit.
+  WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
+                 std::span<const std::uint32_t> vertex_of_corner = {});
+
+  void add(const AuditSample& sample);
+
+  /// By mesh; what is no glTF file has one, without a mesh.
+  [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
+
+ private:
+  // What one host plays in the motion that is being told.
+  struct Played {
+    const Host* host = nullptr;
+    bool is_kept = false, is_specified = true;
+    std::vector<float> values;
+  };
+
+  void begin(const AuditSample& sample);
+  void end();
+
+  std::span<const std::uint32_t> vertex_of_corner_;
+  std::map<std::optional<std::size_t>, WatchedPart> parts_;
+  WatchedPart* now_ = nullptr;
+  std::vector<Played> played_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
