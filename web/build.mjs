@@ -42,7 +42,7 @@ async function reportPage() {
 async function enginePage(folder) {
   const wasm = gzipSync(readFileSync(join(folder, 'wasm/program.wasm')), { level: 9 });
   const program = { name: 'program', setup: (made) => made.onResolve({ filter: /wasm\/program\.js$/ }, () => ({ path: join(resolve(folder), 'wasm/program.js') })) };
-  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'] });
+  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define: { 'import.meta.url': '"file:///engine/src/run.js"' } });
   const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });
   return filled(readFileSync(source('page.html'), 'utf8'), {
     '/*style*/': styles(),

@@ -26,11 +26,17 @@ export function neighbour({ at: values }, at, step) {
   return Math.min(Math.max(next, 0), last);
 }
 
-/** Segment and t of a motion of keyframes at a place. */
+// A sample whose keyframes were left out of the report.
+const LEFT_OUT = 0xffffffff;
+
+/** Segment and t of a motion of keyframes at a place; where its keyframes were left out, those of the nearest place that has some. */
 export function segmentAt({ segment, t }, at) {
-  const from = Math.min(Math.floor(at), segment.length - 1), to = Math.min(from + 1, segment.length - 1);
-  const share = segment[from] === segment[to] ? at - from : 0;
-  return [segment[from], t[from] + share * (t[to] - t[from])];
+  const last = segment.length - 1, from = Math.min(Math.floor(at), last), to = Math.min(from + 1, last);
+  if (segment[from] !== LEFT_OUT) return [segment[from], t[from] + (segment[from] === segment[to] ? (at - from) * (t[to] - t[from]) : 0)];
+  for (let step = 1; ; ++step) {
+    for (const i of [from - step, from + step]) if (i >= 0 && i <= last && segment[i] !== LEFT_OUT) return [segment[i], t[i]];
+    if (step > last) return [0, 0];
+  }
 }
 
 /** The sample at which the numbers of a motion are the worst. */

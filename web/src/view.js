@@ -252,10 +252,22 @@ export function makeView(stage, onPoint) {
     setWipe(view.wipe + step);
   });
 
-  new ResizeObserver(() => {
+  const resized = new ResizeObserver(() => {
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setSize(stage.clientWidth, stage.clientHeight);
     draw();
-  }).observe(stage);
+  });
+  resized.observe(stage);
+
+  /** Gives back what the graphics card holds. */
+  view.close = () => {
+    ++flight;
+    surface = undefined;
+    resized.disconnect();
+    controls.dispose();
+    for (const mesh of meshes) mesh.geometry.dispose();
+    renderer.dispose();
+    renderer.forceContextLoss();
+  };
   return view;
 }

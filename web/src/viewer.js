@@ -180,7 +180,7 @@ export function makeViewer(root, report) {
     view.frame(true);
     if (first) view.mark(first.vertex);
   }
-  return { player, view, visit, key, setMode, setLayout, restyle: () => (plot.restyle(), view.request()) };
+  return { player, view, visit, key, setMode, setLayout, close: () => (player.pause(), view.close()), restyle: () => (plot.restyle(), view.request()) };
 }
 
 function aboutOf(report) {
