@@ -53,6 +53,7 @@ struct CompareOptions {
   std::function<void(std::size_t done, std::size_t total)> progress;
   ElementOptions elements = {};  ///< of which normals
   bool keep_errors = false;      ///< every single one, in Comparison::errors
+  bool keep_samples = false;     ///< those of each sample together, in SchemeComparison::samples
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -69,6 +70,7 @@ struct SchemeComparison {
   double evaluate_ns = 0;                    ///< per sample
   double bytes = 0;                          ///< read by an evaluation
   OperationCounts operations;                ///< of the access that was measured
+  std::vector<Quality> samples = {};         ///< with keep_samples: of each sample, segment after segment
 };
 
 struct Comparison {

@@ -31,6 +31,7 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/json.h"
 
 namespace chronormal {
 
@@ -68,7 +69,8 @@ struct Report {
   std::string input;  ///< its name without folders
   Audit audit;        ///< of a glTF file with all hosts
   std::optional<GltfBake> plan;
-  std::string plan_message;  ///< why there is no plan where one was asked for
+  std::string plan_message;                   ///< why there is no plan where one was asked for
+  std::optional<NamedComparison> comparison;  ///< of the schemes, on the vertices of what is no glTF file
   std::vector<ReportPart> parts;
   std::vector<ReportPlace> worst;    ///< worst first
   std::vector<std::string> thinned;  ///< what was left out: a sentence each

@@ -171,15 +171,6 @@ std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::siz
   return moves;
 }
 
-// Which corners share a normal: those of smooth edges, as the stored normals of keyframe 0 say, where there are any.
-Result<NormalGroups> groups_of(const Motion& motion, const StoredNormals& normals, bool weld) {
-  const Topology& topology = motion.topology;
-  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
-  if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
-  const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
-  return NormalGroups::by_split_normals(topology, points, of_corners);
-}
-
 // A sequence is one subject; each target is one.
 std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
   const bool is_targets = motion.kind == MotionKind::kTargets;
@@ -198,6 +189,14 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 
 }  // namespace
 
+Result<NormalGroups> internal::audited_groups(const Motion& motion, const StoredNormals& normals, bool weld) {
+  const Topology& topology = motion.topology;
+  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+  if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
+  const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
+  return NormalGroups::by_split_normals(topology, points, of_corners);
+}
+
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
   return watched_audit(motion, normals, options, {});
 }
@@ -214,7 +213,7 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Result<NormalGroups> groups = groups_of(motion, normals, options.weld);
+  const Result<NormalGroups> groups = audited_groups(motion, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);

@@ -11,6 +11,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
 
@@ -39,6 +40,10 @@ using AuditWatch = std::function<void(const AuditSample&)>;
                                           const AuditWatch& watch);
 [[nodiscard]] Result<Audit> watched_audit(const Motion& motion, const StoredNormals& normals,
                                           const AuditOptions& options, const AuditWatch& watch);
+
+/// Which corners of a motion share a normal, as its audit has it: those of smooth edges, as the stored normals of keyframe
+/// 0 say, where there are any. Errors: of NormalGroups
+[[nodiscard]] Result<NormalGroups> audited_groups(const Motion& motion, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal
 

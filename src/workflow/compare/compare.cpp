@@ -32,6 +32,7 @@ double nanoseconds_since(Clock::time_point start) {
 // What one scheme did on one block, or on all blocks so far.
 struct Tally {
   Quality quality;
+  std::vector<Quality> samples;  // of a block, where they are kept
   std::size_t fallbacks = 0, flagged = 0;
   double bytes = 0;
   std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
@@ -139,8 +140,9 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
 // Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
 // Each scheme that `each` has an array for gets its errors there.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
-                                 const std::vector<std::string>& names, std::size_t samples, Access access,
+                                 const std::vector<std::string>& names, const CompareOptions& options,
                                  std::span<std::vector<float>> each) {
+  const std::size_t samples = options.samples;
   std::vector<ControlNormals> control_normals(range.count);
   const auto control_start = Clock::now();
   all.control_normals(segment, range, control_normals);
@@ -166,7 +168,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   float* const first = planes.data();
   const auto result = VectorView<float>::planes(first, first + range.count, first + 2 * range.count, range.count);
   std::vector<std::unique_ptr<SchemePlayback>> playbacks(schemes.size());
-  if (access == Access::kSequential) {
+  if (options.access == Access::kSequential) {
     const double step = time_of_sample(1, samples);
     for (std::size_t s = 0; s < schemes.size(); ++s) playbacks[s] = schemes[s]->play(0, step, kDefaultAnchorInterval);
   }
@@ -182,6 +184,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
         schemes[s]->evaluate(t, result);
       evaluate_ns[s] += nanoseconds_since(start);
       tallies[s].quality.add(exact, result, {segment.index, range.first, t});
+      if (options.keep_samples) tallies[s].samples.emplace_back().add(exact, result, {segment.index, range.first, t});
       if (s < each.size()) {
         float* const row = each[s].data() + (segment.index * samples + i) * all.count() + range.first;
         for (std::size_t e = 0; e < range.count; ++e) row[e] = error_in_degrees(exact[e], to_double(result[e]));
@@ -249,6 +252,8 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
+  if (options.keep_samples)
+    for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<Tally> totals(names.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
   const std::size_t blocks = blocks_per_segment * motion.segments.size();
@@ -261,11 +266,17 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
       const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
-      wave[i] = compare_block(segment, *all, range, names, options.samples, options.access, each);
+      wave[i] = compare_block(segment, *all, range, names, options, each);
     });
     // In order, so that sums do not depend on the threads.
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t s = 0; s < names.size(); ++s) totals[s].add(wave[i][s]);
+      const std::size_t first_sample = (first + i) / blocks_per_segment * options.samples;
+      for (std::size_t s = 0; s < names.size(); ++s) {
+        totals[s].add(wave[i][s]);
+        if (s >= rows.size()) continue;
+        for (std::size_t k = 0; k < wave[i][s].samples.size(); ++k)
+          rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
+      }
     }
     if (options.progress) options.progress(first + count, blocks);
   }

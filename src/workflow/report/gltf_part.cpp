@@ -8,7 +8,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Vectors of all vertices, as those that are not zero.
+// Vectors of all vertices, as those that are not zero, or all where none is.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {
@@ -16,6 +16,7 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &vectors[3 * v], &vectors[3 * v] + 3);
   }
+  result.drop_vertices_of(vectors.size() / 3);
   return result;
 }
 
@@ -31,9 +32,9 @@ ModelShown shown_by(const GltfShading& shading, const Host& host) {
   for (std::size_t v = 0; 3 * v < shown.normals.size(); ++v)
     put(kept_normal(host, vector_at(shading.normals, v)), &shown.normals[3 * v]);
   for (ModelVectors& target : shown.targets) {
-    for (std::size_t i = 0; i < target.vertices.size(); ++i) {
-      const Vec3f delta = vector_at(target.values, i);
-      put(kept_delta(host, vector_at(shading.normals, target.vertices[i]), delta), &target.values[3 * i]);
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      const Vec3f normal = vector_at(shading.normals, target.vertex(i)), delta = vector_at(target.values, i);
+      put(kept_delta(host, normal, delta), &target.values[3 * i]);
     }
   }
   return shown;
@@ -88,7 +89,10 @@ Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std:
   part.normals = shading.normals;
   part.target_names = described.target_names;
   part.target_names.resize(shading.set.targets.size());
-  for (const BlendTarget& target : shading.set.targets) part.targets.push_back({false, target.vertices, target.deltas});
+  for (const BlendTarget& target : shading.set.targets) {
+    part.targets.push_back({false, target.vertices, target.deltas});
+    part.targets.back().drop_vertices_of(part.vertex_count());
+  }
   part.mark = shading.mark;
   part.shown = shown_of(shading, hosts);
   part.motions = std::move(watched.motions);

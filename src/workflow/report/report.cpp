@@ -10,15 +10,34 @@
 #include "workflow/report/container.h"
 #include "workflow/report/report_model.h"
 #include "workflow/report/report_parts.h"
+#include "workflow/report/thinning.h"
 #include "workflow/report/watched_motions.h"
 #include "workflow/report/worst_places.h"
 
 namespace chronormal {
 namespace {
 
+// A page that is still too large is thinned out more, by this factor, until hardly anything is left.
+constexpr double kShare = 0.9, kLeastShare = 0.1;
+
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
   if (!options.progress) return {};
   return [&options, what](std::size_t done, std::size_t total) { options.progress(what, done, total); };
+}
+
+// Compares schemes on the vertices of a motion, at the samples of its audit.
+Result<NamedComparison> compare_schemes(Input& input, const Motion& motion, const Audit& audit,
+                                        const ReportOptions& options) {
+  CompareOptions how;
+  how.samples = audit.subjects[0].samples;
+  how.elements = {ElementKind::kVertices};
+  how.keep_samples = true;
+  how.progress = told(options, "comparing");
+  Result<Comparison> compared = compare(motion, how);
+  if (!compared) return compared.error();
+  Result<TargetNames> names = target_names(input);
+  if (!names) return names.error();
+  return NamedComparison{input.name(), std::move(compared).value(), std::move(names).value()};
 }
 
 // The last part of a path.
@@ -52,6 +71,28 @@ Status read_gltf(const GltfDocument& document, const ReportOptions& options, Rep
   return Success{};
 }
 
+Status read_motion(Input& input, const ReportOptions& options, Report& report, ReportModel& model) {
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  const Result<const StoredNormals*> normals = input.normals();
+  if (!normals) return normals.error();
+  const Result<MotionVertices> vertices = motion_vertices(*motion.value(), *normals.value());
+  if (!vertices) return vertices.error();
+  WatchedMotions watched({}, {}, vertices.value().of_corner);
+  Result<Audit> found = watched_audit(*motion.value(), *normals.value(), audit_options(options),
+                                      [&](const AuditSample& sample) { watched.add(sample); });
+  if (!found) return found.error();
+  report.audit = std::move(found).value();
+  if (report.audit.subjects.empty()) return Success{};
+  Result<NamedComparison> compared = compare_schemes(input, *motion.value(), report.audit, options);
+  if (!compared) return compared.error();
+  model.kind = motion.value()->kind == MotionKind::kTargets ? "targets" : "sequence";
+  model.parts.push_back(motion_part(*motion.value(), *normals.value(), vertices.value(), &compared.value().comparison,
+                                    std::move(watched.take().begin()->second)));
+  report.comparison = std::move(compared).value();
+  return Success{};
+}
+
 void plan(const GltfDocument& document, const ReportOptions& options, Report& report) {
   if (!options.plan) return;
   BakeOptions how;
@@ -75,8 +116,34 @@ Json head_of(const Report& report) {
   head["plan"] = Json();
   if (report.plan) head["plan"] = object(plan_json(*report.plan, {report.input, "", std::nullopt, std::nullopt}));
   head["plan_message"] = report.plan_message.empty() ? Json() : Json(report.plan_message);
-  head["compare"] = Json();
+  head["compare"] = report.comparison ? object(compare_json({*report.comparison}, false, false)) : Json();
   return head;
+}
+
+// The bytes of a page with so many of it as base64 of a container packed, beside the template.
+std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
+  constexpr std::size_t kElement = 128;
+  return options.template_bytes + kElement + (packed + 2) / 3 * 4;
+}
+
+// Writes the container, and thins the model out first where the page would be too large.
+std::string write_within(const Json& head, ReportModel& model, const ReportOptions& options) {
+  std::string container = write_container(head, model);
+  // How small arrays become is known from these; a part of them may become less so.
+  const std::size_t packed = page_bytes(gzipped(container).size(), options);
+  if (packed <= options.most_bytes) return container;
+  const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());
+  const std::size_t room =
+      options.most_bytes > options.template_bytes ? options.most_bytes - options.template_bytes : 0;
+  const ReportModel whole = std::move(model);
+  for (double share = kShare;; share *= kShare) {
+    model = whole;
+    const double most = share * static_cast<double>(room) / per_byte;
+    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));  // the JSON
+    thin_out(model, static_cast<std::size_t>(std::max(0.0, most - static_cast<double>(beside))));
+    std::string thinned = write_container(head, model);
+    if (share < kLeastShare || page_bytes(gzipped(thinned).size(), options) <= options.most_bytes) return thinned;
+  }
 }
 
 }  // namespace
@@ -88,21 +155,23 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   if (const GltfDocument* const document = input.document(); document != nullptr) {
     if (const Status status = read_gltf(*document, options, result, model); !status) return status.error();
     if (!model.parts.empty()) plan(*document, options, result);
+  } else {
+    if (const Status status = read_motion(input, options, result, model); !status) return status.error();
   }
   if (model.parts.empty())
     return invalid_input(input.name(), "nothing in it moves that could be judged, so there is nothing to show");
   model.worst = find_worst_places(model.parts);
+  result.container = write_within(head_of(result), model, options);
   for (const ModelPart& part : model.parts) {
     ReportPart& told_part = result.parts.emplace_back();
     told_part.name = part.name;
     told_part.vertices = part.vertex_count();
-    told_part.triangles = part.triangles.size() / 3;
+    told_part.triangles = (part.triangles.size() + part.coarse.size()) / 3;
     told_part.motions = part.motions.size();
     for (const ModelMotion& motion : part.motions) told_part.samples += motion.at.size();
   }
   result.worst = model.worst;
   result.thinned = model.thinned;
-  result.container = write_container(head_of(result), model);
   return result;
 }
 

@@ -24,6 +24,16 @@ struct ModelVectors {
   bool is_dense = false;
   std::vector<std::uint32_t> vertices;  ///< empty where it is dense
   std::vector<float> values;            ///< (n, 3)
+
+  [[nodiscard]] std::size_t size() const noexcept { return values.size() / 3; }
+  [[nodiscard]] std::uint32_t vertex(std::size_t i) const noexcept {
+    return is_dense ? static_cast<std::uint32_t>(i) : vertices[i];
+  }
+  /// Makes vectors dense that all vertices of a mesh have.
+  void drop_vertices_of(std::size_t vertex_count) {
+    is_dense = vertex_count > 0 && vertices.size() == vertex_count;
+    if (is_dense) vertices.clear();
+  }
 };
 
 /// What hosts keep of the normals of a glTF mesh.

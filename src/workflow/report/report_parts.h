@@ -10,6 +10,9 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
+#include "chronormal/io/input.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/hosts.h"
 #include "workflow/report/report_model.h"
 #include "workflow/report/watched_motions.h"
@@ -19,6 +22,21 @@ namespace chronormal::inline internal {
 /// A mesh of a glTF file, with what `hosts` keep of its normals. Errors: of GltfDocument
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std::span<const Host> hosts,
                                           WatchedPart watched);
+
+/// The vertices of a motion in a report: a vertex of the file stands there once for each normal that it shows.
+struct MotionVertices {
+  std::vector<std::uint32_t> labels;             ///< their vertices in the file, ascending
+  std::vector<std::uint32_t> elements, corners;  ///< of each; corners: one that shows it
+  std::vector<std::uint32_t> of_corner;          ///< which of them each corner of the motion shows
+  std::size_t element_count = 0;
+};
+
+/// Finds them. Errors: of NormalGroups
+[[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
+
+/// A motion that is no glTF file, with what a comparison of schemes found, where there is one, with keep_samples.
+[[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
+                                    const Comparison* comparison, WatchedPart watched);
 
 }  // namespace chronormal::inline internal
 

@@ -1,0 +1,201 @@
+#include "workflow/report/coarse_part.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::uint32_t kNone = kNoReportElement;
+
+// Faces of a part: runs of triangles.
+struct Faces {
+  explicit Faces(const ModelPart& part) {
+    const std::size_t triangles = part.triangles.size() / 3;
+    for (std::size_t t = 0; t < triangles; ++t)
+      if (t == 0 || part.faces.empty() || part.faces[t] != part.faces[t - 1]) first.push_back(t);
+    first.push_back(triangles);
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return first.size() - 1; }
+  // The corners of all triangles of a face.
+  [[nodiscard]] std::span<const std::uint32_t> corners(const ModelPart& part, std::size_t face) const {
+    return std::span(part.triangles).subspan(3 * first[face], 3 * (first[face + 1] - first[face]));
+  }
+
+  std::vector<std::size_t> first;  // triangle of each face, and the end
+};
+
+// The faces of each element, one after the other.
+struct FacesOfElements {
+  FacesOfElements(const ModelPart& part, const Faces& faces) : offsets(part.elements + 1) {
+    const auto each = [&](const auto& use) {
+      for (std::size_t f = 0; f < faces.count(); ++f)
+        for (const std::uint32_t v : faces.corners(part, f))
+          if (part.element[v] != kNone) use(part.element[v], f);
+    };
+    each([&](std::uint32_t e, std::size_t) { ++offsets[e + 1]; });
+    for (std::size_t e = 0; e < part.elements; ++e) offsets[e + 1] += offsets[e];
+    list.resize(offsets.back());
+    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+    each([&](std::uint32_t e, std::size_t f) { list[next[e]++] = f; });
+  }
+  [[nodiscard]] std::span<const std::size_t> of(std::size_t e) const {
+    return std::span(list).subspan(offsets[e], offsets[e + 1] - offsets[e]);
+  }
+
+  std::vector<std::size_t> offsets, list;
+};
+
+// What stays of a part.
+struct Kept {
+  std::vector<bool> faces, vertices, elements;
+};
+
+// The elements around the worst places, ring after ring, until their faces have so many vertices; at least those of the
+// places themselves.
+Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
+  const ModelPart& part = model.parts[number];
+  const Faces faces(part);
+  const FacesOfElements faces_of(part, faces);
+  Kept kept{std::vector<bool>(faces.count()), std::vector<bool>(part.vertex_count()), std::vector<bool>(part.elements)};
+  std::vector<std::uint32_t> ring;
+  std::vector<bool> is_seen(part.elements);
+  const auto see = [&](std::uint32_t vertex) {
+    const std::uint32_t e = part.element[vertex];
+    if (e == kNone || is_seen[e]) return;
+    is_seen[e] = true;
+    ring.push_back(e);
+  };
+  for (const ReportPlace& place : model.worst)
+    if (place.part == number) see(static_cast<std::uint32_t>(place.vertex));
+  const std::size_t places = ring.size();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ring.size() && (i < places || count < most_vertices); ++i) {
+    kept.elements[ring[i]] = true;
+    for (const std::size_t f : faces_of.of(ring[i])) {
+      if (kept.faces[f]) continue;
+      kept.faces[f] = true;
+      for (const std::uint32_t v : faces.corners(part, f)) {
+        if (!kept.vertices[v]) ++count;
+        kept.vertices[v] = true;
+        see(v);
+      }
+    }
+  }
+  return kept;
+}
+
+// Fewer triangles of the same vertices; their border stays, if it may.
+std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
+                                      std::size_t most_triangles) {
+  if (triangles.empty() || most_triangles == 0) return {};
+  constexpr float kAnyError = 1e9F;
+  constexpr std::size_t kStride = 3 * sizeof(float);
+  const std::size_t vertices = positions.size() / 3, most = 3 * most_triangles;
+  std::vector<std::uint32_t> result(triangles.size());
+  std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
+                                       kStride, most, kAnyError, meshopt_SimplifyLockBorder);
+  // Where its topology or its borders keep a mesh from becoming coarse, its shape alone counts.
+  if (count > most + most / 2)
+    count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
+                                   kStride, most, kAnyError);
+  result.resize(count);
+  return result;
+}
+
+// Numbers those that stay, in their order.
+std::vector<std::uint32_t> numbers(const std::vector<bool>& kept) {
+  std::vector<std::uint32_t> result(kept.size(), kNone);
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (kept[i]) result[i] = count++;
+  return result;
+}
+
+template <class T>
+void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
+  if (values.empty()) return;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kept.size() && width * i < values.size(); ++i) {
+    if (!kept[i]) continue;
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(width * i), width,
+                values.begin() + static_cast<std::ptrdiff_t>(width * count++));
+  }
+  values.resize(width * count);
+}
+
+void keep_only(const std::vector<bool>& kept, const std::vector<std::uint32_t>& number, ModelVectors& vectors) {
+  if (vectors.is_dense) {
+    keep_only(kept, 3, vectors.values);
+    return;
+  }
+  std::vector<bool> is_kept(vectors.vertices.size());
+  for (std::size_t i = 0; i < is_kept.size(); ++i) is_kept[i] = kept[vectors.vertices[i]];
+  keep_only(is_kept, 3, vectors.values);
+  keep_only(is_kept, 1, vectors.vertices);
+  for (std::uint32_t& v : vectors.vertices) v = number[v];
+}
+
+// The number of each vertex in the file: in its primitive, where there are several.
+void label(ModelPart& part) {
+  if (!part.labels.empty()) return;
+  for (const ModelPrimitive& primitive : part.primitives)
+    for (std::uint32_t v = 0; v < primitive.count; ++v) part.labels.push_back(v);
+}
+
+}  // namespace
+
+void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertices) {
+  ModelPart& part = model.parts[number];
+  Kept kept = keep_neighbourhoods(model, number, most_vertices / 2);
+  const Faces faces(part);
+  std::vector<std::uint32_t> fine, rest, face_of_fine;
+  for (std::size_t f = 0; f < faces.count(); ++f) {
+    const auto corners = faces.corners(part, f);
+    std::vector<std::uint32_t>& to = kept.faces[f] ? fine : rest;
+    to.insert(to.end(), corners.begin(), corners.end());
+    if (kept.faces[f] && !part.faces.empty())
+      face_of_fine.insert(face_of_fine.end(), corners.size() / 3, part.faces[faces.first[f]]);
+  }
+  // A closed mesh has twice as many triangles as vertices.
+  part.coarse = simplified(rest, part.positions, most_vertices);
+  part.triangles = std::move(fine);
+  part.faces = std::move(face_of_fine);
+  for (const std::uint32_t v : part.coarse) kept.vertices[v] = true;
+
+  label(part);
+  const std::vector<std::uint32_t> vertex = numbers(kept.vertices), element = numbers(kept.elements);
+  for (std::vector<std::uint32_t>* corners : {&part.triangles, &part.coarse})
+    for (std::uint32_t& v : *corners) v = vertex[v];
+  for (std::uint32_t& e : part.element) e = e == kNone ? kNone : element[e];
+  std::size_t first = 0;
+  for (ModelPrimitive& primitive : part.primitives) {
+    const auto begin = kept.vertices.begin() + static_cast<std::ptrdiff_t>(primitive.first);
+    primitive.count =
+        static_cast<std::size_t>(std::count(begin, begin + static_cast<std::ptrdiff_t>(primitive.count), true));
+    primitive.first = std::exchange(first, first + primitive.count);
+  }
+  keep_only(kept.vertices, 1, part.labels);
+  keep_only(kept.vertices, 1, part.element);
+  keep_only(kept.vertices, 3, part.positions);
+  keep_only(kept.vertices, 3, part.normals);
+  for (ModelVectors& target : part.targets) keep_only(kept.vertices, vertex, target);
+  for (ModelShown& shown : part.shown) {
+    keep_only(kept.vertices, 3, shown.normals);
+    for (ModelVectors& target : shown.targets) keep_only(kept.vertices, vertex, target);
+  }
+  for (ModelVectors& keyframe : part.keyframe_positions) keep_only(kept.vertices, vertex, keyframe);
+  for (ModelVectors& keyframe : part.keyframe_normals) keep_only(kept.vertices, vertex, keyframe);
+  for (ModelMotion& motion : part.motions) keep_only(kept.elements, 1, motion.least);
+  part.elements = static_cast<std::size_t>(std::count(kept.elements.begin(), kept.elements.end(), true));
+  part.peaks.clear();
+  for (ReportPlace& place : model.worst)
+    if (place.part == number) place.vertex = vertex[place.vertex];
+}
+
+}  // namespace chronormal::inline internal
