@@ -15,3 +15,6 @@ const page = {
 };
 usePlatform(page);
 serveTasks(page);
+
+// What nobody waits for, such as a module for which there is no memory.
+self.addEventListener('unhandledrejection', ({ reason }) => self.postMessage({ failed: String(reason?.message ?? reason) }));
