@@ -50,8 +50,11 @@ export function choosers(report, player) {
 export function worstPlaces(report, onVisit) {
   const places = report.worst.filter(({ degrees }) => degrees > 0);
   if (places.length === 0) return null;
+  // What all of them are in need not be said.
+  const pieces = places.map(({ label }) => label.split(', '));
+  const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const list = h('ol', { className: 'places' }, places.map((place, i) => h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) },
-    h('b', {}, degreesText(place.degrees)), h('span', {}, place.label, h('small', {}, place.moment))))));
+    h('b', {}, degreesText(place.degrees)), h('span', { title: place.label }, pieces[i].slice(same).join(', '), h('small', {}, place.moment))))));
   return panel(`Worst places (${places.length})`, true, list);
 }
 

@@ -187,6 +187,15 @@ export function makeView(stage, onPoint) {
     request();
   };
 
+  /** Looks at a point from a direction, and from a share of the distance at which all is seen. */
+  view.look = (target, direction, near) => {
+    ++flight;
+    controls.target.set(...target);
+    camera.position.set(...direction).setLength(near * distanceOf(radius)).add(controls.target);
+    controls.update();
+    request();
+  };
+
   /** Goes near a vertex, and looks at it from where its right normal points. */
   view.visit = (vertex) => {
     marked = vertex;

@@ -84,10 +84,10 @@ export function makeViewer(root, report) {
     layouts.choose(layout);
     view.frame(true);
   }
-  // Where most of the errors are seen: what 99.9 percent are below, or else the worst.
+  // Where most of the errors are seen: what 99 percent are below, or else the worst.
   function setScale() {
     const { motion } = player, subject = motion && report.audit?.subjects?.[motion.subject ?? -1];
-    const typical = subject?.percentile_99_9_degrees ?? (motion ? motion.worst[worstSample(motion)] : 1);
+    const typical = subject?.percentile_99_degrees ?? (motion ? motion.worst[worstSample(motion)] : 1);
     const end = scale.value === 'auto' ? scaleEnd(typical || 1) : Number(scale.value);
     view.setScale(end);
     high.textContent = end < 180 ? `${end}° and more` : '180°';
