@@ -10,7 +10,7 @@ import { openPages } from '../../tests/hosts/web_page.mjs';
 const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 
 // What is shown, and from where: `from` is a direction, `near` a share of the distance at which all is seen, `at` where the camera
-// looks, in shares of the box of the mesh. The moment is that of the largest mean error, or `share` of the motion.
+// looks, in shares of the box of the mesh. The moment is that of the largest mean error.
 const SUBJECTS = [
   { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },
   { name: 'suzanne', input: [data('rigs/blender_suzanne_two_keys.glb')], from: [0.45, 0.2, 1], near: 0.72, at: [0.5, 0.5, 0.5], scale: 45 },
@@ -19,18 +19,13 @@ const SUBJECTS = [
 ];
 
 // In the page: three panes, as shown, as it should be, and the error, with the text above them.
-function drawPicture({ from, near, at, scale, share }) {
-  const { player, view, setMode } = globalThis.chronormal, { part, motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
+function drawPicture({ from, near, at, scale }) {
+  const { player, view, setMode } = globalThis.chronormal, { motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
   const best = motion.mean.reduce((found, value, i) => (value > motion.mean[found] && motion.segment?.[i] !== 0xffffffff ? i : found), 0);
-  player.go(share === undefined ? best : Math.round(share * (motion.at.length - 1)));
+  player.go(best);
   view.mark(-1);
   view.frame(true);
-  const { camera } = view, { positions } = player.surface, box = [0, 1, 2].map((c) => {
-    let least = Infinity, most = -Infinity;
-    for (let v = c; v < positions.length; v += 3) (least = Math.min(least, positions[v])), (most = Math.max(most, positions[v]));
-    return [least, most];
-  });
-  view.look(at.map((s, c) => box[c][0] + s * (box[c][1] - box[c][0])), from, near);
+  view.look(at, from, near);
   view.setScale(scale);
 
   const sheet = Object.assign(document.createElement('canvas'), { width: 3 * WIDTH, height: HEIGHT + HEAD }), ink = sheet.getContext('2d');
@@ -71,13 +66,13 @@ try {
     if (name !== 'face') continue;
     await page.setViewport({ width: 1280, height: 800 });
     await pages.show(report);
-    await page.evaluate((from) => {
+    await page.evaluate(({ at, from }) => {
       const { player, view, setMode } = globalThis.chronormal, { mean } = player.motion;
       setMode('error');
       player.go(mean.indexOf(mean.reduce((a, b) => Math.max(a, b))));
       view.mark(-1);
-      view.look([0, 0.52, 0].map((share) => share), from, 0.5);
-    }, how.from);
+      view.look(at, from, 0.5);
+    }, how);
     await new Promise((resolve) => setTimeout(resolve, 800));
     save('report', `data:,${(await page.screenshot({ type: 'jpeg', quality: 85 })).toString('base64')}`);
   }

@@ -52,5 +52,5 @@ export function faultOf(name, size, bytes) {
 }
 
 export const NOTHING_MOVES =
-  'This file has no shape keys (morph targets), so there is nothing in it that could be lit wrongly on the way, and nothing to bake. ' +
-  'If the model should have some: in Blender, look at “Shape Keys” of the mesh, and tick “Shape Keys” below “Data” when you export glTF. Motion by bones alone needs no new normals.';
+  'There is nothing to mend in this file: it has no shape keys (morph targets) that move a mesh with normals. Motion by bones alone needs no new ' +
+  'normals. If the model should have some: in Blender, look at “Shape Keys” of the mesh, and tick “Shape Keys” below “Data” when you export glTF.';

@@ -10,6 +10,7 @@ import { makeViewer } from './viewer.js';
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
 const inputs = []; // {name, args, bytes: {name: Uint8Array}, came, baked: {report, bytes, name, warnings}}
+const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;
 
 const theme = makeTheme(() => viewer?.restyle());
@@ -60,12 +61,14 @@ async function during(title, step) {
 function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);
   if (/memory/i.test(error.message)) return say('The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.', error.message);
+  if (/nothing in it moves/.test(error.message)) return say(NOTHING_MOVES, error.message);
   const text = error.code === 3 ? 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.' : 'The program could not do this.';
   say(text, error.message);
 }
 
 async function reportOf(call, { args, bytes }) {
-  const { files } = await call(['report', ...args, '--no-plan', '--host', 'all', '-o', 'out/report.bin'], bytes);
+  const hosts = args.some((name) => DOCUMENT.test(name)) ? ['--host', 'all'] : [];
+  const { files } = await call(['report', ...args, '--no-plan', ...hosts, '-o', 'out/report.bin'], bytes);
   return readContainer(files['report.bin']);
 }
 
@@ -99,8 +102,6 @@ async function example() {
   if (made) await open({ name: 'bumps.glb', args: ['bumps.glb'], bytes: { 'bumps.glb': made.files['bumps.glb'] } });
 }
 
-const moves = ({ parts }) => parts.some(({ motions }) => motions.length > 0);
-
 function show(input, side) {
   current = input;
   const shown = side === 'baked' ? input.baked.report : input.came;
@@ -116,7 +117,6 @@ function show(input, side) {
   viewer = makeViewer(root, shown);
   const bake = makeBakePanel(input, { plan: () => plan(input), bake: () => make(input) });
   root.querySelector('.verdict').after(bake);
-  if (!moves(shown)) say(NOTHING_MOVES);
   Object.assign(globalThis, { chronormal: viewer });
   root.dataset.ready = `${inputs.indexOf(input)} ${side}`;
 }
@@ -136,7 +136,7 @@ async function plan(input) {
 
 async function make(input) {
   say();
-  const name = input.args.length === 1 && /\.(glb|gltf|vrm)$/i.test(input.args[0]) ? input.args[0].replace(/(\.[^.]+)$/, '.right$1') : 'baked.glb';
+  const name = input.args.length === 1 && DOCUMENT.test(input.args[0]) ? input.args[0].replace(/(\.[^.]+)$/, '.right$1') : 'baked.glb';
   const found = await during('Baking', async (call) => {
     const done = await call(['bake', ...input.args, '--json', ...flagsOf(input.options), '-o', `out/${name}`], input.bytes);
     const report = await reportOf(call, { args: [name], bytes: { ...input.bytes, ...done.files } });

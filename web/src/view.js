@@ -108,7 +108,7 @@ export function makeView(stage, onPoint) {
     requestAnimationFrame(draw);
   }
 
-  function sphere() {
+  function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
     for (const v of part.triangles) {
       for (let c = 0; c < 3; ++c) {
@@ -116,8 +116,8 @@ export function makeView(stage, onPoint) {
         most[c] = Math.max(most[c], positions[3 * v + c]);
       }
     }
-    const centre = new Vector3(...least).add(new Vector3(...most)).multiplyScalar(0.5);
-    return { centre, size: new Vector3(...most).sub(centre).length() || 1 };
+    const [low, high] = [new Vector3(...least), new Vector3(...most)], centre = low.clone().add(high).multiplyScalar(0.5);
+    return { centre, low, high, size: high.distanceTo(centre) || 1 };
   }
 
   // The camera goes there in a while, or at once for those who want no motion.
@@ -172,7 +172,7 @@ export function makeView(stage, onPoint) {
 
   /** The whole mesh, from a little beside. */
   view.frame = (atOnce) => {
-    const { centre, size } = sphere();
+    const { centre, size } = bounds();
     radius = size;
     camera.near = size / 200;
     camera.far = size * 60;
@@ -187,10 +187,11 @@ export function makeView(stage, onPoint) {
     request();
   };
 
-  /** Looks at a point from a direction, and from a share of the distance at which all is seen. */
-  view.look = (target, direction, near) => {
+  /** Looks at a point, in shares of the box of the mesh, from a direction and a share of the distance at which all is seen. */
+  view.look = (shares, direction, near) => {
+    const { low, high } = bounds();
     ++flight;
-    controls.target.set(...target);
+    controls.target.copy(high).sub(low).multiply(new Vector3(...shares)).add(low);
     camera.position.set(...direction).setLength(near * distanceOf(radius)).add(controls.target);
     controls.update();
     request();
