@@ -64,6 +64,9 @@ if(CHRONORMAL_PROGRAM)
   install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  # The page of reports, where ./run report built it: beside the folders of all builds, where their programs look for it.
+  install(FILES ${PROJECT_BINARY_DIR}/../share/chronormal/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/chronormal
+          OPTIONAL)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/chronormal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

@@ -38,24 +38,21 @@ bool has_extension(const std::string& path, std::string_view extension) {
 
 bool is_container(const Options& options) { return has_extension(options.common.output, ".bin"); }
 
-// Where templates are looked for: where the program was installed, and where it was built.
-std::vector<fs::path> usual_templates() {
+// The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not say
+// where that is.
+std::optional<std::string> usual_template() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  if (failed) return {};
-  const fs::path folder = program.parent_path();
-  return {folder.parent_path() / "share" / "chronormal" / "report.html", folder / "share" / "report.html"};
+  if (failed) return std::nullopt;
+  return (program.parent_path().parent_path() / "share" / "chronormal" / "report.html").string();
 }
 
 // The template of the page. It is read before anything is computed, so that nothing is in vain.
 Result<std::string> read_template(const Options& options) {
-  std::optional<std::string> path = options.page_template;
-  for (const fs::path& usual : usual_templates()) {
-    std::error_code failed;
-    if (!path && fs::is_regular_file(usual, failed)) path = usual.string();
-  }
-  if (!path)
-    return Error{ErrorCode::kFailed, "report.html",
+  const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();
+  std::error_code failed;
+  if (!options.page_template && (!path || !fs::exists(*path, failed)))
+    return Error{ErrorCode::kFailed, path.value_or("report.html"),
                  "the template of the page is not there: ./run report, in the source folder of chronormal, makes it; "
                  "or name one with --template, or write OUT.bin, which needs none"};
   const Result<FileBytes> file = FileBytes::open(*path);
@@ -80,6 +77,7 @@ Result<ReportOptions> understand(const Options& options, Progress& progress) {
   if (const Status status = check_input(options.input); !status) return status.error();
   if (!is_container(options) && !has_extension(options.common.output, ".html"))
     return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
+  if (is_container(options) && options.page_template) return misuse("--template", "OUT.bin is data, and needs no page");
   how.samples = options.samples;
   how.animation = options.input.animation;
   how.plan = !options.no_plan;

@@ -215,6 +215,7 @@ const std::map<std::string, std::string> kUses = {
     {"--max-expansion", "a.obj b.obj --max-expansion 5"},
     {"--max-targets", "face.glb --max-targets 9"},
     {"--no-audit", "face.glb --no-audit"},
+    {"--no-plan", "face.glb --no-plan"},
     {"--no-times", "a.obj b.obj --no-times"},
     {"--no-weld", "a.obj b.obj --no-weld"},
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
@@ -229,6 +230,7 @@ const std::map<std::string, std::string> kUses = {
     {"--schemes", "a.obj b.obj --schemes linear"},
     {"--seed", "--base a.obj b.obj --blend 2 --seed 7"},
     {"--smooth", "face.glb --smooth"},
+    {"--template", "a.obj b.obj --template page.html"},
     {"--times", "a.obj b.obj --times 0.5"},
     {"--tolerance", "a.obj b.obj --tolerance 1"},
     {"--weighting", "a.obj b.obj --weighting angle"},
@@ -241,6 +243,7 @@ std::string needs_of(const std::string& command, const std::string& use) {
   if (use == "--help") return "";
   if (command == "bake") return " -o out.glb";
   if (command == "convert") return " -o out.npz";
+  if (command == "report") return use.find("--template") != std::string::npos ? " -o out.html" : " -o out.bin";
   if (command != "sample") return " -o out.txt";
   const bool has_moments = use.find("--times") != std::string::npos || use.find("--weights") != std::string::npos;
   const bool has_weights = use.find("--base") != std::string::npos ||
@@ -256,6 +259,7 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
   face.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   write("face.glb", face.glb());
   write("poses.json", "[[1, 1]]");
+  write("page.html", "<!--chronormal-data-->");
   std::set<std::string> all;
   for (const std::string& command : command_names())
     for (const std::string& name : option_names(command)) all.insert(name);
@@ -272,7 +276,8 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
       const ProcessResult result = run(command + " " + use->second + needs_of(command, use->second));
       EXPECT_TRUE(result.exit_code == 0 || (name == "--tolerance" && result.exit_code == 4)) << result.err;
-      for (const char* const file : {"out.txt", "out.glb", "out.npz", "out.npy", "drivers.json", "errors.npz"})
+      for (const char* const file :
+           {"out.txt", "out.glb", "out.npz", "out.npy", "out.bin", "out.html", "drivers.json", "errors.npz"})
         fs::remove(folder_ / file);
     }
   }

@@ -64,6 +64,7 @@ const std::vector<Command> kCommands = {
     {"audit_gltf", "audit in/face.glb --json"},
     {"bake_gltf", "bake in/face.glb -o out/old.glb --force --encode exact", {"old.glb"}},
     {"bake_text", "bake in/face.glb -o out/new.gltf"},
+    {"report_gltf", "report in/face.glb -o out/old.bin --force --no-plan", {"old.bin"}},
     {"bake_sequence", "bake in/a.obj in/b.obj in/c.obj -o out/new.glb --json"},
 };
 

@@ -112,6 +112,8 @@ class ReportFile {
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
       for (++t; !faces.empty() && 3 * t < triangles.size() && faces[t] == faces[t - 1]; ++t)
         polygon.push_back(triangles[3 * t + 2]);
+      if (std::none_of(polygon.begin(), polygon.end(), [&](std::uint32_t v) { return elements[v] == element; }))
+        continue;
       const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
       Point area = {};
       for (std::size_t i = 2; i < polygon.size(); ++i)

@@ -47,7 +47,7 @@ struct ReportOptions {
   bool plan = true;                         ///< glTF: with the forms that bake could give each mesh
   std::size_t most_bytes = kMostReportBytes;
   std::size_t template_bytes = 0;  ///< of the page, those that are not the report
-  /// Told what is being done ("auditing", "planning", "comparing", "packing"), and how much of it.
+  /// Told what is being done ("auditing", "comparing", "planning"), and how much of it.
   std::function<void(std::string_view what, std::size_t done, std::size_t total)> progress = {};
 };
 

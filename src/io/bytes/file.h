@@ -1,5 +1,5 @@
-/// Whole files as bytes: in by memory mapping, or from memory where a caller has them there. Private to io; the way out
-/// is chronormal/io/output.h.
+/// Whole files as bytes: in by memory mapping, or from memory where a caller has them there. Private to io and the program;
+/// the way out is chronormal/io/output.h.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_BYTES_FILE_H_

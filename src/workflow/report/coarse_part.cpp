@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "workflow/report/keep_only.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -117,19 +119,7 @@ std::vector<std::uint32_t> numbers(const std::vector<bool>& kept) {
   return result;
 }
 
-template <class T>
-void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
-  if (values.empty()) return;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kept.size() && width * i < values.size(); ++i) {
-    if (!kept[i]) continue;
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(width * i), width,
-                values.begin() + static_cast<std::ptrdiff_t>(width * count++));
-  }
-  values.resize(width * count);
-}
-
-void keep_only(const std::vector<bool>& kept, const std::vector<std::uint32_t>& number, ModelVectors& vectors) {
+void keep_vectors(const std::vector<bool>& kept, const std::vector<std::uint32_t>& number, ModelVectors& vectors) {
   if (vectors.is_dense) {
     keep_only(kept, 3, vectors.values);
     return;
@@ -184,13 +174,13 @@ void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertic
   keep_only(kept.vertices, 1, part.element);
   keep_only(kept.vertices, 3, part.positions);
   keep_only(kept.vertices, 3, part.normals);
-  for (ModelVectors& target : part.targets) keep_only(kept.vertices, vertex, target);
+  for (ModelVectors& target : part.targets) keep_vectors(kept.vertices, vertex, target);
   for (ModelShown& shown : part.shown) {
     keep_only(kept.vertices, 3, shown.normals);
-    for (ModelVectors& target : shown.targets) keep_only(kept.vertices, vertex, target);
+    for (ModelVectors& target : shown.targets) keep_vectors(kept.vertices, vertex, target);
   }
-  for (ModelVectors& keyframe : part.keyframe_positions) keep_only(kept.vertices, vertex, keyframe);
-  for (ModelVectors& keyframe : part.keyframe_normals) keep_only(kept.vertices, vertex, keyframe);
+  for (ModelVectors& keyframe : part.keyframe_positions) keep_vectors(kept.vertices, vertex, keyframe);
+  for (ModelVectors& keyframe : part.keyframe_normals) keep_vectors(kept.vertices, vertex, keyframe);
   for (ModelMotion& motion : part.motions) keep_only(kept.elements, 1, motion.least);
   part.elements = static_cast<std::size_t>(std::count(kept.elements.begin(), kept.elements.end(), true));
   part.peaks.clear();

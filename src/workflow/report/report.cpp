@@ -109,10 +109,10 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
 
 Json head_of(const Report& report) {
   const auto object = [](const std::string& text) { return Json::parse(text); };
-  Json head = {{"schema", 1}, {"program", object(audit_json("", Audit(), std::nullopt))["chronormal"]}};
-  head["program"] = "chronormal " + head["program"].get<std::string>();
+  Json audit = object(audit_json(report.input, report.audit, std::nullopt));
+  Json head = {{"schema", 1}, {"program", "chronormal " + audit["chronormal"].get<std::string>()}};
   head["input"] = report.input;
-  head["audit"] = object(audit_json(report.input, report.audit, std::nullopt));
+  head["audit"] = std::move(audit);
   head["plan"] = Json();
   if (report.plan) head["plan"] = object(plan_json(*report.plan, {report.input, "", std::nullopt, std::nullopt}));
   head["plan_message"] = report.plan_message.empty() ? Json() : Json(report.plan_message);
@@ -158,8 +158,13 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   } else {
     if (const Status status = read_motion(input, options, result, model); !status) return status.error();
   }
-  if (model.parts.empty())
-    return invalid_input(input.name(), "nothing in it moves that could be judged, so there is nothing to show");
+  if (model.parts.empty()) {
+    constexpr const char* kStillDocument =
+        "no morph target of it moves anything that has normals, so there is nothing to show; a report needs shape keys "
+        "(blend shapes), exported as morph targets with normals";
+    constexpr const char* kStillMotion = "nothing in it moves that could be judged, so there is nothing to show";
+    return invalid_input(input.name(), input.document() != nullptr ? kStillDocument : kStillMotion);
+  }
   model.worst = find_worst_places(model.parts);
   result.container = write_within(head_of(result), model, options);
   for (const ModelPart& part : model.parts) {

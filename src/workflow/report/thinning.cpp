@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "workflow/report/coarse_part.h"
+#include "workflow/report/keep_only.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -68,18 +69,6 @@ std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t par
   for (const ReportPlace& place : model.worst)
     if (place.part == part && place.motion == motion) samples.push_back(place.sample);
   return samples;
-}
-
-template <class T>
-void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
-  std::vector<T> result;
-  for (std::size_t i = 0; i < kept.size() && !values.empty(); ++i) {
-    if (!kept[i]) continue;
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(width * i);
-    result.insert(result.end(), std::move_iterator(first),
-                  std::move_iterator(first + static_cast<std::ptrdiff_t>(width)));
-  }
-  values = std::move(result);
 }
 
 // Leaves keyframes out until about most_bytes of them are left. Returns how many are.

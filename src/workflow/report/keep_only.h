@@ -1,0 +1,27 @@
+/// Leaving some of many values out. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
+#define CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <vector>
+
+namespace chronormal::inline internal {
+
+/// Keeps the i-th `width` values where kept[i], in their order. There may be fewer values than kept says.
+template <class T>
+void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kept.size() && width * i < values.size(); ++i) {
+    if (!kept[i]) continue;
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(width * i);
+    const auto to = values.begin() + static_cast<std::ptrdiff_t>(width * count++);
+    if (from != to) std::move(from, from + static_cast<std::ptrdiff_t>(width), to);
+  }
+  values.resize(width * count);
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
