@@ -1,5 +1,6 @@
 // The panel of a bake: for which hosts, how right, how large; the plan of it, and the bake itself.
-import { h, panel } from './dom.js';
+import { degreesText } from './colors.js';
+import { h, panel, table } from './dom.js';
 import { choiceTable } from './panels.js';
 
 const HOSTS = [
@@ -33,5 +34,14 @@ export function makeBakePanel(input, { plan, bake }) {
     number('at most', 'maxBytes', 'any', 'bytes more'),
     h('p', { className: 'acts' }, h('button', { type: 'button', className: 'primary bake', onclick: bake }, 'Bake'),
       isGltf && h('button', { type: 'button', className: 'plain plan', onclick: plan }, 'See the plan')),
-    planned);
+    comparison(input), planned);
+}
+
+// What a bake made of it.
+function comparison({ came, baked }) {
+  if (!baked) return null;
+  const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });
+  const bytes = Object.values(baked.files).reduce((sum, file) => sum + file.length, 0);
+  return [table('Before and after', ['', 'mean ', 'worst '], [row('as it came', came), row('baked', baked.report)]),
+    h('p', { className: 'note' }, `${baked.name}: ${bytes.toLocaleString('en')} bytes.`)];
 }

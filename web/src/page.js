@@ -26,11 +26,19 @@ const message = h('div', { className: 'message', role: 'alert', hidden: true });
 const busy = h('div', { className: 'busy', role: 'status', hidden: true });
 work.append(message, busy);
 
-/** Says something that stays until the next thing is done; details are the words of the program. */
+/** Says what went wrong until the next thing is done; details are the words of the program. */
 function say(text, details) {
   message.hidden = !text;
+  message.classList.remove('mild');
   message.replaceChildren(...(text ? [h('div', {}, h('p', {}, text), details && h('pre', {}, details)),
     h('button', { type: 'button', className: 'plain', onclick: () => say() }, 'Close')] : []));
+}
+
+/** Says something beside a result, whose details are there for those who ask. */
+function remark(text, details) {
+  say(text);
+  message.classList.add('mild');
+  message.firstChild.append(h('details', {}, h('summary', {}, 'What the program says'), h('pre', {}, details)));
 }
 
 /** Runs a step of several commands with a bar and a button that stops it; returns what it returns, or undefined where it failed. */
@@ -72,12 +80,22 @@ async function reportOf(call, { args, bytes }) {
   return readContainer(files['report.bin']);
 }
 
+// Reads a file into bytes; returns why it could not.
+async function read(file, bytes) {
+  try {
+    bytes[file.name] = new Uint8Array(await file.arrayBuffer());
+    return undefined;
+  } catch {
+    return `“${file.name}” could not be read. Is it still where it was, and is it a file and no folder?`;
+  }
+}
+
 async function add(list) {
   say();
   for (const input of inputsOf(list)) {
     const bytes = {};
     for (const file of input.files) {
-      const fault = faultOf(file.name, file.size) ?? faultOf(file.name, file.size, (bytes[file.name] = new Uint8Array(await file.arrayBuffer())));
+      const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? faultOf(file.name, file.size, bytes[file.name]);
       if (fault) {
         say(fault);
         break;
@@ -145,7 +163,7 @@ async function make(input) {
   if (!found) return;
   input.baked = found;
   show(input, 'baked');
-  if (found.warnings) say(found.within ? 'The file was baked. The program says something about it:' : 'The file was baked, but nothing within these limits is as right as you asked for.', found.warnings);
+  if (found.warnings) remark(found.within ? 'The file is baked, and there is something to know about it.' : 'The file is baked, but nothing within these limits is as right as you asked for.', found.warnings);
 }
 
 function save() {
