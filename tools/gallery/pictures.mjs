@@ -1,7 +1,8 @@
-// Draws the pictures of docs/gallery.md and of README.md by the page of `chronormal report`, in headless Chromium.
+// Draws the pictures of docs/gallery.md and of README.md by the page of `chronormal report`, in headless Chromium, and writes that page
+// from gallery.md.in.
 //
-//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/gallery/pictures.mjs FOLDER
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/gallery/pictures.mjs docs
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chronormal } from '../../tests/hosts/program.mjs';
@@ -23,6 +24,7 @@ function drawPicture({ from, near, at, scale }) {
   const { player, view, setMode } = globalThis.chronormal, { motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
   const best = motion.mean.reduce((found, value, i) => (value > motion.mean[found] && motion.segment?.[i] !== 0xffffffff ? i : found), 0);
   player.go(best);
+  const worstOf = (motions) => motions.flatMap(({ worst }) => [...worst]).reduce((most, w) => Math.max(most, w || 0), 0);
   view.mark(-1);
   view.frame(true);
   view.look(at, from, near);
@@ -46,12 +48,13 @@ function drawPicture({ from, near, at, scale }) {
     ink.font = '14px "DejaVu Sans", "Liberation Sans", sans-serif';
     ink.fillText(texts[i], i * WIDTH + 8, 18);
   });
-  return { picture: sheet.toDataURL('image/jpeg', 0.88), mean: motion.mean[best], worst: motion.worst[best], at: motion.at[best] };
+  return { picture: sheet.toDataURL('image/jpeg', 0.88), mean: motion.mean[best], worst: motion.worst[best], at: motion.at[best], most: worstOf([motion]), alone: worstOf(player.part.motions.filter(({ kind }) => kind === 'target')) };
 }
 
 const out = process.argv[2], folder = mkdtempSync(join(tmpdir(), 'chronormal-gallery-')), pages = await openPages(), { page } = pages;
-mkdirSync(out, { recursive: true });
-const save = (name, address) => writeFileSync(join(out, `gallery_${name}.jpg`), Buffer.from(address.split(',')[1], 'base64'));
+const found = {}; // the numbers of each subject
+mkdirSync(join(out, 'pictures'), { recursive: true });
+const save = (name, address) => writeFileSync(join(out, 'pictures', `gallery_${name}.jpg`), Buffer.from(address.split(',')[1], 'base64'));
 try {
   for (const { name, input, ...how } of SUBJECTS) {
     const report = join(folder, `${name}.html`);
@@ -62,7 +65,7 @@ try {
     await new Promise((resolve) => setTimeout(resolve, 300));
     const { picture, ...numbers } = await page.evaluate(drawPicture, how);
     save(name, picture);
-    console.log(name, JSON.stringify(numbers));
+    found[name] = numbers;
     if (name !== 'face') continue;
     await page.setViewport({ width: 1280, height: 800 });
     await pages.show(report);
@@ -80,4 +83,8 @@ try {
   await pages.close();
   rmSync(folder, { recursive: true, force: true });
 }
+
+const template = readFileSync(new URL('gallery.md.in', import.meta.url), 'utf8');
+const numberOf = (value) => (value < 10 ? value.toFixed(2) : value.toFixed(1)).replace(/\.?0+$/, '');
+writeFileSync(join(out, 'gallery.md'), template.replace(/\{(\w+)\.(\w+)\}/g, (_, name, number) => numberOf(found[name][number])));
 if (pages.faults.length > 0) throw new Error(pages.faults.join('\n'));
