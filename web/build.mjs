@@ -2,7 +2,7 @@
 //
 //   node web/build.mjs report OUT.html              the page of a report, without data (docs/report.md)
 //   node web/build.mjs page PACKAGE OUT.html        the page with the engine inside; PACKAGE is the npm package with the wasm module
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
@@ -33,9 +33,17 @@ const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll(
 // Fills the marks of a template; the text is taken as it is.
 const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
 
+// Whose work is inside: the licences of libraries, in a comment at the end of the page.
+const packageOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
+function licences(more = {}) {
+  const texts = { chronormal: readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8'), three: packageOf('three'), uPlot: packageOf('uplot'), ...more };
+  const whole = Object.entries(texts).map(([name, text]) => `${name}\n\n${text.trim()}`).join('\n\n\n');
+  return `<!--\n${whole.replaceAll('--', '- -')}\n-->\n`;
+}
+
 async function reportPage() {
   const script = await bundled(source('report.js'));
-  return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) });
+  return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) }) + licences();
 }
 
 // The module and its worker, as text that the page makes a worker of.
@@ -48,7 +56,7 @@ async function enginePage(folder) {
     '/*style*/': styles(),
     '/*script*/': inScript(script),
     '/*wasm*/': wasm.toString('base64'),
-  });
+  }) + licences(Object.fromEntries(readdirSync(join(folder, 'THIRD_PARTY')).map((name) => [name, readFileSync(join(folder, 'THIRD_PARTY', name), 'utf8')])));
 }
 
 const [kind, ...rest] = process.argv.slice(2), out = rest.at(-1);

@@ -69,7 +69,7 @@ async function during(title, step) {
 function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);
   if (/memory/i.test(error.message)) return say('The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.', error.message);
-  if (/nothing in it moves/.test(error.message)) return say(NOTHING_MOVES, error.message);
+  if (/nothing to show/.test(error.message)) return say(NOTHING_MOVES, error.message);
   const text = error.code === 3 ? 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.' : 'The program could not do this.';
   say(text, error.message);
 }
