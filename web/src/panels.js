@@ -1,7 +1,7 @@
 // The panels beside the picture: what there is to choose from, and the tables of the report.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
-import { nameOf, worstSample } from './motions.js';
+import { momentOf, nameOf, worstSample } from './motions.js';
 import { SCHEMES } from './schemes.js';
 
 const count = (n) => n.toLocaleString('en');
@@ -54,7 +54,7 @@ export function worstPlaces(report, onVisit) {
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const list = h('ol', { className: 'places' }, places.map((place, i) => h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) },
-    h('b', {}, degreesText(place.degrees)), h('span', { title: place.label }, pieces[i].slice(same).join(', '), h('small', {}, place.moment))))));
+    h('b', {}, degreesText(place.degrees)), h('span', { title: place.label }, pieces[i].slice(same).join(', '), h('small', {}, momentOf(report.parts[place.part].motions[place.motion], place.sample)))))));
   return panel(`Worst places (${places.length})`, true, list);
 }
 
@@ -119,7 +119,7 @@ export function schemeTable(report, player) {
   const found = report.compare?.schemes;
   if (!found?.length) return null;
   const rows = found.map(({ scheme, mean_degrees: mean, max_degrees: worst }) => {
-    const name = scheme in SCHEMES ? h('button', { type: 'button', className: 'plain', onclick: () => player.chooseScheme(scheme) }, scheme) : scheme;
+    const name = scheme in SCHEMES ? h('button', { type: 'button', className: 'link', onclick: () => player.chooseScheme(scheme) }, scheme) : scheme;
     return { cells: [name, degreesText(mean), degreesText(worst)] };
   });
   return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'mean ', 'worst '], rows));

@@ -1,7 +1,11 @@
-// Which vertex is under the pointer: the nearest corner of the nearest triangle that a ray meets.
+// What a ray meets: which vertex is under the pointer, and from where a vertex can be seen.
 
-/** @returns {number} the vertex, or -1; origin and direction are of the ray, positions (V x 3). */
-export function vertexOnRay(positions, triangles, origin, direction) {
+/**
+ * The nearest triangle that a ray meets.
+ * @returns {{distance: number, vertex: number}} in lengths of the direction, Infinity where there is none; the corner of the triangle that is
+ *   nearest to where it is met, or -1. Positions are (V x 3)
+ */
+export function meet(positions, triangles, origin, direction) {
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction;
   let nearest = Infinity, vertex = -1;
   for (let t = 0; t < triangles.length; t += 3) {
@@ -21,5 +25,5 @@ export function vertexOnRay(positions, triangles, origin, direction) {
     nearest = distance;
     vertex = triangles[w >= u && w >= v ? t : u >= v ? t + 1 : t + 2];
   }
-  return vertex;
+  return { distance: nearest, vertex };
 }

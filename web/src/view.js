@@ -3,7 +3,7 @@ import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, M
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { VIRIDIS, degreesText } from './colors.js';
 import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
-import { vertexOnRay } from './pick.js';
+import { meet } from './pick.js';
 
 export const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 
@@ -197,14 +197,31 @@ export function makeView(stage, onPoint) {
     request();
   };
 
-  /** Goes near a vertex, and looks at it from where its right normal points. */
+  // The way from a vertex to a camera that sees it: of some directions around its normal the first that is free for `distance`, or else the
+  // freest of them, shortened.
+  function freeWay(target, normal, towards, distance) {
+    const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
+    up.cross(side);
+    const tilted = (a, b) => normal.clone().addScaledVector(side, a).addScaledVector(up, b);
+    let best = { free: -1 };
+    for (const direction of [towards, normal.clone(), ...[[0.9, 0], [-0.9, 0], [0, 0.9], [0, -0.9], [2, 0], [-2, 0], [0, 2], [0, -2]].map((tilt) => tilted(...tilt))]) {
+      direction.normalize();
+      const from = target.clone().addScaledVector(direction, 1e-3 * radius);
+      const free = meet(surface.positions, part.triangles, from.toArray(), direction.toArray()).distance;
+      if (free > best.free) best = { free, direction };
+      if (free >= distance) break;
+    }
+    return best.direction.clone().setLength(Math.max(Math.min(distance, 0.9 * best.free), 0.03 * radius));
+  }
+
+  /** Goes near a vertex, and looks at it from where it can be seen, if possible from where its right normal points. */
   view.visit = (vertex) => {
     marked = vertex;
     const target = new Vector3().fromArray(surface.positions, 3 * vertex);
     const normal = new Vector3().fromArray(surface.right, 3 * vertex);
     const towards = camera.position.clone().sub(controls.target).normalize().addScaledVector(normal, 1.5);
     if (towards.length() < 0.1) towards.copy(normal);
-    fly(towards.setLength(distanceOf(radius) * 0.38).add(target), target);
+    fly(freeWay(target, normal, towards, distanceOf(radius) * 0.38).add(target), target);
   };
   view.mark = (vertex) => {
     marked = vertex;
@@ -227,7 +244,7 @@ export function makeView(stage, onPoint) {
     if (!pane || !surface) return null;
     aim(pane);
     const ray = new Vector3(((x - pane.x) / pane.width) * 2 - 1, 1 - ((y - pane.y) / pane.height) * 2, 0.5).unproject(camera).sub(camera.position);
-    const vertex = vertexOnRay(surface.positions, part.triangles, camera.position.toArray(), ray.toArray());
+    const { vertex } = meet(surface.positions, part.triangles, camera.position.toArray(), ray.toArray());
     return vertex < 0 ? null : { vertex, x, y };
   }
   let pointed;
