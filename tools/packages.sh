@@ -1,5 +1,5 @@
-# Sourced by ./run and ./test: installs what tools/packages.txt and tests/hosts/package-lock.json list and the machine
-# lacks.
+# Sourced by ./run and ./test: installs what tools/packages.txt and the package-lock.json of tests/hosts and web list
+# and the machine lacks.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
 
@@ -47,15 +47,16 @@ has_node() {
   command -v npm >/dev/null && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null
 }
 
-# install_hosts: the npm packages that the tests in real glTF hosts run; silent where nothing is missing.
-install_hosts() {
-  local hosts=$root/tests/hosts
-  local installed=$hosts/node_modules/.installed
-  cmp -s "$hosts/package-lock.json" "$installed" && return 0
-  say "installing the npm packages of tests/hosts"
-  if ! (cd "$hosts" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error) </dev/null >&2; then
+# install_npm FOLDER: the npm packages that its package-lock.json lists, those of tests/hosts (the tests in real glTF hosts)
+# or of web (the pages); silent where nothing is missing.
+install_npm() {
+  local folder=$root/$1
+  local installed=$folder/node_modules/.installed
+  cmp -s "$folder/package-lock.json" "$installed" && return 0
+  say "installing the npm packages of $1"
+  if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error) </dev/null >&2; then
     say "the npm packages could not be installed; does npm reach its registry (npm says why above)?"
     return 1
   fi
-  cp "$hosts/package-lock.json" "$installed"
+  cp "$folder/package-lock.json" "$installed"
 }

@@ -27,7 +27,7 @@ function serve(page, files) {
   return page.setRequestInterception(true);
 }
 
-function launch() {
+export function launch() {
   const executablePath = process.env.CHRONORMAL_CHROMIUM ?? CHROMIUM.find((path) => existsSync(path));
   if (!executablePath) throw new Error('Chromium was not found (Debian: chromium); CHRONORMAL_CHROMIUM names another');
   return puppeteer.launch({

@@ -1,0 +1,123 @@
+// The page with the engine inside: files that are dropped show the numbers of the program, what it bakes has the program's bytes,
+// what it cannot read gets a message that helps, and it asks for nothing.
+//
+//   CHRONORMAL_PROGRAM        the program
+//   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test
+//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
+//   CHRONORMAL_DATA           moving files by other people, where it is set
+//   CHRONORMAL_FULL=1         all of these
+import assert from 'node:assert/strict';
+import { closeSync, existsSync, ftruncateSync, mkdtempSync, openSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { Accessor, Document } from '@gltf-transform/core';
+import { chronormal } from './program.mjs';
+import { newIO } from './reader.mjs';
+import { clickWorst, openPages } from './web_page.mjs';
+
+const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
+const NEAR = 1e-3; // degrees, which the page may be off
+const WAIT = { timeout: 600_000 };
+
+let folder, pages, page;
+const path = (name) => join(folder, name);
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'chronormal-page-'));
+  chronormal('convert', '--sample', 'bumps', '-o', path('bumps.glb'));
+  pages = await openPages();
+  ({ page } = pages);
+  const client = await page.createCDPSession();
+  await client.send('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: folder });
+  await pages.show(process.env.CHRONORMAL_PAGE);
+});
+after(async () => {
+  await pages.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+afterEach(() => assert.deepEqual(pages.faults.splice(0), []));
+
+const audited = (file) => JSON.parse(chronormal('audit', file, '--json', '-q'));
+const said = () => page.$eval('.message', (box) => (box.hidden ? '' : box.innerText));
+
+// Gives files to the page, and waits for what it shows, or says.
+async function drop(...files) {
+  await page.evaluate(() => {
+    delete document.getElementById('report').dataset.ready;
+    document.querySelector('.message').hidden = true;
+  });
+  await (await page.$('input[type=file]')).uploadFile(...files);
+  await page.waitForSelector('#report[data-ready], .message:not([hidden])', WAIT);
+}
+const press = (selector) => page.evaluate((button) => document.querySelector(button).click(), selector);
+
+async function downloaded(name) {
+  for (const file = path(name); ; await new Promise((resolve) => setTimeout(resolve, 50))) {
+    if (existsSync(file) && !existsSync(`${file}.crdownload`)) return readFileSync(file);
+  }
+}
+
+async function bakeAndDownload(file, name) {
+  await press('button.bake');
+  await page.waitForFunction(() => /baked$/.test(document.getElementById('report').dataset.ready), WAIT);
+  await press('.top .primary');
+  const bytes = await downloaded(name);
+  chronormal('bake', file, '-o', path('expected.glb'), '--force', '-q');
+  assert.ok(bytes.equals(readFileSync(path('expected.glb'))), 'the bytes of the program');
+}
+
+test('a dropped file shows the number of the audit, a plan, and is baked to the bytes of the program', async () => {
+  await drop(path('bumps.glb'));
+  assert.ok(Math.abs((await clickWorst(page)).degrees - audited(path('bumps.glb')).worst_degrees) < NEAR);
+  await press('button.plan');
+  await page.waitForSelector('tr.chosen', WAIT);
+  await bakeAndDownload(path('bumps.glb'), 'bumps.right.glb');
+});
+
+test('what cannot be used gets a message that says what to do, and the page goes on', async () => {
+  writeFileSync(path('face.png'), Buffer.from('89504e470d0a1a0a0000000d49484452', 'hex'));
+  writeFileSync(path('cut.glb'), readFileSync(path('bumps.glb')).subarray(0, 5000));
+  writeFileSync(path('odd.glb'), Buffer.concat([readFileSync(path('bumps.glb')).subarray(0, 40), Buffer.alloc(5000)]));
+  const large = openSync(path('large.glb'), 'w');
+  ftruncateSync(large, 300e6);
+  closeSync(large);
+  for (const [name, words] of [['face.png', /is a picture \(PNG\).*Export the model/s], ['cut.glb', /is cut off.*only 5,000 are there.*once more/s],
+                               ['large.glb', /has 300 MB.*up to 268 MB.*without its textures/s]]) {
+    await drop(path(name));
+    assert.match(await said(), words);
+  }
+  writeFileSync(path('odd.gltf'), '{"asset": {"version": "2.0"}, "meshes": [{"primitives": [{"attributes": {"POSITION": 7}}]}]}');
+  await drop(path('odd.gltf'));
+  assert.match(await said(), /cannot use this file.*\/meshes\/0\/primitives\/0\/attributes\/POSITION/s, 'the words of the program, with the place');
+
+  const document = new Document(), buffer = document.createBuffer();
+  const accessor = (type, array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  const primitive = document.createPrimitive().setAttribute('POSITION', accessor(Accessor.Type.VEC3, new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0])))
+    .setIndices(accessor(Accessor.Type.SCALAR, new Uint16Array([0, 1, 2])));
+  document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
+  writeFileSync(path('rest.glb'), await newIO().writeBinary(document));
+  await drop(path('rest.glb'));
+  assert.match(await said(), /no shape keys \(morph targets\).*in Blender/s);
+
+  await drop(path('bumps.glb'));
+  assert.equal(await said(), '');
+});
+
+test('a task can be cancelled, and the page goes on', async () => {
+  await press('button.bake');
+  await page.waitForSelector('.busy:not([hidden]) button', WAIT);
+  await press('.busy button');
+  await page.waitForSelector('.busy[hidden]', WAIT);
+  await drop(path('bumps.glb'));
+  assert.equal(await said(), '');
+});
+
+const files = DATA ? readdirSync(DATA, { recursive: true }).filter((name) => /^(gltf|rigs)\/.*\.glb$/.test(name)) : [];
+for (const name of FULL ? files : []) {
+  test(`${name}, dropped, shows the number of the audit`, async () => {
+    const file = join(DATA, name), { worst_degrees: worst, judged } = audited(file);
+    await drop(file);
+    if (judged > 0 && worst > 0) assert.ok(Math.abs((await clickWorst(page)).degrees - worst) < NEAR, `${basename(name)}: ${worst}`);
+  });
+}

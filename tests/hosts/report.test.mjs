@@ -1,0 +1,152 @@
+// The page of `chronormal report`: its numbers are those of the program, what it draws as right is right, and it asks for nothing.
+//
+//   CHRONORMAL_PROGRAM        the program
+//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
+//   CHRONORMAL_DATA           moving files by other people, where it is set
+//   CHRONORMAL_FULL=1         all of these
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { readContainer } from '../../web/src/data.js';
+import { makePlayer } from '../../web/src/player.js';
+import { ExactNormals, exactPositions } from './exact.mjs';
+import { writeStill } from './fixtures.mjs';
+import { chronormal } from './program.mjs';
+import { read } from './reader.mjs';
+import { clickWorst, openPages, worstNow } from './web_page.mjs';
+
+const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
+const NEAR = 1e-3; // degrees, which the page may be off
+
+let folder, template;
+const path = (name) => join(folder, name);
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'chronormal-report-'));
+  template = path('template.html');
+  execFileSync(process.execPath, [fileURLToPath(new URL('../../web/build.mjs', import.meta.url)), 'report', template]);
+  await writeStill(path('still.glb'), { parts: 2 });
+  chronormal('convert', '--sample', 'bumps', '-o', path('bumps.glb'));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const audited = (...input) => JSON.parse(chronormal('audit', ...input, '--json', '-q'));
+function dataOf(name, ...input) {
+  chronormal('report', ...input, '--no-plan', '--force', '-q', '-o', path(`${name}.bin`));
+  return readContainer(readFileSync(path(`${name}.bin`)));
+}
+function pageOf(name, ...input) {
+  chronormal('report', ...input, '--no-plan', '--force', '-q', '-o', path(`${name}.html`), '--template', template);
+  return path(`${name}.html`);
+}
+
+// Calls visit(motion, sample, degrees) for all samples that the page can show.
+function walk(player, visit) {
+  player.report.parts.forEach((part, p) => {
+    player.choosePart(p);
+    part.motions.forEach((motion, m) => {
+      player.chooseMotion(m, 0);
+      for (let i = 0; i < motion.at.length; ++i) {
+        player.go(i);
+        visit(motion, i, player.worst < 0 ? NaN : player.surface.degrees[player.worst]);
+      }
+    });
+  });
+}
+
+const inputs = { still: () => [path('still.glb')], bumps: () => [path('bumps.glb')], angles: () => [path('bumps.glb'), '--weighting', 'angle'], twist: () => ['--sample', 'twist'] };
+for (const [name, input] of Object.entries(inputs)) {
+  test(`the page computes the worst error of every sample as the audit does: ${name}`, () => {
+    const report = dataOf(name, ...input()), player = makePlayer(report, () => {});
+    let samples = 0;
+    walk(player, (motion, i, degrees) => {
+      ++samples;
+      assert.ok(Math.abs(degrees - motion.worst[i]) < NEAR, `${motion.kind} ${motion.name}, sample ${i}: ${degrees}, not ${motion.worst[i]}`);
+    });
+    assert.ok(samples >= 21);
+    assert.ok(Math.abs(report.worst[0].degrees - audited(...input()).worst_degrees) < NEAR);
+  });
+}
+
+test('every scheme of the page has the numbers of compare', () => {
+  const report = dataOf('twist', '--sample', 'twist'), player = makePlayer(report, () => {});
+  const compared = JSON.parse(chronormal('compare', '--sample', 'twist', '--elements', 'vertices', '--json', '--no-times', '-q'));
+  let found = 0;
+  for (const { scheme, max_degrees: worst } of compared.schemes.filter((one) => player.schemes().includes(one.scheme))) {
+    ++found;
+    player.scheme = scheme;
+    let most = 0;
+    walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
+    assert.ok(Math.abs(most - worst) < NEAR, `${scheme}: ${most}, not ${worst}`);
+  }
+  assert.ok(found >= 6, `${found} schemes`);
+});
+
+describe('in Chromium', () => {
+  let pages;
+  before(async () => (pages = await openPages()));
+  after(() => pages.close());
+
+  test('a report shows the number of the audit at its worst place, follows its slider, and asks for nothing', async () => {
+    await pages.show(pageOf('bumps', path('bumps.glb')));
+    const { worst_degrees: worst } = audited(path('bumps.glb'));
+    assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
+    await pages.page.evaluate(() => {
+      const slider = document.querySelector('.time');
+      slider.value = 0;
+      slider.dispatchEvent(new Event('input'));
+    });
+    assert.ok((await worstNow(pages.page)).degrees < NEAR, 'the base is right');
+    await pages.page.keyboard.press('3');
+    assert.equal(await pages.page.$eval('.segmented button[aria-pressed=true]', (button) => button.textContent), 'Error');
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('what is drawn as right has the pixels of a still mesh with the exact normals', async () => {
+    await pages.show(pageOf('still', path('still.glb'), '--weighting', 'area'));
+    const weights = [0.7, 0.4], mesh = (await read(path('still.glb'))).meshes[0];
+    const right = new ExactNormals(mesh).at(weights).flatMap(({ directions }) => [...directions]);
+    const positions = mesh.primitives.flatMap((primitive) => [...exactPositions(primitive, weights)]);
+    const { drawn, still, different } = await pages.page.evaluate((w, p, n) => {
+      const { player, view, setMode } = globalThis.chronormal;
+      const pixels = () => {
+        view.draw();
+        const { width, height } = view.canvas, sheet = new OffscreenCanvas(width, height).getContext('2d');
+        sheet.drawImage(view.canvas, 0, 0);
+        return sheet.getImageData(width / 2, 0, width / 2, height).data;
+      };
+      setMode('normals');
+      w.forEach((weight, k) => player.setWeight(k, weight));
+      const drawn = pixels(), { surface } = player;
+      surface.positions.set(p);
+      for (let i = 0; i < n.length; i += 3) {
+        const length = Math.hypot(n[i], n[i + 1], n[i + 2]) || 1;
+        for (let c = 0; c < 3; ++c) surface.right[i + c] = n[i + c] / length;
+      }
+      view.update();
+      const still = pixels();
+      let different = 0;
+      for (let i = 0; i < still.length; ++i) if (Math.abs(still[i] - drawn[i]) > 1) ++different;
+      const covered = (data) => data.filter((value, i) => i % 4 === 3 && value > 0).length;
+      return { drawn: covered(drawn), still: covered(still), different };
+    }, weights, positions, right);
+    assert.ok(drawn > 10_000, `${drawn} pixels are drawn`);
+    assert.equal(drawn, still);
+    assert.equal(different, 0);
+    assert.deepEqual(pages.faults, []);
+  });
+
+  const files = DATA ? readdirSync(DATA, { recursive: true }).filter((name) => /^(gltf|rigs)\/.*\.(glb|gltf)$/.test(name)) : [];
+  for (const name of FULL ? files : []) {
+    test(`a report of ${name} shows the number of the audit`, async () => {
+      const file = join(DATA, name), { worst_degrees: worst, judged } = audited(file);
+      await pages.show(pageOf(basename(name), file));
+      if (judged > 0 && worst > 0) assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
+      assert.deepEqual(pages.faults, []);
+    });
+  }
+});

@@ -1,0 +1,90 @@
+// Draws the pictures of docs/gallery.md and of README.md by the page of `chronormal report`, in headless Chromium, and writes that page
+// from gallery.md.in.
+//
+//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/gallery/pictures.mjs docs
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chronormal } from '../../tests/hosts/program.mjs';
+import { openPages } from '../../tests/hosts/web_page.mjs';
+
+const data = (name) => join(process.env.CHRONORMAL_DATA, name);
+
+// What is shown, and from where: `from` is a direction, `near` a share of the distance at which all is seen, `at` where the camera
+// looks, in shares of the box of the mesh. The moment is that of the largest mean error.
+const SUBJECTS = [
+  { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },
+  { name: 'suzanne', input: [data('rigs/blender_suzanne_two_keys.glb')], from: [0.45, 0.2, 1], near: 0.72, at: [0.5, 0.5, 0.5], scale: 45 },
+  { name: 'dance', input: [data('sequences/rumba_13')], from: [-0.5, 0.25, -1], near: 0.25, at: [0.5, 0.8, 0.5], scale: 10 },
+  { name: 'twist', input: ['--sample', 'twist'], from: [0.6, 0.45, 1], near: 0.8, at: [0.5, 0.5, 0.5], scale: 45 },
+];
+
+// In the page: three panes, as shown, as it should be, and the error, with the text above them.
+function drawPicture({ from, near, at, scale }) {
+  const { player, view, setMode } = globalThis.chronormal, { motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
+  const best = motion.mean.reduce((found, value, i) => (value > motion.mean[found] && motion.segment?.[i] !== 0xffffffff ? i : found), 0);
+  player.go(best);
+  const worstOf = (motions) => motions.flatMap(({ worst }) => [...worst]).reduce((most, w) => Math.max(most, w || 0), 0);
+  view.mark(-1);
+  view.frame(true);
+  view.look(at, from, near);
+  view.setScale(scale);
+
+  const sheet = Object.assign(document.createElement('canvas'), { width: 3 * WIDTH, height: HEIGHT + HEAD }), ink = sheet.getContext('2d');
+  ink.fillStyle = '#f4f3f1';
+  ink.fillRect(0, 0, sheet.width, sheet.height);
+  const texts = ['as shown', 'as it should be', `the error, 0° to ${scale}°`];
+  ['lit', 'lit', 'error'].forEach((mode, i) => {
+    setMode(mode);
+    view.draw();
+    const { canvas } = view, half = canvas.width / 2, side = i === 0 ? 0 : half;
+    const light = ink.createRadialGradient((i + 0.5) * WIDTH, HEAD + 0.35 * HEIGHT, 0, (i + 0.5) * WIDTH, HEAD + 0.35 * HEIGHT, 0.75 * HEIGHT);
+    light.addColorStop(0, '#fbfaf8');
+    light.addColorStop(1, '#d5d1ca');
+    ink.fillStyle = light;
+    ink.fillRect(i * WIDTH, HEAD, WIDTH, HEIGHT);
+    ink.drawImage(canvas, side, 0, half, canvas.height, i * WIDTH, HEAD, WIDTH, HEIGHT);
+    ink.fillStyle = '#1d1c1a';
+    ink.font = '14px "DejaVu Sans", "Liberation Sans", sans-serif';
+    ink.fillText(texts[i], i * WIDTH + 8, 18);
+  });
+  return { picture: sheet.toDataURL('image/jpeg', 0.88), mean: motion.mean[best], worst: motion.worst[best], at: motion.at[best], most: worstOf([motion]), alone: worstOf(player.part.motions.filter(({ kind }) => kind === 'target')) };
+}
+
+const out = process.argv[2], folder = mkdtempSync(join(tmpdir(), 'chronormal-gallery-')), pages = await openPages(), { page } = pages;
+const found = {}; // the numbers of each subject
+mkdirSync(join(out, 'pictures'), { recursive: true });
+const save = (name, address) => writeFileSync(join(out, 'pictures', `gallery_${name}.jpg`), Buffer.from(address.split(',')[1], 'base64'));
+try {
+  for (const { name, input, ...how } of SUBJECTS) {
+    const report = join(folder, `${name}.html`);
+    chronormal('report', ...input, '-o', report, '--no-plan', '-q');
+    await page.setViewport({ width: 1180, height: 830, deviceScaleFactor: 2 });
+    await pages.show(report);
+    await page.addStyleTag({ content: '.stage { flex: none !important; width: 800px; height: 430px; }' });
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    const { picture, ...numbers } = await page.evaluate(drawPicture, how);
+    save(name, picture);
+    found[name] = numbers;
+    if (name !== 'face') continue;
+    await page.setViewport({ width: 1280, height: 800 });
+    await pages.show(report);
+    await page.evaluate(({ at, from }) => {
+      const { player, view, setMode } = globalThis.chronormal, { mean } = player.motion;
+      setMode('error');
+      player.go(mean.indexOf(mean.reduce((a, b) => Math.max(a, b))));
+      view.mark(-1);
+      view.look(at, from, 0.5);
+    }, how);
+    await new Promise((resolve) => setTimeout(resolve, 800));
+    save('report', `data:,${(await page.screenshot({ type: 'jpeg', quality: 85 })).toString('base64')}`);
+  }
+} finally {
+  await pages.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+
+const template = readFileSync(new URL('gallery.md.in', import.meta.url), 'utf8');
+const numberOf = (value) => (value < 10 ? value.toFixed(2) : value.toFixed(1)).replace(/\.?0+$/, '');
+writeFileSync(join(out, 'gallery.md'), template.replace(/\{(\w+)\.(\w+)\}/g, (_, name, number) => numberOf(found[name][number])));
+if (pages.faults.length > 0) throw new Error(pages.faults.join('\n'));

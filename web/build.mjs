@@ -1,0 +1,70 @@
+// Makes the pages, each one file with everything in it.
+//
+//   node web/build.mjs report OUT.html              the page of a report, without data (docs/report.md)
+//   node web/build.mjs page PACKAGE OUT.html        the page with the engine inside; PACKAGE is the npm package with the wasm module
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import { build } from 'esbuild';
+
+const source = (name) => fileURLToPath(new URL(`src/${name}`, import.meta.url));
+
+async function bundled(entry, options = {}) {
+  const { outputFiles } = await build({
+    entryPoints: [entry],
+    bundle: true,
+    minify: true,
+    format: 'iife',
+    target: ['es2022'],
+    legalComments: 'none',
+    write: false,
+    logLevel: 'error',
+    ...options,
+  });
+  return outputFiles[0].text;
+}
+
+const styles = () => [readFileSync(fileURLToPath(import.meta.resolve('uplot/dist/uPlot.min.css')), 'utf8'), readFileSync(source('style.css'), 'utf8')].join('\n');
+
+// What stands in a script or a style must not end it.
+const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
+
+// Fills the marks of a template; the text is taken as it is.
+const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
+
+// Whose work is inside: the licences of libraries, in a comment at the end of the page.
+const packageOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
+function licences(more = {}) {
+  const texts = { chronormal: readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8'), three: packageOf('three'), uPlot: packageOf('uplot'), ...more };
+  const whole = Object.entries(texts).map(([name, text]) => `${name}\n\n${text.trim()}`).join('\n\n\n');
+  return `<!--\n${whole.replaceAll('--', '- -')}\n-->\n`;
+}
+
+async function reportPage() {
+  const script = await bundled(source('report.js'));
+  return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) }) + licences();
+}
+
+// The module and its worker, as text that the page makes a worker of.
+async function enginePage(folder) {
+  const wasm = gzipSync(readFileSync(join(folder, 'wasm/program.wasm')), { level: 9 });
+  const program = { name: 'program', setup: (made) => made.onResolve({ filter: /wasm\/program\.js$/ }, () => ({ path: join(resolve(folder), 'wasm/program.js') })) };
+  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define: { 'import.meta.url': '"file:///engine/src/run.js"' } });
+  const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });
+  return filled(readFileSync(source('page.html'), 'utf8'), {
+    '/*style*/': styles(),
+    '/*script*/': inScript(script),
+    '/*wasm*/': wasm.toString('base64'),
+  }) + licences(Object.fromEntries(readdirSync(join(folder, 'THIRD_PARTY')).map((name) => [name, readFileSync(join(folder, 'THIRD_PARTY', name), 'utf8')])));
+}
+
+const [kind, ...rest] = process.argv.slice(2), out = rest.at(-1);
+if (!(kind === 'report' && rest.length === 1) && !(kind === 'page' && rest.length === 2)) {
+  console.error('usage: node web/build.mjs report OUT.html | page PACKAGE OUT.html');
+  process.exit(2);
+}
+const page = kind === 'report' ? await reportPage() : await enginePage(rest[0]);
+mkdirSync(dirname(resolve(out)), { recursive: true });
+writeFileSync(out, page);
+console.log(`${out}: ${page.length.toLocaleString('en')} bytes`);

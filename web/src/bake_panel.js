@@ -1,0 +1,47 @@
+// The panel of a bake: for which hosts, how right, how large; the plan of it, and the bake itself.
+import { degreesText } from './colors.js';
+import { h, panel, table } from './dom.js';
+import { choiceTable } from './panels.js';
+
+const HOSTS = [
+  ['three', 'three.js'], ['babylon', 'Babylon.js'], ['playcanvas', 'PlayCanvas'], ['godot', 'Godot 4'], ['filament', 'Filament'], ['bevy', 'Bevy'],
+  ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
+];
+
+/**
+ * @param input of page.js; its member `options` is what was chosen: {hosts, tolerance, maxTargets, maxBytes}, hosts empty for all
+ * @param {{plan: () => void, bake: () => void}} acts
+ */
+export function makeBakePanel(input, { plan, bake }) {
+  const chosen = (input.options ??= { hosts: [], tolerance: '', maxTargets: '', maxBytes: '' });
+  const boxes = HOSTS.map(([name, title]) => {
+    const box = h('input', { type: 'checkbox', value: name, checked: chosen.hosts.length === 0 || chosen.hosts.includes(name), onchange: () => {
+      const named = boxes.map((label) => label.firstChild).filter(({ checked }) => checked).map(({ value }) => value);
+      chosen.hosts = named.length === HOSTS.length ? [] : named;
+    } });
+    return h('label', { className: 'tick' }, box, title);
+  });
+  const number = (title, name, placeholder, unit) =>
+    h('label', { className: 'field wide' }, h('span', {}, title), h('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal', name, placeholder, value: chosen[name],
+      oninput: ({ target }) => (chosen[name] = target.value) }), h('span', {}, unit));
+  const isGltf = input.came.kind === 'gltf';
+  const planned = input.plan && choiceTable({ plan: input.plan.plan });
+  if (planned) planned.open = true;
+  return panel('Bake', true,
+    h('fieldset', {}, h('legend', {}, 'right in these hosts, worse in none'), boxes),
+    number('within', 'tolerance', '0.5', 'degrees'),
+    isGltf && number('at most', 'maxTargets', 'any', 'targets'),
+    number('at most', 'maxBytes', 'any', 'bytes more'),
+    h('p', { className: 'acts' }, h('button', { type: 'button', className: 'primary bake', onclick: bake }, 'Bake'),
+      isGltf && h('button', { type: 'button', className: 'plain plan', onclick: plan }, 'See the plan')),
+    comparison(input), planned);
+}
+
+// What a bake made of it.
+function comparison({ came, baked }) {
+  if (!baked) return null;
+  const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });
+  const bytes = Object.values(baked.files).reduce((sum, file) => sum + file.length, 0);
+  return [table('Before and after', ['', 'mean ', 'worst '], [row('as it came', came), row('baked', baked.report)]),
+    h('p', { className: 'note' }, `${baked.name}: ${bytes.toLocaleString('en')} bytes.`)];
+}

@@ -1,0 +1,47 @@
+// The data of a report: the container that `chronormal report` writes (docs/report-data.md), as JSON with typed arrays in it.
+
+const MAGIC = 'CHRONRPT', VERSION = 1, HEADER = 16;
+const TYPES = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i16: Int16Array, u8: Uint8Array };
+
+const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(value.offset) && Number.isInteger(value.count);
+
+/**
+ * @param {Uint8Array} bytes a container
+ * @returns {object} its JSON, with a typed array in place of each {offset, type, count} below "parts"
+ */
+export function readContainer(bytes) {
+  if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('the data of this page are no report');
+  const buffer = bytes.byteOffset % 8 === 0 ? bytes.buffer : bytes.slice().buffer;
+  const start = buffer === bytes.buffer ? bytes.byteOffset : 0;
+  const view = new DataView(buffer, start, bytes.length);
+  const version = view.getUint32(8, true), size = view.getUint32(12, true);
+  if (version !== VERSION) throw new Error(`the data of this page have version ${version}, and the page reads version ${VERSION}`);
+  const first = Math.ceil((HEADER + size) / 8) * 8;
+  if (first > bytes.length) throw new Error('the data of this page end too early');
+
+  const arrayOf = ({ offset, type, count }) => {
+    const Type = TYPES[type];
+    if (!Type || first + offset + count * Type.BYTES_PER_ELEMENT > bytes.length) throw new Error('the data of this page end too early');
+    return new Type(buffer, start + first + offset, count);
+  };
+  const withArrays = (value) => {
+    if (value === null || typeof value !== 'object') return value;
+    if (isArray(value)) return arrayOf(value);
+    if (Array.isArray(value)) return value.map(withArrays);
+    return Object.fromEntries(Object.entries(value).map(([name, member]) => [name, withArrays(member)]));
+  };
+  const report = JSON.parse(new TextDecoder().decode(bytes.subarray(HEADER, HEADER + size)));
+  return { ...report, parts: withArrays(report.parts) };
+}
+
+/** Bytes of their base64, in whole groups of four. */
+export function fromBase64(text) {
+  const binary = atob(text.trim()), bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}
+
+/** What gzip made shorter, as it was. */
+export async function unzipped(bytes) {
+  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
+}

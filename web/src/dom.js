@@ -1,0 +1,34 @@
+// Elements of the page. Text is only ever set as text: names in files are other people's.
+
+/** h('button', { onclick, className, ... }, children...): children are elements or text; null and false are left out. */
+export function h(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name.startsWith('on')) made.addEventListener(name.slice(2), value);
+    else if (name.startsWith('aria-') || name.startsWith('data-') || name === 'for') made.setAttribute(name, value);
+    else made[name] = value;
+  }
+  made.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  return made;
+}
+
+/** A group of buttons of which one is pressed. choices: [[value, text, title]]. */
+export function segmented(label, choices, onChoose) {
+  const buttons = choices.map(([value, text, title]) => h('button', { type: 'button', title: title ?? text, onclick: () => onChoose(value) }, text));
+  const group = h('div', { className: 'segmented', role: 'group', 'aria-label': label }, buttons);
+  group.choose = (value) => buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(choices[i][0] === value)));
+  return group;
+}
+
+/** A panel that opens and closes. */
+export const panel = (title, isOpen, ...children) =>
+  h('details', { className: 'panel', open: isOpen }, h('summary', {}, title), h('div', { className: 'content' }, children));
+
+/** A table; cells are text, or elements. Columns of numbers are those whose title ends with a space. */
+export function table(caption, titles, rows) {
+  const numbers = titles.map((title) => title.endsWith(' '));
+  const cell = (tag, value, i) => h(tag, { className: numbers[i] ? 'number' : '' }, value);
+  return h('div', { className: 'scrolled' }, h('table', { 'aria-label': caption },
+    h('thead', {}, h('tr', {}, titles.map((title, i) => cell('th', title.trim(), i)))),
+    h('tbody', {}, rows.map(({ cells, ...properties }) => h('tr', properties, cells.map((value, i) => cell('td', value, i)))))));
+}

@@ -1,0 +1,51 @@
+// The program inside the page: runs commands in a worker of their own, which can be stopped in the middle.
+import { fromBase64, unzipped } from './data.js';
+
+const DONE = 0, BEYOND = 4; // exit codes: done, and done but not within the tolerance
+const OUTPUTS = 'out';
+
+/** What the program refused, or could not do: its exit code and its own words. */
+export class EngineError extends Error {
+  constructor(code, message) {
+    super(message);
+    this.code = code;
+  }
+}
+
+/**
+ * @param {HTMLElement} element holds the module, as base64 of gzip
+ * @param {string} workerSource the script of engine_worker.js
+ */
+export function makeEngine(element, workerSource) {
+  const address = URL.createObjectURL(new Blob([workerSource], { type: 'text/javascript' }));
+  let module;
+  const compile = () => (module ??= unzipped(fromBase64(element.textContent)).then((bytes) => WebAssembly.compile(bytes)));
+
+  /**
+   * Runs a command. Files are {name: Uint8Array}; what it writes below out/ is in the result.
+   * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
+   */
+  return async function run(args, files, { signal, onProgress }) {
+    const compiled = await compile();
+    signal.throwIfAborted();
+    const done = await new Promise((resolve, reject) => {
+      const worker = new Worker(address);
+      const end = (settle, value) => {
+        signal.removeEventListener('abort', stop);
+        worker.terminate();
+        settle(value);
+      };
+      const stop = () => end(reject, signal.reason);
+      worker.onmessage = ({ data: { progress, done: result, failed } }) => {
+        if (progress) onProgress(progress);
+        else if (result) end(resolve, result);
+        else end(reject, new EngineError(1, failed));
+      };
+      worker.onerror = (event) => end(reject, new EngineError(1, event.message ?? 'the worker could not be started'));
+      signal.addEventListener('abort', stop, { once: true });
+      worker.postMessage({ task: { args, files, outputs: OUTPUTS }, wantsProgress: true, module: compiled });
+    });
+    if (done.code !== DONE && done.code !== BEYOND) throw new EngineError(done.code, done.stderr.replaceAll(/^chronormal \w+: /gm, ''));
+    return done;
+  };
+}

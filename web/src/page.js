@@ -1,0 +1,194 @@
+// chronormal in a page: files are dropped, shown, baked and taken away again, all inside the browser.
+import { readContainer } from './data.js';
+import { h, segmented } from './dom.js';
+import { EngineError, makeEngine } from './engine.js';
+import { NOTHING_MOVES, faultOf, inputsOf } from './inputs.js';
+import { makeBakePanel } from './bake_panel.js';
+import { logo, makeTheme } from './theme.js';
+import { makeViewer } from './viewer.js';
+
+const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
+const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
+const inputs = []; // {name, args, bytes: {name: Uint8Array}, came, baked: {report, bytes, name, warnings}}
+const DOCUMENT = /\.(glb|gltf|vrm)$/i;
+let viewer, current, abort;
+
+const theme = makeTheme(() => viewer?.restyle());
+const picker = h('input', { type: 'file', multiple: true, hidden: true, onchange: () => (add(picker.files), (picker.value = '')) });
+const chooser = h('select', { 'aria-label': 'file', className: 'file-choice', hidden: true, onchange: () => show(inputs[chooser.value], 'came') });
+const sides = segmented('which file is shown', [['came', 'As it came'], ['baked', 'Baked']], (side) => show(current, side));
+const download = h('button', { type: 'button', className: 'primary', hidden: true, onclick: save }, 'Download');
+const more = h('button', { type: 'button', className: 'plain', hidden: true, onclick: () => picker.click() }, 'Open…');
+sides.hidden = true;
+top.append(logo(), h('h1', {}, 'chronormal'), chooser, h('span', { className: 'file' }), sides, download, more, theme.button, picker);
+
+const message = h('div', { className: 'message', role: 'alert', hidden: true });
+const busy = h('div', { className: 'busy', role: 'status', hidden: true });
+work.append(message, busy);
+
+/** Says what went wrong until the next thing is done; details are the words of the program. */
+function say(text, details) {
+  message.hidden = !text;
+  message.classList.remove('mild');
+  message.replaceChildren(...(text ? [h('div', {}, h('p', {}, text), details && h('pre', {}, details)),
+    h('button', { type: 'button', className: 'plain', onclick: () => say() }, 'Close')] : []));
+}
+
+/** Says something beside a result, whose details are there for those who ask. */
+function remark(text, details) {
+  say(text);
+  message.classList.add('mild');
+  message.firstChild.append(h('details', {}, h('summary', {}, 'What the program says'), h('pre', {}, details)));
+}
+
+/** Runs a step of several commands with a bar and a button that stops it; returns what it returns, or undefined where it failed. */
+async function during(title, step) {
+  if (abort) return undefined;
+  abort = new AbortController();
+  const bar = h('progress', { max: 100 }), label = h('span', {}, title);
+  busy.replaceChildren(label, bar, h('button', { type: 'button', className: 'plain', onclick: () => abort?.abort() }, 'Cancel'));
+  busy.hidden = false;
+  document.body.classList.add('working');
+  const { signal } = abort;
+  const onProgress = ({ label: text, percent }) => {
+    bar.value = percent;
+    label.textContent = `${title}: ${text.trim()}`;
+  };
+  try {
+    return await step((args, files) => run(args, files, { signal, onProgress }));
+  } catch (error) {
+    if (!signal.aborted) explain(error);
+    return undefined;
+  } finally {
+    abort = undefined;
+    busy.hidden = true;
+    document.body.classList.remove('working');
+  }
+}
+
+function explain(error) {
+  if (!(error instanceof EngineError)) return say(error.message);
+  if (/memory/i.test(error.message)) return say('The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.', error.message);
+  if (/nothing to show/.test(error.message)) return say(NOTHING_MOVES, error.message);
+  const text = error.code === 3 ? 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.' : 'The program could not do this.';
+  say(text, error.message);
+}
+
+async function reportOf(call, { args, bytes }) {
+  const hosts = args.some((name) => DOCUMENT.test(name)) ? ['--host', 'all'] : [];
+  const { files } = await call(['report', ...args, '--no-plan', ...hosts, '-o', 'out/report.bin'], bytes);
+  return readContainer(files['report.bin']);
+}
+
+// Reads a file into bytes; returns why it could not.
+async function read(file, bytes) {
+  try {
+    bytes[file.name] = new Uint8Array(await file.arrayBuffer());
+    return undefined;
+  } catch {
+    return `“${file.name}” could not be read. Is it still where it was, and is it a file and no folder?`;
+  }
+}
+
+async function add(list) {
+  say();
+  for (const input of inputsOf(list)) {
+    const bytes = {};
+    for (const file of input.files) {
+      const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? faultOf(file.name, file.size, bytes[file.name]);
+      if (fault) {
+        say(fault);
+        break;
+      }
+    }
+    if (!message.hidden) continue;
+    await open({ name: input.name, args: input.args, bytes });
+  }
+}
+
+async function open(input) {
+  const came = await during(`Looking at ${input.name}`, (call) => reportOf(call, input));
+  if (!came) return;
+  inputs.push({ ...input, came });
+  chooser.append(h('option', { value: inputs.length - 1 }, input.name));
+  show(inputs.at(-1), 'came');
+}
+
+// A morph of our own, for those who have no file at hand.
+async function example() {
+  const made = await during('Making an example', (call) => call(['convert', '--sample', 'bumps', '-o', 'out/bumps.glb'], {}));
+  if (made) await open({ name: 'bumps.glb', args: ['bumps.glb'], bytes: { 'bumps.glb': made.files['bumps.glb'] } });
+}
+
+function show(input, side) {
+  current = input;
+  const shown = side === 'baked' ? input.baked.report : input.came;
+  chooser.hidden = inputs.length < 2;
+  chooser.value = inputs.indexOf(input);
+  top.querySelector('.file').textContent = inputs.length < 2 ? input.name : '';
+  sides.hidden = !input.baked;
+  sides.choose(side);
+  download.hidden = !input.baked;
+  more.hidden = false;
+  work.querySelector('.welcome')?.remove();
+  viewer?.close();
+  viewer = makeViewer(root, shown);
+  const bake = makeBakePanel(input, { plan: () => plan(input), bake: () => make(input) });
+  root.querySelector('.verdict').after(bake);
+  Object.assign(globalThis, { chronormal: viewer });
+  root.dataset.ready = `${inputs.indexOf(input)} ${side}`;
+}
+
+const flagsOf = ({ hosts, tolerance, maxTargets, maxBytes }) => [
+  ...(hosts.length > 0 ? ['--for', hosts.join(',')] : []), ...(tolerance ? ['--tolerance', tolerance] : []),
+  ...(maxTargets ? ['--max-targets', maxTargets] : []), ...(maxBytes ? ['--max-bytes', maxBytes] : []),
+];
+
+async function plan(input) {
+  say();
+  const done = await during('Looking at what a bake would write', (call) => call(['bake', ...input.args, '--plan', '--json', ...flagsOf(input.options)], input.bytes));
+  if (!done) return;
+  input.plan = { plan: JSON.parse(done.stdout), said: done.stderr };
+  show(input, 'came');
+}
+
+async function make(input) {
+  say();
+  const name = input.args.length === 1 && DOCUMENT.test(input.args[0]) ? input.args[0].replace(/(\.[^.]+)$/, '.right$1') : 'baked.glb';
+  const found = await during('Baking', async (call) => {
+    const done = await call(['bake', ...input.args, '--json', ...flagsOf(input.options), '-o', `out/${name}`], input.bytes);
+    const report = await reportOf(call, { args: [name], bytes: { ...input.bytes, ...done.files } });
+    return { report, name, files: done.files, warnings: done.stderr, within: done.code === 0 };
+  });
+  if (!found) return;
+  input.baked = found;
+  show(input, 'baked');
+  if (found.warnings) remark(found.within ? 'The file is baked, and there is something to know about it.' : 'The file is baked, but nothing within these limits is as right as you asked for.', found.warnings);
+}
+
+function save() {
+  for (const [name, bytes] of Object.entries(current.baked.files)) {
+    const address = URL.createObjectURL(new Blob([bytes]));
+    h('a', { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+  }
+}
+
+work.append(h('section', { className: 'welcome' },
+  h('h2', {}, 'Are the normals of your model right while it moves?'),
+  h('p', {}, 'Drop a .glb here, or several. You see your model as it is shown beside as it should be, how many degrees it is off and where, and take a baked file home, with nothing changed but its normals.'),
+  h('p', {}, h('button', { type: 'button', className: 'primary', onclick: () => picker.click() }, 'Choose files'), ' ',
+    h('button', { type: 'button', className: 'plain', onclick: example }, 'Show me an example')),
+  h('p', { className: 'note' }, 'GLB, VRM, glTF with its .bin; keyframes as OBJ or PLY; a mesh with a .pc2, .mdd, .npy or Maya cache.'),
+  h('p', { className: 'note' }, 'Nothing is sent anywhere: the whole program is in this page, and it works without a network.')));
+
+for (const [name, act] of [['dragover', () => document.body.classList.add('dropping')], ['dragleave', () => document.body.classList.remove('dropping')], ['drop', ({ dataTransfer }) => {
+  document.body.classList.remove('dropping');
+  add(dataTransfer.files);
+}]]) addEventListener(name, (event) => (event.preventDefault(), act(event)));
+
+addEventListener('keydown', (event) => {
+  if (viewer?.key(event)) event.preventDefault();
+  else if (event.key.toLowerCase() === 'd' && !event.ctrlKey && !event.metaKey && !event.target.closest('input, select')) theme.toggle();
+});
+document.body.dataset.ready = 'true';

@@ -1,0 +1,139 @@
+// The panels beside the picture: what there is to choose from, and the tables of the report.
+import { h, panel, table } from './dom.js';
+import { degreesText } from './colors.js';
+import { momentOf, nameOf, worstSample } from './motions.js';
+import { SCHEMES } from './schemes.js';
+
+const count = (n) => n.toLocaleString('en');
+const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
+const select = (label, options, value, onChoose) => {
+  const box = h('select', { 'aria-label': label, onchange: () => onChoose(box.value) },
+    options.map(([key, text]) => h('option', { value: key, selected: String(key) === String(value) }, text)));
+  return h('label', { className: 'field' }, h('span', {}, label), box);
+};
+
+const hostTitle = (report, name) =>
+  name === 'specification' ? 'glTF to the letter' : report.audit?.hosts?.find((host) => host.name === name)?.title ?? name;
+
+/** What a host shows, in the label above the picture. */
+export const shownBy = (report, player) => {
+  if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As shown: normals interpolated between keyframes' : `As shown by ${player.scheme}`;
+  return player.host === 'specification' ? 'As shown' : `As shown: ${hostTitle(report, player.host)}`;
+};
+
+/** Which part, which motion, and for a glTF file which host. */
+export function choosers(report, player) {
+  const box = h('div', { className: 'choosers' });
+  const fill = () => {
+    const { part } = player, fields = [];
+    if (report.parts.length > 1) {
+      fields.push(select('mesh', report.parts.map(({ name, mesh }, i) => [i, name || `mesh ${mesh ?? i}`]), player.index, (i) => player.choosePart(Number(i))));
+    }
+    if (part.motions.length > 0) {
+      const motions = part.motions.map((motion, i) => [i, `${degreesText(motion.worst[worstSample(motion)])} · ${nameOf(motion)}`]);
+      const chosen = player.byHand ? 'hand' : player.motionNumber;
+      fields.push(select('motion', player.byHand ? [['hand', 'weights set by hand'], ...motions] : motions, chosen,
+        (i) => i !== 'hand' && player.chooseMotion(Number(i))));
+    }
+    if (player.hosts.length > 1) {
+      fields.push(select('host', player.hosts.map((name) => [name, hostTitle(report, name)]), player.host, player.chooseHost));
+    }
+    if (player.schemes().length > 0) {
+      fields.push(select('scheme', player.schemes().map((name) => [name, SCHEMES[name].title]), player.scheme, player.chooseScheme));
+    }
+    box.replaceChildren(...fields);
+  };
+  return { box, fill };
+}
+
+/** The worst places, each of which can be visited. */
+export function worstPlaces(report, onVisit) {
+  const places = report.worst.filter(({ degrees }) => degrees > 0);
+  if (places.length === 0) return null;
+  // What all of them are in need not be said.
+  const pieces = places.map(({ label }) => label.split(', '));
+  const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
+  const list = h('ol', { className: 'places' }, places.map((place, i) => h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) },
+    h('b', {}, degreesText(place.degrees)), h('span', { title: place.label }, pieces[i].slice(same).join(', '), h('small', {}, momentOf(report.parts[place.part].motions[place.motion], place.sample)))))));
+  return panel(`Worst places (${places.length})`, true, list);
+}
+
+/** A slider for each target that is no extra one. */
+export function weightSliders(player) {
+  const list = h('div', { className: 'weights' }), reset = h('button', { type: 'button', className: 'plain', onclick: player.rest }, 'All to 0');
+  const note = h('p', { className: 'note' });
+  const box = panel('Weights', false, h('p', {}, reset), list, note);
+  let rows = [];
+  return {
+    box,
+    fill() {
+      const own = player.part.targets.flatMap(({ name, extra }, k) => (extra ? [] : [{ k, name: name || `target ${k}` }]));
+      const extras = player.part.targets.length - own.length;
+      rows = own.map(({ k, name }) => {
+        const number = h('output', {}, '0'), slider = h('input', { type: 'range', min: 0, max: 1, step: 0.01, 'aria-label': name, oninput: () => player.setWeight(k, Number(slider.value)) });
+        return { k, slider, number, row: h('label', {}, h('span', { title: name }, name), slider, number) };
+      });
+      list.replaceChildren(...rows.map(({ row }) => row));
+      note.textContent = extras === 0 ? '' : player.formulas.length === extras
+        ? `${plural(extras, 'extra target follows', 'extra targets follow')} from these weights, as the file says.`
+        : `Of ${plural(extras, 'extra target')}, ${count(extras - player.formulas.length)} follow the animations of the file alone, and rest here.`;
+      box.hidden = own.length === 0;
+    },
+    follow() {
+      if (!box.open) return;
+      for (const { k, slider, number } of rows) {
+        const weight = player.weights[k], text = weight.toFixed(2);
+        if (number.textContent === text) continue;
+        if (document.activeElement !== slider || !player.byHand) slider.value = weight;
+        number.textContent = text;
+      }
+    },
+  };
+}
+
+/** What each host shows of the file, the whole audit in a row. */
+export function hostTable({ audit }) {
+  if (!audit?.hosts?.length) return null;
+  const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) => ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
+  const rows = [row('glTF to the letter', audit), ...audit.hosts.map((host) => row(host.title, host))];
+  return panel('What hosts show', false, table('Errors in each host', ['host', 'mean ', '99.9 % below ', 'worst '], rows));
+}
+
+/** What a bake would come to, by form: the table of `bake --plan`. */
+export function choiceTable({ plan, plan_message: message }) {
+  if (!plan) return message ? panel('What a bake would write', false, h('p', { className: 'note' }, message)) : null;
+  const tables = plan.meshes.filter(({ choices }) => choices?.length).map(({ mesh, name, choices }) => {
+    const rows = choices.map(({ form, targets, bytes, played, chosen }) => ({
+      className: chosen ? 'chosen' : '',
+      cells: [chosen ? `✓ ${form}` : form, count(targets), count(bytes), degreesText(played?.mean_degrees), degreesText(played?.worst_degrees)],
+    }));
+    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Forms of a bake', ['form', 'targets ', 'bytes added ', 'mean ', 'worst '], rows)];
+  });
+  if (tables.length === 0) return null;
+  return panel('What a bake would write', false, tables,
+    h('p', { className: 'note' }, 'Degrees along the animations of the file. The form with a mark is the one that bake writes.'));
+}
+
+/** How the schemes compare on this motion; one of them can be shown by a click. */
+export function schemeTable(report, player) {
+  const found = report.compare?.schemes;
+  if (!found?.length) return null;
+  const rows = found.map(({ scheme, mean_degrees: mean, max_degrees: worst }) => {
+    const name = scheme in SCHEMES ? h('button', { type: 'button', className: 'link', onclick: () => player.chooseScheme(scheme) }, scheme) : scheme;
+    return { cells: [name, degreesText(mean), degreesText(worst)] };
+  });
+  return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'mean ', 'worst '], rows));
+}
+
+/** What was left out of the report. */
+export const notes = ({ thinned }) =>
+  thinned?.length ? panel('What was left out here', true, h('ul', {}, thinned.map((sentence) => h('li', {}, sentence)))) : null;
+
+/** What is wrong with the file, in a sentence. */
+export function verdict({ audit }) {
+  if (!audit) return '';
+  const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
+  if (judged === 0) return 'Nothing in this file moves by morph targets.';
+  if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
+  return `Normals are wrong by up to ${degreesText(worst)} while this moves, and by ${degreesText(mean)} in the mean.`;
+}

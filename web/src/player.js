@@ -1,0 +1,135 @@
+// What is shown at the moment: which part, which motion and where in it, or weights set by hand; for which host, by which scheme.
+import { drive, formulasOf } from '../../js/src/drive.js';
+import { makeSequence } from './sequence.js';
+import { SCHEMES } from './schemes.js';
+import { makeSurface, weightsAt } from './surface.js';
+import { neighbour, placeOf, segmentAt, valueAt, worstSample } from './motions.js';
+
+const TOUR = 3; // seconds that a motion without a time takes
+
+/**
+ * @param report from readContainer()
+ * @param {(what: 'part' | 'motion' | 'step') => void} onChange hears what has changed; "part" includes "motion", and that "step"
+ */
+export function makePlayer(report, onChange) {
+  const surfaces = new Map();
+  const player = { report, at: 0, host: 'specification', scheme: 'linear', byHand: false, isPlaying: false };
+  const isGltf = report.kind === 'gltf';
+
+  function pose() {
+    const { part, motion, surface, weights, shownWeights } = player;
+    if (!isGltf) {
+      surface.pose(...segmentAt(motion, player.at), player.scheme, motion.least);
+    } else if (player.byHand) {
+      drive(player.formulas, weights);
+      surface.pose(weights, weights, player.host, null);
+    } else {
+      if (motion) {
+        weightsAt(motion, 'specification', player.at, weights);
+        weightsAt(motion, player.host, player.at, shownWeights);
+      }
+      surface.pose(weights, shownWeights, player.host, motion?.least);
+    }
+    let worst = -1;
+    const { degrees } = surface;
+    for (let v = 0; v < part.vertices; ++v) if (worst < 0 ? degrees[v] >= 0 : degrees[v] > degrees[worst]) worst = v;
+    player.worst = worst;
+  }
+  const step = () => {
+    pose();
+    onChange('step');
+  };
+
+  player.choosePart = (index) => {
+    const part = report.parts[index];
+    if (!surfaces.has(index)) surfaces.set(index, isGltf ? makeSurface(part) : makeSequence(part));
+    Object.assign(player, { index, part, surface: surfaces.get(index), byHand: false });
+    if (isGltf) {
+      player.weights = new Float64Array(part.targets.length);
+      player.shownWeights = new Float64Array(part.targets.length);
+      player.formulas = formulasOf(part.mark);
+      player.hosts = part.shown.flatMap(({ hosts }) => hosts);
+      if (!player.hosts.includes(player.host)) player.host = 'specification';
+    } else {
+      player.hosts = [];
+    }
+    onChange('part');
+    const worst = part.motions.reduce((best, motion, i) => (motion.worst[worstSample(motion)] > part.motions[best].worst[worstSample(part.motions[best])] ? i : best), 0);
+    player.chooseMotion(worst);
+  };
+  player.chooseMotion = (number, at) => {
+    const motion = player.part.motions[number];
+    Object.assign(player, { motion, motionNumber: number, byHand: false, at: motion ? at ?? worstSample(motion) : 0 });
+    onChange('motion');
+    step();
+  };
+  /** Goes to a place of report.worst; returns its vertex. */
+  player.visit = ({ part, motion, sample, vertex }) => {
+    player.pause();
+    if (player.host !== 'specification') player.chooseHost('specification');
+    if (player.scheme !== 'linear') player.chooseScheme('linear');
+    if (part !== player.index) player.choosePart(part);
+    player.chooseMotion(motion, sample);
+    return vertex;
+  };
+  player.go = (at) => {
+    if (!player.motion) return;
+    Object.assign(player, { at, byHand: false });
+    step();
+  };
+  player.goTo = (value) => player.go(placeOf(player.motion, value));
+  player.step = (steps) => {
+    let { at } = player;
+    for (let i = 0; i < Math.abs(steps); ++i) at = neighbour(player.motion, at, Math.sign(steps));
+    player.go(at);
+  };
+  player.value = () => (player.motion ? valueAt(player.motion, player.at) : 0);
+  player.setWeight = (target, weight) => {
+    player.pause();
+    player.byHand = true;
+    player.weights[target] = weight;
+    step();
+  };
+  player.rest = () => {
+    player.pause();
+    player.byHand = true;
+    player.weights.fill(0);
+    step();
+  };
+  player.chooseHost = (host) => {
+    player.host = host;
+    step();
+    onChange('host');
+  };
+  player.chooseScheme = (scheme) => {
+    player.scheme = scheme;
+    step();
+    onChange('host');
+  };
+  player.schemes = () => (isGltf ? [] : Object.keys(SCHEMES));
+
+  player.pause = () => {
+    player.isPlaying = false;
+    onChange('play');
+  };
+  player.play = () => {
+    const { motion } = player;
+    if (!motion || motion.at.length < 2) return;
+    player.isPlaying = true;
+    player.byHand = false;
+    onChange('play');
+    const first = motion.at[0], length = motion.at[motion.at.length - 1] - first;
+    let last = performance.now();
+    const frame = (now) => {
+      if (!player.isPlaying || player.motion !== motion) return;
+      const seconds = (now - last) / 1000, passed = motion.seconds ? seconds : (seconds * length) / TOUR;
+      last = now;
+      const value = player.value() + passed;
+      player.goTo(value > first + length ? first + ((value - first) % (length || 1)) : value);
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  };
+  player.toggle = () => (player.isPlaying ? player.pause() : player.play());
+  return player;
+}

@@ -1,0 +1,28 @@
+// The page of a report: reads the data that stand in it, and shows them.
+import { fromBase64, readContainer, unzipped } from './data.js';
+import { h } from './dom.js';
+import { logo, makeTheme } from './theme.js';
+import { makeViewer } from './viewer.js';
+
+let viewer;
+const theme = makeTheme(() => viewer?.restyle());
+const root = document.getElementById('report'), top = document.querySelector('.top'), file = h('span', { className: 'file' });
+top.append(logo(), h('h1', {}, 'chronormal'), file, theme.button);
+
+addEventListener('keydown', (event) => {
+  if (viewer?.key(event)) event.preventDefault();
+  else if (event.key.toLowerCase() === 'd' && !event.ctrlKey && !event.metaKey && !event.target.closest('input, select')) theme.toggle();
+});
+
+async function start() {
+  const data = document.getElementById('chronormal-data');
+  if (!data) throw new Error('This is the empty page of a report. `chronormal report FILE -o REPORT.html` fills one in.');
+  const report = readContainer(await unzipped(fromBase64(data.textContent)));
+  data.remove();
+  file.textContent = report.input;
+  document.title = `${report.input}: chronormal`;
+  viewer = makeViewer(root, report);
+  globalThis.chronormal = viewer;
+  root.dataset.ready = 'true';
+}
+start().catch((error) => root.replaceChildren(h('p', { className: 'fault', role: 'alert' }, error.message)));

@@ -1,0 +1,174 @@
+// A mesh with morph targets at given weights: where its vertices are, what a host shows, what it should show, and the angle
+// between the two (docs/hosts.md). All arrays are made once; a step fills them.
+import { NONE, copy, degreesBetween, normalsOf } from './geometry.js';
+
+// The deltas of all targets, vertex after vertex: those of v are from offsets[v] to offsets[v + 1], each with its target. A vertex
+// is added up in registers, which takes a quarter of the time that target after target takes.
+function byVertex(targets, member, vertices) {
+  const isMoved = (values, n) => values[n] !== 0 || values[n + 1] !== 0 || values[n + 2] !== 0;
+  const offsets = new Uint32Array(vertices + 1);
+  const walk = (visit) => targets.forEach((target, k) => {
+    const values = target[member], { indices } = target;
+    for (let n = 0; n < values.length; n += 3) if (isMoved(values, n)) visit(indices ? indices[n / 3] : n / 3, k, values, n);
+  });
+  walk((v) => ++offsets[v + 1]);
+  for (let v = 0; v < vertices; ++v) offsets[v + 1] += offsets[v];
+  const next = offsets.slice(), of = new Uint16Array(offsets[vertices]), deltas = new Float32Array(3 * offsets[vertices]);
+  walk((v, k, values, n) => {
+    const at = next[v]++;
+    of[at] = k;
+    deltas[3 * at] = values[n];
+    deltas[3 * at + 1] = values[n + 1];
+    deltas[3 * at + 2] = values[n + 2];
+  });
+  return { offsets, of, deltas };
+}
+
+// base (or zero) and weighted deltas, in double.
+function addUp(base, { offsets, of, deltas }, weights, sums) {
+  for (let v = 0, at = 0; v + 1 < offsets.length; ++v, at += 3) {
+    let x = 0, y = 0, z = 0;
+    if (base !== null) {
+      x = base[at];
+      y = base[at + 1];
+      z = base[at + 2];
+    }
+    for (let i = offsets[v], end = offsets[v + 1], from = 3 * i; i < end; ++i, from += 3) {
+      const w = weights[of[i]];
+      x += w * deltas[from];
+      y += w * deltas[from + 1];
+      z += w * deltas[from + 2];
+    }
+    sums[at] = x;
+    sums[at + 1] = y;
+    sums[at + 2] = z;
+  }
+}
+
+// The nearest 16-bit float, halves away from zero.
+function half(value) {
+  if (value === 0 || !Number.isFinite(value)) return value;
+  const step = 2 ** Math.max(Math.floor(Math.log2(Math.abs(value))) - 10, -24);
+  return Math.sign(value) * Math.floor(Math.abs(value) / step + 0.5) * step;
+}
+
+// The smallest rotation from n(0) to the stored normal, per vertex: its axis, as long as the sine, and its cosine. Where the two
+// look to opposite sides, both are those of the other side, which the sign of the cosine says.
+function turnsOf({ element, normals }, base) {
+  const turns = new Float64Array(4 * element.length);
+  for (let v = 0; v < element.length; ++v) {
+    turns[4 * v + 3] = 1;
+    if (element[v] === NONE || !normals) continue;
+    const e = 3 * element[v], n = Math.hypot(base[e], base[e + 1], base[e + 2]);
+    const m = Math.hypot(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
+    if (n === 0 || m === 0) continue;
+    const ax = base[e] / n, ay = base[e + 1] / n, az = base[e + 2] / n;
+    const bx = normals[3 * v] / m, by = normals[3 * v + 1] / m, bz = normals[3 * v + 2] / m;
+    const along = ax * bx + ay * by + az * bz, side = along < 0 ? -1 : 1;
+    turns.set([side * (ay * bz - az * by), side * (az * bx - ax * bz), side * (ax * by - ay * bx), along], 4 * v);
+  }
+  return turns;
+}
+
+// Whether a vertex is judged: it shares its normal with a face that some target moves, or some target turns it.
+function judgedVertices({ vertices, triangles, element, elements }, moved, shown) {
+  const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
+  const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);
+  for (let t = 0; t < triangles.length; t += 3) {
+    if (!has(moved, triangles[t]) && !has(moved, triangles[t + 1]) && !has(moved, triangles[t + 2])) continue;
+    for (let i = t; i < t + 3; ++i) if (element[triangles[i]] !== NONE) elementMoves[element[triangles[i]]] = 1;
+  }
+  for (let v = 0; v < vertices; ++v) {
+    judged[v] = element[v] !== NONE && (elementMoves[element[v]] === 1 || shown.some(({ targets }) => has(targets, v))) ? 1 : 0;
+  }
+  return judged;
+}
+
+/** Weights with a number for each target at a moment of a motion: `at` counts samples, and is linear between two of them. */
+export function weightsAt(motion, host, at, result) {
+  const track = motion.weights.find(({ hosts }) => hosts.includes(host)) ?? motion.weights[0];
+  const count = result.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
+  const t = at - from;
+  for (let k = 0; k < count; ++k) {
+    const first = track.values[from * count + k];
+    result[k] = t === 0 ? first : first + t * (track.values[to * count + k] - first);
+  }
+  return result;
+}
+
+/**
+ * @param part of a report, of kind "gltf"
+ * @returns what is drawn: positions, shown and right normals (V x 3, float32), degrees (V: -1 where nothing is judged), and
+ *   pose(weights, shownWeights, host, least), which fills them. shownWeights are those that the host plays.
+ */
+export function makeSurface(part) {
+  const { vertices: V, elements: E, element } = part;
+  const moved = byVertex(part.targets, 'positions', V);
+  const shownBy = part.shown.map((entry) => ({ ...entry, targets: byVertex(entry.targets, 'deltas', V) }));
+  const judged = judgedVertices(part, moved, shownBy);
+  const computeNormals = normalsOf(part);
+  const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
+  const n = new Float64Array(3 * E + 3), sizes = new Float64Array(E + 1);
+  p.set(part.positions);
+  computeNormals(p, n, sizes);
+  const turns = turnsOf(part, n);
+  const surface = {
+    positions: Float32Array.from(part.positions),
+    shown: new Float32Array(3 * V),
+    right: new Float32Array(3 * V),
+    degrees: new Float32Array(V),
+    normals: n,
+  };
+
+  function judge({ normals: base, halves }, least) {
+    const { shown, right, degrees } = surface;
+    for (let v = 0, at = 0; v < V; ++v, at += 3) {
+      let sx = sums[at], sy = sums[at + 1], sz = sums[at + 2];
+      if (halves) {
+        sx = base[at] + half(sx);
+        sy = base[at + 1] + half(sy);
+        sz = base[at + 2] + half(sz);
+      }
+      const length = Math.sqrt(sx * sx + sy * sy + sz * sz);
+      const unlit = !(length > 1e-30) || length === Infinity;
+      const scale = unlit ? 0 : 1 / length;
+      sx = shown[at] = unlit ? 0 : sx * scale;
+      sy = shown[at + 1] = unlit ? 0 : sy * scale;
+      sz = shown[at + 2] = unlit ? 0 : sz * scale;
+      const e = element[v];
+      if (e === NONE) {
+        right[at] = sx;
+        right[at + 1] = sy;
+        right[at + 2] = sz;
+        degrees[v] = -1;
+        continue;
+      }
+      const x = n[3 * e], y = n[3 * e + 1], z = n[3 * e + 2], size = Math.sqrt(x * x + y * y + z * z);
+      const by = size > 0 ? 1 / size : 0, ux = x * by, uy = y * by, uz = z * by;
+      const ax = turns[4 * v], ay = turns[4 * v + 1], az = turns[4 * v + 2], signed = turns[4 * v + 3];
+      const cosine = Math.abs(signed), side = signed < 0 ? -1 : 1, along = (ax * ux + ay * uy + az * uz) / (1 + cosine);
+      const rx = side * (cosine * ux + ay * uz - az * uy + along * ax);
+      const ry = side * (cosine * uy + az * ux - ax * uz + along * ay);
+      const rz = side * (cosine * uz + ax * uy - ay * ux + along * az);
+      right[at] = rx;
+      right[at + 1] = ry;
+      right[at + 2] = rz;
+      const limit = least && e < least.length ? least[e] : 0;
+      if (!judged[v]) degrees[v] = 0;
+      else if (unlit && sizes[e] > limit) degrees[v] = 180;
+      else if (!(size > limit)) degrees[v] = -1;
+      else degrees[v] = degreesBetween(Math.fround(sx), Math.fround(sy), Math.fround(sz), rx, ry, rz);
+    }
+  }
+
+  surface.pose = (weights, shownWeights, host, least) => {
+    const entry = shownBy.find(({ hosts }) => hosts.includes(host)) ?? shownBy[0];
+    addUp(part.positions, moved, weights, p);
+    copy(p, surface.positions);
+    computeNormals(p, n, sizes);
+    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) > entry.least_weight ? shownWeights[k] : 0;
+    addUp(entry.halves ? null : entry.normals, entry.targets, kept, sums);
+    judge(entry, least);
+  };
+  return surface;
+}

@@ -1,0 +1,300 @@
+// The picture: a mesh twice with one camera, as it is shown and as it should be, side by side or with a wipe between them.
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { VIRIDIS, degreesText } from './colors.js';
+import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
+import { meet } from './pick.js';
+
+export const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
+
+const FLIGHT = 600; // milliseconds
+const ease = (x) => x * x * (3 - 2 * x);
+const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+const element = (parent, name) => {
+  const made = document.createElement('div');
+  made.className = name;
+  parent.append(made);
+  return made;
+};
+
+/**
+ * @param {HTMLElement} stage gets a canvas, and what lies above it
+ * @param {(found: {vertex: number, x: number, y: number} | null) => void} onPoint hears which vertex is under the pointer
+ */
+export function makeView(stage, onPoint) {
+  const renderer = new WebGLRenderer({ antialias: true, alpha: true });
+  renderer.setClearAlpha(0);
+  renderer.setScissorTest(true);
+  renderer.domElement.tabIndex = -1;
+  stage.append(renderer.domElement);
+
+  const scene = new Scene(), camera = new PerspectiveCamera(30, 1, 0.01, 100);
+  const uniforms = {
+    isRight: { value: false },
+    mode: { value: LIT },
+    scale: { value: 1 },
+    palette: { value: VIRIDIS.map((rgb) => new Color(...rgb)) },
+  };
+  const material = new ShaderMaterial({ uniforms, vertexShader, fragmentShader, side: DoubleSide });
+  const plain = new ShaderMaterial({ uniforms: { ...uniforms, mode: { value: PLAIN } }, vertexShader, fragmentShader, side: DoubleSide });
+  const controls = new OrbitControls(camera, renderer.domElement);
+  controls.enableDamping = false;
+  controls.addEventListener('change', () => request());
+
+  const view = { layout: 'side', mode: 'lit', wipe: 0.5 };
+  let part, surface, attributes = [], meshes = [], radius = 1, marked = -1, pending = false, flight = 0;
+  const labels = [0, 1].map(() => element(stage, 'label')), markers = [0, 1].map(() => element(stage, 'marker'));
+  const handle = element(stage, 'wipe');
+  Object.assign(handle, { tabIndex: 0, role: 'slider', ariaLabel: 'Where the picture changes from one side to the other' });
+
+  // The rectangles of both sides in CSS pixels, from the top left, and what part of them is seen.
+  function panes() {
+    const width = stage.clientWidth, height = stage.clientHeight;
+    if (view.layout === 'wipe') {
+      const at = Math.round(view.wipe * width), whole = { x: 0, y: 0, width, height };
+      return [{ ...whole, clip: { x: 0, y: 0, width: at, height } }, { ...whole, clip: { x: at, y: 0, width: width - at, height } }];
+    }
+    const both = width >= height
+      ? [{ x: 0, y: 0, width: Math.floor(width / 2), height }, { x: Math.floor(width / 2), y: 0, width: width - Math.floor(width / 2), height }]
+      : [{ x: 0, y: 0, width, height: Math.floor(height / 2) }, { x: 0, y: Math.floor(height / 2), width, height: height - Math.floor(height / 2) }];
+    return both.map((pane) => ({ ...pane, clip: pane }));
+  }
+
+  function aim(pane) {
+    camera.aspect = pane.width / Math.max(pane.height, 1);
+    camera.updateProjectionMatrix();
+  }
+
+  function place(marker, pane) {
+    marker.hidden = marked < 0;
+    if (marked < 0) return;
+    const at = new Vector3().fromArray(surface.positions, 3 * marked).project(camera);
+    const x = pane.x + ((at.x + 1) / 2) * pane.width, y = pane.y + ((1 - at.y) / 2) * pane.height;
+    const { clip } = pane;
+    marker.hidden = at.z > 1 || x < clip.x || x > clip.x + clip.width || y < clip.y || y > clip.y + clip.height;
+    const normal = new Vector3().fromArray(surface.right, 3 * marked), seen = camera.position.clone().sub(new Vector3().fromArray(surface.positions, 3 * marked));
+    marker.classList.toggle('behind', normal.dot(seen) < 0);
+    marker.style.transform = `translate(${x}px, ${y}px)`;
+    marker.textContent = degreesText(surface.degrees[marked]);
+  }
+
+  function draw() {
+    pending = false;
+    if (!surface) return;
+    renderer.setScissor(0, 0, stage.clientWidth, stage.clientHeight);
+    renderer.clear();
+    const height = stage.clientHeight;
+    panes().forEach((pane, side) => {
+      const { clip } = pane;
+      aim(pane);
+      renderer.setViewport(pane.x, height - pane.y - pane.height, pane.width, pane.height);
+      renderer.setScissor(clip.x, height - clip.y - clip.height, clip.width, clip.height);
+      uniforms.isRight.value = side === 1;
+      uniforms.mode.value = view.mode === 'error' && side === 0 ? LIT : MODES[view.mode];
+      if (clip.width > 0) renderer.render(scene, camera);
+      place(markers[side], pane);
+      Object.assign(labels[side].style, { left: `${clip.x}px`, top: `${clip.y}px`, maxWidth: `${clip.width}px` });
+      labels[side].hidden = clip.width < 40;
+    });
+    handle.hidden = view.layout !== 'wipe';
+    handle.style.left = `${Math.round(view.wipe * stage.clientWidth)}px`;
+    handle.ariaValueNow = String(Math.round(100 * view.wipe));
+  }
+
+  function request() {
+    if (pending) return;
+    pending = true;
+    requestAnimationFrame(draw);
+  }
+
+  function bounds() {
+    const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
+    for (const v of part.triangles) {
+      for (let c = 0; c < 3; ++c) {
+        least[c] = Math.min(least[c], positions[3 * v + c]);
+        most[c] = Math.max(most[c], positions[3 * v + c]);
+      }
+    }
+    const [low, high] = [new Vector3(...least), new Vector3(...most)], centre = low.clone().add(high).multiplyScalar(0.5);
+    return { centre, low, high, size: high.distanceTo(centre) || 1 };
+  }
+
+  // The camera goes there in a while, or at once for those who want no motion.
+  function fly(position, target, onEnd) {
+    const from = camera.position.clone(), to = controls.target.clone(), begin = performance.now(), mine = ++flight;
+    const step = (now) => {
+      if (mine !== flight) return;
+      const x = calm() ? 1 : Math.min(Math.max((now - begin) / FLIGHT, 0), 1), t = ease(x);
+      camera.position.lerpVectors(from, position, t);
+      controls.target.lerpVectors(to, target, t);
+      controls.update();
+      request();
+      if (x < 1) requestAnimationFrame(step);
+      else onEnd?.();
+    };
+    step(begin);
+  }
+
+  // How far away a sphere fills the smaller side of a pane.
+  function distanceOf(size) {
+    const [{ width, height }] = panes(), aspect = width / Math.max(height, 1);
+    const half = Math.tan((camera.fov * Math.PI) / 360) * Math.min(1, aspect);
+    return (size * 1.02) / half;
+  }
+
+  /** Shows another mesh; surface has the arrays that are drawn (surface.js). */
+  view.show = (newPart, newSurface) => {
+    [part, surface] = [newPart, newSurface];
+    for (const mesh of meshes) scene.remove(mesh);
+    meshes[0]?.geometry.dispose();
+    attributes = [['position', 'positions', 3], ['shown', 'shown', 3], ['right', 'right', 3], ['degrees', 'degrees', 1]].map(
+      ([name, member, size]) => [name, new BufferAttribute(surface[member], size).setUsage(DynamicDrawUsage)]);
+    const geometryOf = (triangles) => {
+      const geometry = new BufferGeometry();
+      for (const [name, attribute] of attributes) geometry.setAttribute(name, attribute);
+      return geometry.setIndex(new BufferAttribute(triangles, 1));
+    };
+    meshes = [new Mesh(geometryOf(part.triangles), material)];
+    if (part.coarse?.length) meshes.push(new Mesh(geometryOf(part.coarse), plain));
+    for (const mesh of meshes) {
+      mesh.frustumCulled = false;
+      scene.add(mesh);
+    }
+    marked = -1;
+  };
+
+  /** The arrays of the surface have changed. */
+  view.update = () => {
+    for (const [, attribute] of attributes) attribute.needsUpdate = true;
+    request();
+  };
+
+  /** The whole mesh, from a little beside. */
+  view.frame = (atOnce) => {
+    const { centre, size } = bounds();
+    radius = size;
+    camera.near = size / 200;
+    camera.far = size * 60;
+    controls.minDistance = size / 40;
+    controls.maxDistance = size * 20;
+    const position = new Vector3(0.32, 0.16, 1).setLength(distanceOf(size)).add(centre);
+    if (!atOnce) return fly(position, centre);
+    ++flight;
+    camera.position.copy(position);
+    controls.target.copy(centre);
+    controls.update();
+    request();
+  };
+
+  /** Looks at a point, in shares of the box of the mesh, from a direction and a share of the distance at which all is seen. */
+  view.look = (shares, direction, near) => {
+    const { low, high } = bounds();
+    ++flight;
+    controls.target.copy(high).sub(low).multiply(new Vector3(...shares)).add(low);
+    camera.position.set(...direction).setLength(near * distanceOf(radius)).add(controls.target);
+    controls.update();
+    request();
+  };
+
+  // The way from a vertex to a camera that sees it: of some directions around its normal the first that is free for `distance`, or else the
+  // freest of them, shortened.
+  function freeWay(target, normal, towards, distance) {
+    const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
+    up.cross(side);
+    const tilted = (a, b) => normal.clone().addScaledVector(side, a).addScaledVector(up, b);
+    let best = { free: -1 };
+    for (const direction of [towards, normal.clone(), ...[[0.9, 0], [-0.9, 0], [0, 0.9], [0, -0.9], [2, 0], [-2, 0], [0, 2], [0, -2]].map((tilt) => tilted(...tilt))]) {
+      direction.normalize();
+      const from = target.clone().addScaledVector(direction, 1e-3 * radius);
+      const free = meet(surface.positions, part.triangles, from.toArray(), direction.toArray()).distance;
+      if (free > best.free) best = { free, direction };
+      if (free >= distance) break;
+    }
+    return best.direction.clone().setLength(Math.max(Math.min(distance, 0.9 * best.free), 0.03 * radius));
+  }
+
+  /** Goes near a vertex, and looks at it from where it can be seen, if possible from where its right normal points. */
+  view.visit = (vertex) => {
+    marked = vertex;
+    const target = new Vector3().fromArray(surface.positions, 3 * vertex);
+    const normal = new Vector3().fromArray(surface.right, 3 * vertex);
+    const towards = camera.position.clone().sub(controls.target).normalize().addScaledVector(normal, 1.5);
+    if (towards.length() < 0.1) towards.copy(normal);
+    fly(freeWay(target, normal, towards, distanceOf(radius) * 0.38).add(target), target);
+  };
+  view.mark = (vertex) => {
+    marked = vertex;
+    request();
+  };
+
+  view.setLabels = (texts) => texts.forEach((text, side) => (labels[side].textContent = text));
+  view.setScale = (degrees) => {
+    uniforms.scale.value = degrees;
+    request();
+  };
+  view.request = request;
+  view.draw = draw;
+  view.camera = camera;
+  view.canvas = renderer.domElement;
+
+  function pointAt(event) {
+    const box = stage.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+    const pane = panes().find(({ clip }) => x >= clip.x && x < clip.x + clip.width && y >= clip.y && y < clip.y + clip.height);
+    if (!pane || !surface) return null;
+    aim(pane);
+    const ray = new Vector3(((x - pane.x) / pane.width) * 2 - 1, 1 - ((y - pane.y) / pane.height) * 2, 0.5).unproject(camera).sub(camera.position);
+    const { vertex } = meet(surface.positions, part.triangles, camera.position.toArray(), ray.toArray());
+    return vertex < 0 ? null : { vertex, x, y };
+  }
+  let pointed;
+  renderer.domElement.addEventListener('pointermove', (event) => {
+    if (event.buttons !== 0) return onPoint(null);
+    if (!pointed) requestAnimationFrame(() => {
+      const last = pointed;
+      pointed = undefined;
+      onPoint(pointAt(last));
+    });
+    pointed = event;
+  });
+  renderer.domElement.addEventListener('pointerleave', () => onPoint(null));
+  renderer.domElement.addEventListener('click', (event) => onPoint(pointAt(event)));
+
+  const setWipe = (share) => {
+    view.wipe = Math.min(Math.max(share, 0), 1);
+    request();
+  };
+  handle.addEventListener('pointerdown', (event) => {
+    handle.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  });
+  handle.addEventListener('pointermove', (event) => {
+    const box = stage.getBoundingClientRect();
+    if (handle.hasPointerCapture(event.pointerId)) setWipe((event.clientX - box.left) / box.width);
+  });
+  handle.addEventListener('keydown', (event) => {
+    const step = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+    if (!step) return;
+    event.stopPropagation();
+    setWipe(view.wipe + step);
+  });
+
+  const resized = new ResizeObserver(() => {
+    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    renderer.setSize(stage.clientWidth, stage.clientHeight);
+    draw();
+  });
+  resized.observe(stage);
+
+  /** Gives back what the graphics card holds. */
+  view.close = () => {
+    ++flight;
+    surface = undefined;
+    resized.disconnect();
+    controls.dispose();
+    for (const mesh of meshes) mesh.geometry.dispose();
+    renderer.dispose();
+    renderer.forceContextLoss();
+  };
+  return view;
+}

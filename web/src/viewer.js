@@ -1,0 +1,193 @@
+// A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
+import { h, panel, segmented } from './dom.js';
+import { degreesText, gradient, scaleEnd } from './colors.js';
+import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, verdict, weightSliders, worstPlaces } from './panels.js';
+import { worstSample } from './motions.js';
+import { makePlayer } from './player.js';
+import { makePlot } from './plot.js';
+import { makeView } from './view.js';
+
+export const KEYS = [
+  ['Space', 'play, pause'], ['← →', 'one sample back, on; with Shift ten'], ['1 2 3', 'lit, normals as colours, error'],
+  ['W', 'side by side, or a wipe'], ['N P', 'next, previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
+];
+
+const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
+
+/** What a vertex is called in the file. */
+export function labelOf(part, vertex) {
+  const found = part.primitives.findIndex(({ first, count }) => vertex >= first && vertex < first + count);
+  const primitive = part.primitives[found], number = part.labels ? part.labels[vertex] : vertex - (primitive?.first ?? 0);
+  const names = [part.mesh === null || part.mesh === undefined ? '' : `mesh ${part.mesh}`,
+    part.mesh !== null && part.primitives.length > 1 ? `primitive ${primitive?.primitive ?? found}` : '', `vertex ${number}`];
+  return names.filter(Boolean).join(', ');
+}
+
+/**
+ * @param {HTMLElement} root is filled
+ * @param report from readContainer()
+ * @returns {{player, view, visit, key, restyle}} what tests and the pages around this use
+ */
+export function makeViewer(root, report) {
+  const stage = h('div', { className: 'stage' }), tip = h('div', { className: 'tip', hidden: true });
+  const view = makeView(stage, point);
+  const slider = h('input', { type: 'range', className: 'time', 'aria-label': 'moment of the motion', min: 0, max: 1, step: 'any' });
+  const play = h('button', { type: 'button', className: 'round', onclick: () => player.toggle() });
+  const moment = h('output', { className: 'moment' }), now = h('button', { type: 'button', className: 'plain now', title: 'Go to the worst vertex of this moment', onclick: () => view.visit(player.worst) });
+  const plotBox = h('div', { className: 'plot', role: 'img', 'aria-label': 'the error over the motion' });
+  const low = h('span', {}, '0°'), high = h('span', {}), bar = h('i', {});
+  bar.style.background = gradient();
+  const scale = h('select', { 'aria-label': 'where the scale ends', onchange: () => setScale() },
+    h('option', { value: 'auto' }, 'scale: auto'), SCALES.map((end) => h('option', { value: end }, `0 to ${end}°`)));
+  const legend = h('div', { className: 'legend' }, low, bar, high, scale);
+  const modes = segmented('what is drawn', [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between both (3)']], setMode);
+  const layouts = segmented('how both are shown', [['side', 'Side by side'], ['wipe', 'Wipe']], setLayout);
+  const plot = makePlot(plotBox, (x) => (player.pause(), player.goTo(x)));
+  let visited = -1;
+
+  const player = makePlayer(report, changed);
+  const chooser = choosers(report, player);
+  const weights = report.kind === 'gltf' ? weightSliders(player) : null;
+  const places = worstPlaces(report, visit);
+  const previous = () => visit(visited <= 0 ? report.worst.length - 1 : visited - 1), next = () => visit((visited + 1) % report.worst.length);
+  const help = h('dialog', { className: 'help' }, h('h2', {}, 'Keys'),
+    h('dl', {}, KEYS.map(([key, what]) => [h('dt', {}, key), h('dd', {}, what)])),
+    h('p', {}, 'Drag to turn, pinch or scroll to come nearer, two fingers or the right button to move. What is under the pointer is named with its error.'),
+    h('form', { method: 'dialog' }, h('button', { className: 'plain' }, 'Close')));
+  stage.append(tip);
+  root.classList.add('viewer');
+  root.replaceChildren(
+    h('section', { className: 'scene' },
+      h('div', { className: 'toolbar' }, modes, layouts, h('button', { type: 'button', className: 'plain', title: 'The whole mesh (F)', onclick: () => view.frame() }, 'Whole mesh'),
+        h('button', { type: 'button', className: 'plain keys', 'aria-label': 'keys', title: 'Keys (?)', onclick: () => help.showModal() }, '?')),
+      stage, legend, h('div', { className: 'timeline' }, play, slider, moment), h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
+    h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box, schemeTable(report, player), hostTable(report), choiceTable(report), notes(report), aboutOf(report)),
+    help);
+
+  function point(found) {
+    tip.hidden = !found;
+    if (!found) return;
+    tip.textContent = `${degreesText(player.surface.degrees[found.vertex])} · ${labelOf(player.part, found.vertex)}`;
+    const left = Math.min(found.x + 14, stage.clientWidth - 180);
+    tip.style.transform = `translate(${Math.max(left, 4)}px, ${Math.max(found.y - 34, 4)}px)`;
+  }
+
+  function setMode(mode) {
+    view.mode = mode;
+    modes.choose(mode);
+    legend.classList.toggle('off', mode !== 'error');
+    label();
+    view.request();
+  }
+  function setLayout(layout) {
+    view.layout = layout;
+    layouts.choose(layout);
+    view.frame(true);
+  }
+  // Where most of the errors are seen: what 99 percent are below, or else the worst.
+  function setScale() {
+    const { motion } = player, subject = motion && report.audit?.subjects?.[motion.subject ?? -1];
+    const typical = subject?.percentile_99_degrees ?? (motion ? motion.worst[worstSample(motion)] : 1);
+    const end = scale.value === 'auto' ? scaleEnd(typical || 1) : Number(scale.value);
+    view.setScale(end);
+    high.textContent = end < 180 ? `${end}° and more` : '180°';
+  }
+  const label = () => view.setLabels([shownBy(report, player), view.mode === 'error' ? 'The error, in degrees' : 'As it should be']);
+
+  function changed(what) {
+    const { motion, part, surface } = player;
+    if (what === 'part') {
+      view.show(part, surface);
+      weights?.fill();
+    }
+    if (what === 'motion') {
+      Object.assign(slider, motion ? { min: motion.at[0], max: motion.at[motion.at.length - 1], disabled: false } : { disabled: true });
+      play.disabled = !motion;
+      chooser.fill();
+      setScale();
+      showPlot();
+    }
+    if (what === 'host') {
+      label();
+      chooser.fill();
+      showPlot();
+    }
+    if (what === 'play') {
+      play.textContent = player.isPlaying ? '❚❚' : '▶';
+      play.setAttribute('aria-label', player.isPlaying ? 'pause' : 'play');
+    }
+    if (what === 'step') {
+      const value = player.value();
+      if (player.byHand !== changed.byHand) chooser.fill();
+      changed.byHand = player.byHand;
+      if (motion && !player.byHand) {
+        slider.value = value;
+        plot.go(value);
+      }
+      moment.textContent = player.byHand || !motion ? 'by hand' : motion.seconds ? `${value.toFixed(2)} s` : `weight ${value.toFixed(2)}`;
+      const { worst } = player, degrees = worst < 0 ? NaN : surface.degrees[worst];
+      now.textContent = worst < 0 ? 'Nothing is judged here' : `Worst at this moment: ${degreesText(degrees)} at ${labelOf(part, worst)}`;
+      now.disabled = worst < 0;
+      now.dataset.degrees = degrees;
+      now.dataset.vertex = worst;
+      weights?.follow();
+      view.update();
+    }
+  }
+  // The numbers of the rule that the audit judged, or of the scheme that is shown.
+  function showPlot() {
+    const { motion } = player;
+    plotBox.hidden = !motion || motion.at.length < 2;
+    if (!plotBox.hidden) plot.show(motion, motion.schemes?.find(({ name }) => name === player.scheme) ?? motion);
+  }
+  function visit(i) {
+    if (!report.worst.length) return;
+    visited = i;
+    const vertex = player.visit(report.worst[i]);
+    places?.querySelectorAll('button').forEach((button, n) => button.setAttribute('aria-current', String(n === i)));
+    view.visit(vertex);
+  }
+
+  slider.addEventListener('input', () => {
+    player.pause();
+    player.goTo(Number(slider.value));
+  });
+  if (weights) weights.box.addEventListener('toggle', weights.follow);
+
+  const keys = {
+    ' ': () => player.toggle(), ArrowLeft: (shift) => player.step(shift ? -10 : -1), ArrowRight: (shift) => player.step(shift ? 10 : 1),
+    1: () => setMode('lit'), 2: () => setMode('normals'), 3: () => setMode('error'), w: () => setLayout(view.layout === 'side' ? 'wipe' : 'side'),
+    n: next, p: previous, f: () => view.frame(), '?': () => help.showModal(),
+  };
+  /** Does what a key stands for; returns whether it stands for something. */
+  function key({ key: name, shiftKey, target, ctrlKey, metaKey, altKey }) {
+    const act = keys[name.length === 1 ? name.toLowerCase() : name];
+    const isOwn = target.closest('select, dialog, input:not(.time), summary') || (name === ' ' && target.closest('button'));
+    if (!act || isOwn || ctrlKey || metaKey || altKey || !player.surface) return false;
+    if (name.startsWith('Arrow')) player.pause();
+    act(shiftKey);
+    return true;
+  }
+
+  changed('play');
+  setMode('lit');
+  layouts.choose('side');
+  if (report.parts.length > 0) {
+    const first = report.worst[0];
+    if (first) view.mark(player.visit(first));
+    else player.choosePart(0);
+    changed('host');
+    view.frame(true);
+    if (first) view.mark(first.vertex);
+  }
+  return { player, view, visit, key, setMode, setLayout, close: () => (player.pause(), view.close()), restyle: () => (plot.restyle(), view.request()) };
+}
+
+function aboutOf(report) {
+  const { audit } = report, lines = [];
+  const vertices = report.parts.reduce((sum, part) => sum + part.vertices, 0), triangles = report.parts.reduce((sum, part) => sum + part.triangles.length / 3, 0);
+  lines.push(`${vertices.toLocaleString('en')} vertices and ${triangles.toLocaleString('en')} triangles are drawn here.`);
+  if (audit?.weighting) lines.push(`Right normals are the exact ones, weighted by ${audit.weighting === 'area' ? 'the area of faces' : audit.weighting}; what the author turned at rest is kept.`);
+  lines.push(`Numbers are those of ${report.program}; nothing was loaded, and nothing is sent.`);
+  return panel('About', false, lines.map((line) => h('p', { className: 'note' }, line)));
+}
