@@ -17,7 +17,7 @@ const DONE = 0, BEYOND = 4;
 const OUTPUTS = 'out';
 
 // What of the options is meant for these functions, and not for the program.
-const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker']);
+const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit']);
 
 const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
 
@@ -79,6 +79,7 @@ function taskOf(command, input, options, more = []) {
     args: [command, name, '--json', ...more, ...flagsOf(options)],
     files: { ...Object.fromEntries(resources), [name]: bytes },
     outputs: OUTPUTS,
+    memoryLimit: options.memoryLimit,
   };
 }
 

@@ -199,6 +199,20 @@ async function assertDriven(page, host, parts) {
   assert.deepEqual(after, attached);
 }
 
+// The same where clips are blended, each of which knows nothing of the others.
+async function assertBlended(page, host) {
+  const WEIGHTS = [0.8, 0.6];
+  const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${host}.glb`));
+  await writeStill(still, { parts: 2 });
+  await writeStill(moved, { parts: 2, weights: WEIGHTS });
+  const [moment] = await stillMoments(moved, 0, [0]);
+  const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
+  const compare = (...all) => window.compareBlended(...all);
+  const [before, attached] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
+  assert.ok(before.p99 > 5, JSON.stringify(before));
+  assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
+}
+
 // Draws wrong beside right, at one moment of a vase, and holds it against the picture in the documents.
 async function assertPicture(page) {
   const TIME = 0.4;
@@ -271,6 +285,8 @@ describe('Chromium', () => {
     for (const parts of [1, 2])
       test(`shows right normals in ${host} of ${parts} primitives whose weights a program sets`, async () =>
         assertDriven(browser.page, host, parts));
+  for (const host of ['three', 'babylon'])
+    test(`shows right normals in ${host} of clips that are blended`, async () => assertBlended(browser.page, host));
   test('draws the wrong beside the right as docs/pictures/shading.png has it', () => assertPicture(browser.page));
 });
 
