@@ -12,7 +12,7 @@ function drivenOf(scene) {
     if (!manager) continue;
     if (!driven.has(manager)) {
       const count = manager.numTargets;
-      const formulas = formulasOf(markOf(mesh, ({ metadata }) => metadata?.gltf?.extras)).filter(({ target }) => target < count);
+      const formulas = formulasOf(markOf(mesh, ({ metadata }) => metadata?.gltf?.extras), count);
       if (formulas.length > 0) driven.set(manager, { manager, formulas, w: new Float64Array(count), meshes: [] });
     }
     driven.get(manager)?.meshes.push(mesh);

@@ -6,7 +6,7 @@ const attached = new WeakMap(); // of each mesh: {formulas, before, now}
 
 function formulasOfMesh(mesh) {
   const w = mesh.morphTargetInfluences;
-  return w ? formulasOf(markOf(mesh, ({ userData }) => userData)).filter(({ target }) => target < w.length) : [];
+  return w ? formulasOf(markOf(mesh, ({ userData }) => userData), w.length) : [];
 }
 
 /**
