@@ -67,7 +67,7 @@ async function execute(task, options) {
   options.signal?.throwIfAborted();
   const done = options.worker === false ? await perform(task, options.onProgress) : await inWorker(task, options);
   if (done.code !== DONE && done.code !== BEYOND) {
-    throw new ChronormalError(done.code, done.stderr.replace(/^chronormal \w+: /, ''));
+    throw new ChronormalError(done.code, done.stderr.replace(/^chronormal(?: \w+)?: /, ''));
   }
   return done;
 }

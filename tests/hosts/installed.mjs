@@ -1,4 +1,4 @@
-// The npm package as a user has it: packed, and unpacked in a folder where nothing else is installed but glTF-Transform.
+// The npm package as a user has it: packed, and unpacked in a folder where nothing else is installed but what it works with.
 //
 //   CHRONORMAL_PROGRAM   the native program, which it is held against
 //   CHRONORMAL_NPM       the folder of the package
@@ -19,7 +19,8 @@ export function install() {
   const tarball = join(folder, packed.toString().trim().split('\n').at(-1));
   execFileSync('tar', ['-xzf', tarball, '-C', folder]);
   cpSync(join(folder, 'package'), installed, { recursive: true });
-  for (const name of ['@gltf-transform', 'three', '@babylonjs']) {
+  mkdirSync(join(folder, 'node_modules/@types'));
+  for (const name of ['@gltf-transform', 'three', '@types/three', '@babylonjs']) {
     symlinkSync(fileURLToPath(new URL(`node_modules/${name}`, import.meta.url)), join(folder, 'node_modules', name));
   }
   const run = (command, args, options) => {
