@@ -5,6 +5,11 @@ import { platform } from './platform.js';
 
 let compiled; // the module, once for all runs
 
+/** Takes a module that another thread has compiled. */
+export function useCompiled(module) {
+  compiled ??= Promise.resolve(module);
+}
+
 /**
  * Compiles the program, unless that was done before. What it takes is the most of a short run.
  * @returns {Promise<WebAssembly.Module>}
