@@ -20,10 +20,14 @@ describe('a captured face', { skip: NO_DATA }, () => {
   const path = DATA && join(DATA, 'rigs/ict_capture.glb');
   const face = DATA && new Uint8Array(readFileSync(path));
   // What the program makes of it.
+  let made;
   const expected = () => {
-    const { status, stderr } = native(['bake', path, '--for', 'three', '--max-targets', '112', '-o', 'face.glb', '--force']);
-    assert.equal(status, 0, stderr);
-    return readFileSync(join(folder, 'face.glb'));
+    if (!made) {
+      const { status, stderr } = native(['bake', path, '--for', 'three', '--max-targets', '112', '-o', 'face.glb']);
+      assert.equal(status, 0, stderr);
+      made = readFileSync(join(folder, 'face.glb'));
+    }
+    return made;
   };
 
   test('is audited in a worker as by the program', async () => {
