@@ -3,7 +3,7 @@
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
 import { install } from './installed.mjs';
@@ -17,24 +17,22 @@ after(remove);
 const { audit, bake, ChronormalError } = await load('index.node.js');
 
 describe('a captured face', { skip: NO_DATA }, () => {
-  const path = DATA && join(DATA, 'rigs/ict_capture.glb');
-  const face = DATA && new Uint8Array(readFileSync(path));
+  const face = DATA && new Uint8Array(readFileSync(join(DATA, 'rigs/ict_capture.glb')));
+  if (DATA) writeFileSync(join(folder, 'face.glb'), face);
   // What the program makes of it.
   let made;
   const expected = () => {
     if (!made) {
-      const { status, stderr } = native(['bake', path, '--for', 'three', '--max-targets', '112', '-o', 'face.glb']);
-      assert.equal(status, 0, stderr);
-      made = readFileSync(join(folder, 'face.glb'));
+      const { status, stderr } = native(['bake', 'face.glb', '--for', 'three', '--max-targets', '112', '-o', 'made.glb']);
+      assert.equal(status, 4, stderr); // so few targets are not within the tolerance
+      made = readFileSync(join(folder, 'made.glb'));
     }
     return made;
   };
 
   test('is audited in a worker as by the program', async () => {
     const { report } = await audit(face, { name: 'face.glb' });
-    const said = JSON.parse(native(['audit', path, '--json']).stdout);
-    said.file = report.file;
-    assert.deepEqual(report, said);
+    assert.deepEqual(report, JSON.parse(native(['audit', 'face.glb', '--json']).stdout));
   });
 
   test('is baked in a worker to the bytes of the program, and the caller goes on meanwhile', async () => {
