@@ -24,8 +24,8 @@ function(chronormal_wasm_library name folder)
   set(root ${root} PARENT_SCOPE)
 endfunction()
 
-# Highway: no vectors of float64 in this version. Two lanes of SIMD128 are written out by its own plain loops, which the
-# compiler makes vectors of.
+# Highway: this version has no vectors of float64 for wasm, so that its own plain loops are what is compiled, and without
+# SIMD128, which any runtime of wasm can do without.
 chronormal_wasm_library(hwy highway-* hwy/targets.cc hwy/per_target.cc hwy/aligned_allocator.cc)
 target_include_directories(hwy SYSTEM PUBLIC ${root})
 target_compile_definitions(hwy PUBLIC HWY_COMPILE_ONLY_EMU128)

@@ -1,6 +1,7 @@
 // chronormal in JavaScript: right normals for meshes that deform. Bytes go in, bytes and reports come out; nothing touches a
 // file system or the network. index.d.ts has the types.
 import { platform } from './platform.js';
+import { compile } from './run.js';
 import { perform } from './task.js';
 
 /** What the program refused, or could not do: its exit code and its own words, which name the place. */
@@ -17,7 +18,7 @@ const DONE = 0, BEYOND = 4;
 const OUTPUTS = 'out';
 
 // What of the options is meant for these functions, and not for the program.
-const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker']);
+const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit']);
 
 const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
 
@@ -42,7 +43,9 @@ const bytesOf = (data) => {
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
 // Does a task in a worker, which ends with it: then nothing is left, and it can be stopped in the middle.
-function inWorker(task, { signal, onProgress }) {
+async function inWorker(task, { signal, onProgress }) {
+  const module = await compile(); // once for all workers
+  signal?.throwIfAborted();
   return new Promise((resolve, reject) => {
     const end = (settle, value) => {
       signal?.removeEventListener('abort', stop);
@@ -59,7 +62,7 @@ function inWorker(task, { signal, onProgress }) {
       (error) => end(reject, error),
     );
     signal?.addEventListener('abort', stop, { once: true });
-    worker.postMessage({ task, wantsProgress: onProgress !== undefined });
+    worker.postMessage({ task, wantsProgress: onProgress !== undefined, module });
   });
 }
 
@@ -67,7 +70,7 @@ async function execute(task, options) {
   options.signal?.throwIfAborted();
   const done = options.worker === false ? await perform(task, options.onProgress) : await inWorker(task, options);
   if (done.code !== DONE && done.code !== BEYOND) {
-    throw new ChronormalError(done.code, done.stderr.replace(/^chronormal \w+: /, ''));
+    throw new ChronormalError(done.code, done.stderr.replace(/^chronormal(?: \w+)?: /, ''));
   }
   return done;
 }
@@ -79,6 +82,7 @@ function taskOf(command, input, options, more = []) {
     args: [command, name, '--json', ...more, ...flagsOf(options)],
     files: { ...Object.fromEntries(resources), [name]: bytes },
     outputs: OUTPUTS,
+    memoryLimit: options.memoryLimit,
   };
 }
 

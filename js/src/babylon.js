@@ -2,18 +2,22 @@
 // an animation, has set for the targets of the mesh itself. Babylon.js hands on the extras of nodes, not those of meshes.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-const observers = new WeakMap(); // of each scene
+const attached = new WeakMap(); // of each scene: {observer, driven}
 
-function drivenMeshes(scene) {
-  const driven = [];
+// What is driven, and the meshes that show it: weights belong to a MorphTargetManager, which clones of a mesh share.
+function drivenOf(scene) {
+  const driven = new Map();
   for (const mesh of scene.meshes) {
     const manager = mesh.morphTargetManager;
-    if (!manager || driven.some((other) => other.manager === manager)) continue; // an instance shares that of its mesh
-    const formulas = formulasOf(markOf(mesh, ({ metadata }) => metadata?.gltf?.extras));
-    const known = formulas.filter(({ target }) => target < manager.numTargets);
-    if (known.length > 0) driven.push({ mesh, manager, formulas: known, w: new Float64Array(manager.numTargets) });
+    if (!manager) continue;
+    if (!driven.has(manager)) {
+      const count = manager.numTargets;
+      const formulas = formulasOf(markOf(mesh, ({ metadata }) => metadata?.gltf?.extras), count);
+      if (formulas.length > 0) driven.set(manager, { manager, formulas, w: new Float64Array(count), meshes: [] });
+    }
+    driven.get(manager)?.meshes.push(mesh);
   }
-  return driven;
+  return [...driven.values()];
 }
 
 /**
@@ -23,31 +27,28 @@ function drivenMeshes(scene) {
  * @returns {import('@babylonjs/core').AbstractMesh[]} the meshes that have extra targets with formulas
  */
 export function attach(scene) {
-  detach(scene);
-  const driven = drivenMeshes(scene);
+  if (attached.has(scene)) scene.onBeforeRenderObservable.remove(attached.get(scene).observer);
+  const driven = drivenOf(scene);
   const observer = scene.onBeforeRenderObservable.add(() => {
     for (let d = 0; d < driven.length; ++d) {
-      const { mesh, manager, formulas, w } = driven[d];
-      if (mesh.isDisposed()) continue;
+      const { manager, formulas, w } = driven[d];
       for (let i = 0; i < w.length; ++i) w[i] = manager.getTarget(i).influence;
       for (let k = 0; k < formulas.length; ++k) {
-        const weight = weightOf(formulas[k], w), target = manager.getTarget(formulas[k].target);
-        if (target.influence !== weight) target.influence = weight;
+        manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w); // which does nothing where it is that
       }
     }
   });
-  observers.set(scene, { observer, driven });
-  return driven.map(({ mesh }) => mesh);
+  attached.set(scene, { observer, driven });
+  return driven.flatMap(({ meshes }) => meshes);
 }
 
 /** Leaves the meshes of a scene to the application again; extra targets get the weight 0. */
 export function detach(scene) {
-  const attached = observers.get(scene);
-  if (!attached) return;
-  scene.onBeforeRenderObservable.remove(attached.observer);
-  observers.delete(scene);
-  for (const { mesh, manager, formulas } of attached.driven) {
-    if (mesh.isDisposed()) continue;
+  if (!attached.has(scene)) return;
+  const { observer, driven } = attached.get(scene);
+  attached.delete(scene);
+  scene.onBeforeRenderObservable.remove(observer);
+  for (const { manager, formulas } of driven) {
     for (const { target } of formulas) manager.getTarget(target).influence = 0;
   }
 }

@@ -2,6 +2,7 @@
 import { existsSync, readdirSync, readSync, writeSync } from 'node:fs';
 import { Buffer } from 'node:buffer';
 import process from 'node:process';
+import { fromWindows } from './paths.js';
 import * as node from './platform.node.js';
 import { usePlatform } from './platform.js';
 import { run } from './run.js';
@@ -9,8 +10,7 @@ import { run } from './run.js';
 usePlatform(node);
 
 const isWindows = process.platform === 'win32';
-// C:\models\face.glb is /C:/models/face.glb in the file system of the program.
-const inside = (path) => (isWindows ? path.replaceAll('\\', '/').replace(/^([A-Za-z]:)(?=\/)/, '/$1') : path);
+const inside = (path) => (isWindows ? fromWindows(path, process.cwd()) : path);
 
 // Mounts what stands at the root of the machine under the same names.
 function mount(FS, NODEFS) {
@@ -61,7 +61,7 @@ function standardInput(args) {
 export async function main(args) {
   const { stdout, stderr, env } = process;
   const columns = stdout.columns ?? stderr.columns;
-  const { code } = await run(isWindows ? args.map(inside) : args, {
+  const { code } = await run(args.map(inside), {
     prepare: mount,
     stdout: writeAll(1),
     stderr: writeAll(2),

@@ -4,11 +4,12 @@
 const VERSION = 2;
 
 /**
- * The formulas of a mark, extras.chronormal of a mesh, in arrays that evaluating walks through without allocating.
- * Targets without a formula are driven by the animations of the file alone, and not touched.
+ * The formulas of a mark, extras.chronormal of a mesh with so many targets, in arrays that evaluating walks through without
+ * allocating. Targets without a formula are driven by the animations of the file alone, and not touched. Extra targets are
+ * the last ones of a mesh: one that has another number of targets by now has others, and none of them is touched.
  */
-export function formulasOf(mark) {
-  if (mark?.version !== VERSION || !Array.isArray(mark.extras)) return [];
+export function formulasOf(mark, count) {
+  if (mark?.version !== VERSION || !Array.isArray(mark.extras) || mark.extras.at(-1)?.target !== count - 1) return [];
   return mark.extras
     .filter(({ linear, quadratic }) => linear.length + quadratic.length > 0)
     .map(({ target, linear, quadratic }) => ({

@@ -105,3 +105,31 @@ export function chronormal({ onReport, ...options } = {}) {
   };
   return Object.defineProperty(transform, 'name', { value: 'chronormal' });
 }
+
+// What of the program's options the command below has: the name, how it is written, and what it says.
+const OPTIONS = [
+  ['for', '--for <HOSTS>', 'the hosts that count, with commas between them, or all'],
+  ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be'],
+  ['encode', '--encode <HOW>', 'smallest, harmless, exact or endpoint'],
+  ['weighting', '--weighting <RULE>', 'how faces count in the normal of a vertex'],
+  ['maxTargets', '--max-targets <N>', 'the most targets that a mesh may have'],
+  ['maxBytes', '--max-bytes <N>', 'the most bytes that may be added'],
+  ['animationsOnly', '--animations-only', 'fit normals to the animations of the file alone'],
+];
+
+/**
+ * Adds the command `gltf-transform chronormal IN OUT` to the command line of glTF-Transform: what onProgramReady is in a
+ * gltf-transform.config.mjs.
+ */
+export function command({ program, io, Session }) {
+  const made = program
+    .command('chronormal', 'Write right normals for morph targets')
+    .help('Writes normals that are right while morph targets move. `npx chronormal bake --help` explains the options.')
+    .argument('<input>', 'Path to read glTF 2.0 (.glb, .gltf) model')
+    .argument('<output>', 'Path to write output');
+  for (const [, written, said] of OPTIONS) made.option(written, said);
+  made.action(({ args, options, logger }) => {
+    const given = Object.fromEntries(OPTIONS.map(([name]) => [name, options[name]]));
+    return Session.create(io, logger, args.input, args.output).transform(chronormal(given));
+  });
+}

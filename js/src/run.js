@@ -5,6 +5,11 @@ import { platform } from './platform.js';
 
 let compiled; // the module, once for all runs
 
+/** Takes a module that another thread has compiled. */
+export function useCompiled(module) {
+  compiled ??= Promise.resolve(module);
+}
+
 /**
  * Compiles the program, unless that was done before. What it takes is the most of a short run.
  * @returns {Promise<WebAssembly.Module>}
@@ -44,15 +49,17 @@ class Sink {
  *   terminals             {stdout, stderr}: which of them is a terminal
  *   stdin                 what is on standard input (Uint8Array)
  *   env                   variables of the environment
+ *   memoryLimit           the most bytes that it gets, 16 MiB at least
  * @returns {Promise<{code: number, result: any}>} the exit code, and what finish() returned
  */
-export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {} }) {
+export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {}, memoryLimit }) {
   const module = await compile();
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
   const program = await createProgram({
     require: platform.require,
     thisProgram: 'chronormal',
+    memoryLimit,
     instantiateWasm(imports, done) {
       WebAssembly.instantiate(module, imports).then(done);
       return {};

@@ -1,9 +1,11 @@
 // A thread of its own for long work: it takes tasks one by one, and says how far each is and what came of it.
+import { useCompiled } from './run.js';
 import { perform } from './task.js';
 
-/** Serves tasks on a platform. */
-export const serveTasks = ({ serve }) => serve(async ({ task, wantsProgress }, say) => {
+/** Serves tasks on a platform. Messages are {task, wantsProgress}, and the compiled module where the caller has it. */
+export const serveTasks = ({ serve }) => serve(async ({ task, wantsProgress, module }, say) => {
   try {
+    if (module) useCompiled(module);
     const done = await perform(task, wantsProgress ? (progress) => say({ progress }) : undefined);
     say({ done }, Object.values(done.files).map((bytes) => bytes.buffer));
   } catch (error) {

@@ -5,12 +5,12 @@ const FOLDER = '/work';
 const BAR = /\r([^\r[]*) \[[= ]*\]\s+(\d+) %/g;
 
 /**
- * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string}} task the command line; the files that
- *   it finds, by their names; the folder whose files are the result
+ * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string, memoryLimit?: number}} task the
+ *   command line; the files that it finds, by their names; the folder whose files are the result; the most bytes of memory
  * @param {(progress: {label: string, percent: number}) => void} [onProgress]
  * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
  */
-export async function perform({ args, files, outputs }, onProgress) {
+export async function perform({ args, files, outputs, memoryLimit }, onProgress) {
   const stdout = [], decoder = new TextDecoder();
   let stderr = '';
   const hear = (bytes) => {
@@ -48,6 +48,7 @@ export async function perform({ args, files, outputs }, onProgress) {
     stdout: (bytes) => stdout.push(bytes),
     stderr: hear,
     terminals: { stderr: onProgress !== undefined },
+    memoryLimit,
     env: { NO_COLOR: '1', COLUMNS: '80', TERM: 'xterm', HOME: '/', LANG: 'C.UTF-8' },
   });
   const whole = new Uint8Array(stdout.reduce((size, bytes) => size + bytes.length, 0));

@@ -1,8 +1,13 @@
 // Baked files in three.js: before a mesh is drawn, its extra targets get the weights that belong to what the application,
 // or a mixer, has set for the targets of the mesh itself.
-import { drive, formulasOf, markOf } from './drive.js';
+import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
-const attached = new WeakMap(); // of each mesh: what it did before it was drawn
+const attached = new WeakMap(); // of each mesh: {formulas, before, now}
+
+function formulasOfMesh(mesh) {
+  const w = mesh.morphTargetInfluences;
+  return w ? formulasOf(markOf(mesh, ({ userData }) => userData), w.length) : [];
+}
 
 /**
  * Drives all meshes of a baked file below an object, until detach(). A clone has to be attached itself: three.js does not
@@ -13,18 +18,17 @@ const attached = new WeakMap(); // of each mesh: what it did before it was drawn
 export function attach(root) {
   const meshes = [];
   root.traverse((mesh) => {
-    const w = mesh.morphTargetInfluences;
-    if (!w) return;
-    const formulas = formulasOf(markOf(mesh, ({ userData }) => userData)).filter(({ target }) => target < w.length);
+    const formulas = attached.get(mesh)?.formulas ?? formulasOfMesh(mesh);
     if (formulas.length === 0) return;
     meshes.push(mesh);
     if (attached.has(mesh)) return;
     const before = Object.hasOwn(mesh, 'onBeforeRender') ? mesh.onBeforeRender : undefined;
-    attached.set(mesh, before);
-    mesh.onBeforeRender = function (renderer, scene, camera, geometry, material, group) {
+    const now = function (renderer, scene, camera, geometry, material, group) {
       before?.call(this, renderer, scene, camera, geometry, material, group);
-      drive(formulas, this.morphTargetInfluences);
+      if (attached.get(this)?.now === now) driveBy(formulas, this.morphTargetInfluences);
     };
+    attached.set(mesh, { formulas, before, now });
+    mesh.onBeforeRender = now;
   });
   return meshes;
 }
@@ -33,11 +37,22 @@ export function attach(root) {
 export function detach(root) {
   root.traverse((mesh) => {
     if (!attached.has(mesh)) return;
-    const before = attached.get(mesh);
-    if (before) mesh.onBeforeRender = before;
-    else delete mesh.onBeforeRender;
+    const { formulas, before, now } = attached.get(mesh);
     attached.delete(mesh);
-    const mark = markOf(mesh, ({ userData }) => userData);
-    for (const { target } of formulasOf(mark)) mesh.morphTargetInfluences[target] = 0;
+    // Whoever has put a function of its own around this one since keeps it, and this one does nothing any more.
+    if (mesh.onBeforeRender === now) {
+      if (before) mesh.onBeforeRender = before;
+      else delete mesh.onBeforeRender;
+    }
+    for (const { target } of formulas) mesh.morphTargetInfluences[target] = 0;
   });
+}
+
+/**
+ * Sets the weights of extra targets below an object once, for what is not drawn itself: a mesh whose weights
+ * InstancedMesh.setMorphAt() takes.
+ * @param {import('three').Object3D} root
+ */
+export function drive(root) {
+  root.traverse((mesh) => driveBy(attached.get(mesh)?.formulas ?? formulasOfMesh(mesh), mesh.morphTargetInfluences));
 }

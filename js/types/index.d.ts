@@ -19,6 +19,8 @@ export interface CallOptions {
   onProgress?: (progress: Progress) => void;
   /** false: the work is done in this thread, which waits for it, and `signal` is only looked at before. Default: in a worker. */
   worker?: boolean;
+  /** The most bytes of memory that the program gets, 16 MiB at least. Default: 4 GiB, or what the machine gives. */
+  memoryLimit?: number;
 }
 
 export interface JudgeOptions extends CallOptions {

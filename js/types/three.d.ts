@@ -4,3 +4,5 @@ import type { Mesh, Object3D } from 'three';
 export function attach(root: Object3D): Mesh[];
 /** Leaves the meshes below an object to the application again; extra targets get the weight 0. */
 export function detach(root: Object3D): void;
+/** Sets the weights of extra targets once, before InstancedMesh.setMorphAt() takes those of a mesh. */
+export function drive(root: Object3D): void;

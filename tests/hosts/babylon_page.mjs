@@ -1,5 +1,7 @@
 // Babylon.js as a host, in the page: its loader, its animation groups, and the normals that its own glTF material
 // computes, which shows them instead of colours when asked to.
+import { Animation } from '@babylonjs/core/Animations/animation.js';
+import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
@@ -50,6 +52,24 @@ export function setWeights({ scene }, weights) {
     if (morphTargetManager)
       weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
 }
+
+// Blends an animation group for each weight.
+export function blend({ scene }, weights) {
+  weights.forEach((weight, k) => {
+    const group = new AnimationGroup(`group ${k}`, scene);
+    for (const { morphTargetManager: targets } of scene.meshes) {
+      for (let i = 0; targets && i < targets.numTargets; ++i) {
+        const value = i === k ? weight * weights.length : 0;
+        const animation = new Animation(`${k} of ${i}`, 'influence', FRAMES_PER_SECOND, Animation.ANIMATIONTYPE_FLOAT);
+        animation.setKeys([0, FRAMES_PER_SECOND].map((frame) => ({ frame, value })));
+        group.addTargetedAnimation(animation, targets.getTarget(i));
+      }
+    }
+    group.start(true);
+    group.setWeightForAllAnimatables(1 / weights.length);
+  });
+}
+
 export const drive = ({ scene }) => driveBabylon(scene);
 export const attach = ({ scene }) => live.attach(scene);
 export const detach = ({ scene }) => live.detach(scene);

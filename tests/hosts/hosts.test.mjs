@@ -19,6 +19,7 @@ import { fixtures, sequenceFrames, writeStill, writeVase } from './fixtures.mjs'
 import { bakeByFormula } from './formula.mjs';
 import { compareAnimation, compareFiles, moves, timesOf } from './judge.mjs';
 import { chronormal } from './program.mjs';
+import { randomNumbers } from './random.mjs';
 import { errorsOnly, newIO, read } from './reader.mjs';
 import { describeSequence, inOrderOf } from './sequence.mjs';
 import { stillMoments } from './still.mjs';
@@ -182,21 +183,54 @@ async function assertDrawn(page, host, input, { wrong = 5, count = 15 } = {}) {
   assert.ok(rows.filter(([before]) => before.p99 > wrong).length >= 7, shown);
 }
 
+// What a program sets two targets to.
+const WEIGHTS = [0.8, 0.6];
+
 // A mesh of some primitives that no animation moves: a program sets weights, and then those of the extra targets by what
 // the file says (examples/drive.mjs). Without the latter the normals are wrong.
 async function assertDriven(page, host, parts) {
-  const WEIGHTS = [0.8, 0.6];
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${host}.glb`));
   await writeStill(still, { parts });
   await writeStill(moved, { parts, weights: WEIGHTS });
+  await assertDrivenLike(page, host, still, moved, WEIGHTS);
+}
+
+// Also of a file whose mesh stands still at some weights.
+async function assertDrivenLike(page, host, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
   const compare = (...all) => window.compareDriven(...all);
-  const [before, attached, detached, after] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
+  const [before, attached, detached, after] = await page.evaluate(compare, host, base64, weights, moment, SIZE);
   assert.ok(before.p99 > 5, JSON.stringify(before));
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
   assert.deepEqual(detached, before);
   assert.deepEqual(after, attached);
+}
+
+// The head of Blender's monkey with two shape keys that overlap, at weights drawn from a fixed seed, without its animation.
+async function assertSuzanneDriven(page, host) {
+  const random = randomNumbers(21), weights = [random(), random()];
+  const [still, moved] = ['still', 'moved'].map((name) => join(folder, `suzanne.${name}.${host}.glb`));
+  const document = await newIO().read(join(DATA, 'rigs/blender_suzanne_two_keys.glb'));
+  document.getRoot().listAnimations().forEach((animation) => animation.dispose());
+  await newIO().write(still, document);
+  document.getRoot().listMeshes().forEach((mesh) => mesh.setWeights(weights));
+  document.getRoot().listNodes().forEach((node) => node.setWeights([]));
+  await newIO().write(moved, document);
+  await assertDrivenLike(page, host, still, moved, weights);
+}
+
+// The same where clips are blended, each of which knows nothing of the others.
+async function assertBlended(page, host) {
+  const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${host}.glb`));
+  await writeStill(still, { parts: 2 });
+  await writeStill(moved, { parts: 2, weights: WEIGHTS });
+  const [moment] = await stillMoments(moved, 0, [0]);
+  const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
+  const compare = (...all) => window.compareBlended(...all);
+  const [before, attached] = await page.evaluate(compare, host, base64, WEIGHTS, moment, SIZE);
+  assert.ok(before.p99 > 5, JSON.stringify(before));
+  assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
 }
 
 // Draws wrong beside right, at one moment of a vase, and holds it against the picture in the documents.
@@ -271,6 +305,11 @@ describe('Chromium', () => {
     for (const parts of [1, 2])
       test(`shows right normals in ${host} of ${parts} primitives whose weights a program sets`, async () =>
         assertDriven(browser.page, host, parts));
+  for (const host of ['three', 'babylon'])
+    test(`shows right normals in ${host} of Suzanne, whose weights a program sets`, { skip: NO_DATA }, async () =>
+      assertSuzanneDriven(browser.page, host));
+  for (const host of ['three', 'babylon'])
+    test(`shows right normals in ${host} of clips that are blended`, async () => assertBlended(browser.page, host));
   test('draws the wrong beside the right as docs/pictures/shading.png has it', () => assertPicture(browser.page));
 });
 

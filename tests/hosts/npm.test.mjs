@@ -4,60 +4,41 @@
 //
 // CHRONORMAL_NPM is the folder of the package. What the program makes is what is expected, byte for byte.
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { spawnSync } from 'node:child_process';
+import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import { fileURLToPath } from 'node:url';
 import { NodeIO } from '@gltf-transform/core';
+import { install } from './installed.mjs';
 
-const program = resolve(process.env.CHRONORMAL_PROGRAM);
-const folder = mkdtempSync(join(tmpdir(), 'chronormal-npm-'));
-after(() => rmSync(folder, { recursive: true, force: true }));
+const { folder, installed, remove, load, native, wasm } = install();
+after(remove);
 
-const installed = join(folder, 'node_modules/chronormal');
-mkdirSync(join(folder, 'node_modules'));
-const packed = execFileSync('npm', ['pack', '--silent', '--pack-destination', folder], { cwd: resolve(process.env.CHRONORMAL_NPM) });
-execFileSync('tar', ['-xzf', join(folder, packed.toString().trim().split('\n').at(-1)), '-C', folder]);
-cpSync(join(folder, 'package'), installed, { recursive: true });
-
-// What a project that uses glTF-Transform has installed beside it.
-symlinkSync(fileURLToPath(new URL('node_modules/@gltf-transform', import.meta.url)), join(folder, 'node_modules/@gltf-transform'));
-
-const { bake, audit, inspect, ChronormalError } = await import(pathToFileURL(join(installed, 'src/index.node.js')));
-const bin = join(installed, 'bin/chronormal.js');
-
-function both(args, options = {}) {
-  const run = (command, more) => {
-    const { status, stdout, stderr } = spawnSync(command, [...more, ...args], { cwd: folder, encoding: 'utf8', ...options });
-    return { status, stdout, stderr };
-  };
-  return { native: run(program, []), wasm: run(process.execPath, [bin]) };
-}
+const { bake, audit, inspect, ChronormalError } = await load('index.node.js');
+const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
 // A face with two targets and an animation: what convert makes of the built-in bumps, baked nowhere yet.
-const made = spawnSync(program, ['convert', '--sample', 'bumps', '-o', join(folder, 'bumps.glb')], { encoding: 'utf8' });
+const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));
 
 test('the command line says and ends as the program does', () => {
   for (const args of [['--version'], ['--help'], ['bake', '--help'], ['bkae'], ['audit', 'nowhere.glb'], ['audit', 'bumps.glb'],
                       ['audit', 'bumps.glb', '--tolerance', '0.0001'], ['bake', 'bumps.glb']]) {
-    const { native, wasm } = both(args);
-    assert.deepEqual(wasm, native, args.join(' '));
+    assert.deepEqual(wasm(args), native(args), args.join(' '));
   }
-  assert.equal(both(['inspect', '-', '--json'], { input: face }).wasm.status, 0);
+  assert.equal(wasm(['inspect', '-', '--json'], { input: face }).status, 0);
 });
 
 test('a bake, a sequence and sampled normals have the same bytes', () => {
   for (const [args, file] of [[['bake', 'bumps.glb', '--encode', 'harmless', '--json', '-o'], 'baked.glb'], [['bake', '--sample', 'twist', '-o'], 'twist.glb'],
                               [['sample', '--sample', 'cloth', '--times', '0.3', '-o'], 'n.npy']]) {
     const outputs = {};
-    for (const [name, command, more] of [['native', program, []], ['wasm', process.execPath, [bin]]]) {
-      const run = spawnSync(command, [...more, ...args, file], { cwd: folder, encoding: 'utf8' });
-      assert.equal(run.status, 0, run.stderr);
-      outputs[name] = { bytes: readFileSync(join(folder, file)), stdout: run.stdout };
+    for (const [name, run] of Object.entries({ native, wasm })) {
+      const { status, stdout, stderr } = run([...args, file]);
+      assert.equal(status, 0, stderr);
+      outputs[name] = { bytes: readFileSync(join(folder, file)), stdout };
       rmSync(join(folder, file));
     }
     assert.ok(outputs.native.bytes.equals(outputs.wasm.bytes), `${args.join(' ')}: other bytes`);
@@ -88,6 +69,28 @@ test('wrong input is refused in the words of the program, and the next call work
   assert.equal((await inspect(face)).report.command, 'inspect');
 });
 
+test('where memory runs out, that is said, and the next call works', async () => {
+  const large = new TextEncoder().encode(`{"asset": {"version": "2.0"}, "extras": "${'x'.repeat(12 << 20)}"}`);
+  for (const worker of [true, false]) {
+    await assert.rejects(inspect(large, { memoryLimit: 32 << 20, worker }), (error) => {
+      assert.ok(error instanceof ChronormalError, String(error));
+      assert.equal(error.code, 1);
+      assert.equal(error.message, 'out of memory');
+      return true;
+    });
+    for (const [input, memoryLimit] of [[large], [face, 32 << 20]]) {
+      assert.equal((await inspect(input, { memoryLimit, worker })).report.command, 'inspect');
+    }
+  }
+});
+
+test('progress is said while it goes on, up to its end', async () => {
+  const heard = [];
+  await bake(face, { encode: 'harmless', onProgress: (progress) => heard.push(progress) });
+  assert.ok(heard.length > 2, JSON.stringify(heard));
+  for (const { label, percent } of heard) assert.ok(typeof label === 'string' && percent >= 0 && percent <= 100);
+});
+
 test('a call that is cancelled ends with the reason', async () => {
   const control = new AbortController();
   const call = bake(face, { signal: control.signal });
@@ -98,7 +101,7 @@ test('a call that is cancelled ends with the reason', async () => {
 
 test('text glTF comes with the files that it names', async () => {
   writeFileSync(join(folder, 'text.gltf'), '');
-  const run = spawnSync(program, ['bake', 'bumps.glb', '--encode', 'endpoint', '--force', '-o', 'text.gltf'], { cwd: folder, encoding: 'utf8' });
+  const run = native(['bake', 'bumps.glb', '--encode', 'endpoint', '--force', '-o', 'text.gltf']);
   assert.equal(run.status, 0, run.stderr);
   const uri = JSON.parse(readFileSync(join(folder, 'text.gltf'))).buffers[0].uri;
   const resources = uri.startsWith('data:') ? {} : { [uri]: readFileSync(join(folder, uri)) };
@@ -107,7 +110,7 @@ test('text glTF comes with the files that it names', async () => {
 });
 
 test('a transform of glTF-Transform changes what a bake changes, and leaves the rest the same objects', async () => {
-  const { chronormal } = await import(pathToFileURL(join(installed, 'src/gltf-transform.js')));
+  const { chronormal } = await load('gltf-transform.js');
   const io = new NodeIO(), document = await io.readBinary(face);
   const [mesh] = document.getRoot().listMeshes(), [primitive] = mesh.listPrimitives();
   const position = primitive.getAttribute('POSITION'), targets = primitive.listTargets().length;
@@ -124,11 +127,43 @@ test('a transform of glTF-Transform changes what a bake changes, and leaves the 
   assert.ok(baked.report.mean_degrees < 0.01 * (await audit(face)).report.mean_degrees);
 });
 
+test('the command of the README works in the command line of glTF-Transform', async () => {
+  const [, config] = readme.match(/```js\n([^`]*onProgramReady[^`]*)```/);
+  writeFileSync(join(folder, 'gltf-transform.config.mjs'), config);
+  const [, words] = readme.match(/^    gltf-transform (chronormal .*)$/m);
+  const cli = fileURLToPath(new URL('node_modules/@gltf-transform/cli/bin/cli.js', import.meta.url));
+  const args = words.replaceAll('face', 'bumps').split(' ');
+  const run = (words) => spawnSync(process.execPath, [cli, ...words], { cwd: folder, encoding: 'utf8' });
+  const { status, stdout, stderr } = run(args);
+  assert.equal(status, 0, stdout + stderr);
+  const before = await audit(face, { host: ['three'] }), after = await audit(readFileSync(join(folder, 'bumps.right.glb')), { host: ['three'] });
+  assert.ok(after.report.mean_degrees < 0.5 * before.report.mean_degrees, `${after.report.mean_degrees}`);
+  const wrong = run(args.map((word) => (word === 'three,godot' ? 'four' : word)));
+  assert.notEqual(wrong.status, 0);
+  assert.match(wrong.stdout + wrong.stderr, /four/);
+});
+
+test('paths of Windows are those of the program', async () => {
+  const { fromWindows } = await load('paths.js');
+  const cwd = 'd:\\work';
+  for (const [word, expected] of [
+    ['C:\\models\\face.glb', '/C:/models/face.glb'], ['c:/models/face.glb', '/C:/models/face.glb'], ['C:\\', '/C:/'],
+    ['models\\face.glb', 'models/face.glb'], ['..\\face.glb', '../face.glb'], ['\\models\\face.glb', '/D:/models/face.glb'],
+    ['face.glb', 'face.glb'], ['--json', '--json'], ['-', '-'], ['/dev/stdin', '/dev/stdin'], ['--for=three,godot', '--for=three,godot'],
+    ['--drivers=C:\\out\\d.json', '--drivers=/C:/out/d.json'], ['D:\\Grüße\\a b.glb', '/D:/Grüße/a b.glb'], ['C:face.glb', 'C:face.glb'],
+    [cwd, '/D:/work'],
+  ]) assert.equal(fromWindows(word, cwd), expected, word);
+});
+
 test('the types are right', () => {
   writeFileSync(join(folder, 'user.mts'), `
 import { audit, bake, ChronormalError, type Baked } from 'chronormal';
-import { chronormal } from 'chronormal/gltf-transform';
+import { chronormal, command } from 'chronormal/gltf-transform';
+import { attach as attachBabylon, detach as detachBabylon } from 'chronormal/babylon';
+import { attach, detach, drive } from 'chronormal/three';
+import type { AbstractMesh, Scene } from '@babylonjs/core';
 import type { Document } from '@gltf-transform/core';
+import type { Mesh, Object3D } from 'three';
 
 export async function use(input: Uint8Array, document: Document): Promise<number> {
   const { bytes, report, within }: Baked = await bake(input, {
@@ -140,6 +175,17 @@ export async function use(input: Uint8Array, document: Document): Promise<number
   await bake(input, { for: ['four'] });
   return within ? report.schema : bytes.length;
 }
+
+export function live(root: Object3D, scene: Scene): number {
+  const meshes: Mesh[] = attach(root), others: AbstractMesh[] = attachBabylon(scene);
+  drive(root);
+  detach(root);
+  detachBabylon(scene);
+  // @ts-expect-error: a scene of Babylon.js is none of three.js
+  attach(scene);
+  return meshes.length + others.length;
+}
+export default { onProgramReady: command };
 `);
   const tsc = fileURLToPath(new URL('node_modules/typescript/bin/tsc', import.meta.url));
   const options = ['--noEmit', '--strict', '--target', 'es2022', '--module', 'nodenext', '--skipLibCheck', 'user.mts'];

@@ -72,6 +72,22 @@ window.compareDriven = async (host, file, weights, { truth, view }, size) => {
   return results;
 };
 
+// The same while clips are blended, whose sum the weights are: in three.js of a clone, whose mixer does so.
+window.compareBlended = async (host, file, weights, { truth, view }, size) => {
+  const { play, drawNormals, blend, attach, dispose } = hosts[host];
+  const [still, model] = [await loaded(host, truth), await loaded(host, file)];
+  play(still, null, 0);
+  const expected = await drawNormals(still, view, size);
+  blend(model, weights);
+  const results = [];
+  for (const step of [() => {}, () => attach(model)]) {
+    step();
+    results.push(compareNormals(await drawNormals(model, view, size), expected, size));
+  }
+  [still, model].forEach(dispose);
+  return results;
+};
+
 window.drawPicture = (host, items, ...others) =>
   drawPicture(host, items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
 

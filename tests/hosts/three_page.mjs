@@ -36,6 +36,24 @@ export function play(model, animation, time) {
 export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
+
+// Puts a clone in its place, whose mixer blends a clip for each weight.
+export function blend({ scene }, weights) {
+  const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
+  scene.remove(original);
+  scene.add(copy);
+  weights.forEach((weight, k) => {
+    const tracks = [];
+    copy.traverse(({ name, morphTargetInfluences: w }) => {
+      if (!w) return;
+      const values = w.map((_, i) => (i === k ? weight * weights.length : 0));
+      tracks.push(new THREE.NumberKeyframeTrack(`${name}.morphTargetInfluences`, [0], values));
+    });
+    mixer.clipAction(new THREE.AnimationClip(`clip ${k}`, 1, tracks)).setEffectiveWeight(1 / weights.length).play();
+  });
+  mixer.update(0.1);
+}
+
 export const drive = ({ scene }) => driveThree(scene);
 export const attach = ({ scene }) => live.attach(scene);
 export const detach = ({ scene }) => live.detach(scene);

@@ -113,7 +113,7 @@ class NormalCurves {
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
   /// How many elements are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Memory that is kept, in bytes, but for what fills up the last block, and what is kept for the next `reuse`.
+  /// Memory that is kept, in bytes (8 an index), but for what fills up the last block, or the next `reuse` needs.
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// How many elements are kept in blocks of each number of bytes.
   struct ByteCount {

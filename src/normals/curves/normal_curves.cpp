@@ -323,10 +323,13 @@ std::size_t NormalCurves::bytes() const noexcept {
   const CurveData& curves = data();
   const std::size_t filling = curves.runs.empty() ? 0 : (kTile - curves.size % kTile) % kTile;
   const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(curves.runs.back().kind);
-  return curves.blocks.size() - unused + curves.runs.size() * sizeof(CurveData::Run) +
-         curves.exponents.size() * sizeof(std::int16_t) +
-         curves.flagged.size() * (sizeof(std::size_t) + sizeof(FlaggedNormals)) +
-         curves.exact.size() * sizeof(CurveData::ExactElement) + curves.exact_digits.size() * sizeof(std::int32_t);
+  // Indices count as 8 bytes on every machine, so that reports are the same on those of 32 bits.
+  constexpr std::size_t kIndex = 8, kRun = 4 * kIndex, kExact = 2 * kIndex;
+  static_assert(sizeof(std::size_t) != kIndex ||
+                (sizeof(CurveData::Run) == kRun && sizeof(CurveData::ExactElement) == kExact));
+  return curves.blocks.size() - unused + curves.runs.size() * kRun + curves.exponents.size() * sizeof(std::int16_t) +
+         curves.flagged.size() * (kIndex + sizeof(FlaggedNormals)) + curves.exact.size() * kExact +
+         curves.exact_digits.size() * sizeof(std::int32_t);
 }
 
 std::vector<NormalCurves::ByteCount> NormalCurves::byte_counts() const {

@@ -1,0 +1,16 @@
+// Paths of Windows in the file system of the program, which has one root: drives are folders in it.
+
+const ROOT = /^[A-Za-z]:(?=\\|\/|$)/;
+
+/**
+ * A path of Windows, or a word of the command line that may be one or have one after `=`, as the program reads it:
+ * C:\models\face.glb is /C:/models/face.glb, and \models\face.glb is on the drive of the folder cwd.
+ */
+export function fromWindows(word, cwd) {
+  const [option] = word.match(/^--[a-z-]+=/) ?? [''];
+  const path = word.slice(option.length).replaceAll('\\', '/');
+  const drive = (of) => of.match(ROOT)?.[0].toUpperCase();
+  if (drive(path)) return `${option}/${drive(path)}${path.slice(2)}`;
+  if (/^\/(?!\/)/.test(path) && path !== '/dev/stdin' && drive(cwd)) return `${option}/${drive(cwd)}${path}`;
+  return option + path;
+}
