@@ -75,9 +75,9 @@ std::from_chars_result from_chars(const char* first, const char* last, double& v
 std::to_chars_result to_chars(char* first, char* last, float value) { return shortest(first, last, value); }
 std::to_chars_result to_chars(char* first, char* last, double value) { return shortest(first, last, value); }
 std::to_chars_result to_chars(char* first, char* last, double value, std::chars_format format, int precision) {
-  const bool is_fixed = format == std::chars_format::fixed;
-  return put(first, last,
-             is_fixed ? fmt::format("{:.{}f}", value, precision) : fmt::format("{:.{}e}", value, precision));
+  if (format == std::chars_format::fixed) return put(first, last, fmt::format("{:.{}f}", value, precision));
+  if (format == std::chars_format::general) return put(first, last, fmt::format("{:.{}g}", value, precision));
+  return put(first, last, fmt::format("{:.{}e}", value, precision));
 }
 
 }  // namespace chronormal::inline internal

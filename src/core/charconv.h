@@ -20,7 +20,7 @@ using std::to_chars;
 /// The fewest digits that read back as the same number, in the shorter of both notations.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, float value);
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value);
-/// So many digits after the point. Formats: fixed and scientific.
+/// So many digits after the point, or in the general format so many significant ones.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value, std::chars_format format,
                                             int precision);
 #endif

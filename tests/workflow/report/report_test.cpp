@@ -75,13 +75,14 @@ test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) {
   return builder;
 }
 
-// A box whose six sides are quads, with normals of its sides, so that each of its vertices has three.
+// A box whose six sides are quads, with normals of its sides, so that each of its vertices has three. Its upper side turns,
+// and one corner of it rises, so that no two vertices do the same.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
     const double x = (i & 1) - 0.5, y = (i >> 1 & 1) - 0.5, z = (i >> 2 & 1) - 0.5, a = z > 0 ? twist : 0;
     text += "v " + std::to_string(x * std::cos(a) - y * std::sin(a)) + ' ' +
-            std::to_string(x * std::sin(a) + y * std::cos(a)) + ' ' + std::to_string(z) + '\n';
+            std::to_string(x * std::sin(a) + y * std::cos(a)) + ' ' + std::to_string(i == 7 ? z + 0.3 * a : z) + '\n';
   }
   for (const char* normal : {"0 0 -1", "0 0 1", "0 -1 0", "0 1 0", "-1 0 0", "1 0 0"})
     text += std::string("vn ") + normal + '\n';
