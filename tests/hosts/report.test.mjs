@@ -86,6 +86,20 @@ test('every scheme of the page has the numbers of compare', () => {
   assert.ok(found >= 6, `${found} schemes`);
 });
 
+test('every host of the page has the number of the audit', () => {
+  chronormal('report', path('bumps.glb'), '--no-plan', '--host', 'all', '--force', '-q', '-o', path('hosts.bin'));
+  const player = makePlayer(readContainer(readFileSync(path('hosts.bin'))), () => {});
+  const { hosts } = JSON.parse(chronormal('audit', path('bumps.glb'), '--host', 'all', '--json', '-q'));
+  for (const { name, worst_degrees: worst } of hosts) {
+    player.host = name;
+    let most = 0;
+    walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
+    assert.equal(player.host, name);
+    assert.ok(Math.abs(most - worst) < NEAR, `${name}: ${most}, not ${worst}`);
+  }
+  assert.equal(hosts.length, 9);
+});
+
 describe('in Chromium', () => {
   let pages;
   before(async () => (pages = await openPages()));
