@@ -158,8 +158,9 @@ describe('in Chromium', () => {
   for (const name of FULL ? files : []) {
     test(`a report of ${name} shows the number of the audit`, async () => {
       const file = join(DATA, name), { worst_degrees: worst, judged } = audited(file);
+      if (judged === 0) return assert.throws(() => pageOf(basename(name), file), /nothing to show/);
       await pages.show(pageOf(basename(name), file));
-      if (judged > 0 && worst > 0) assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
+      if (worst > 0) assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
       assert.deepEqual(pages.faults, []);
     });
   }
