@@ -92,20 +92,26 @@ async function read(file, bytes) {
   }
 }
 
-async function add(list) {
-  say();
-  for (const input of inputsOf(list)) {
-    const bytes = {};
-    for (const file of input.files) {
-      const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? faultOf(file.name, file.size, bytes[file.name]);
-      if (fault) {
-        say(fault);
-        break;
-      }
-    }
-    if (!message.hidden) continue;
-    await open({ name: input.name, args: input.args, bytes });
+// Reads the files of an input; returns why they cannot be used, or undefined. What lies beside a .gltf may be anything.
+async function load({ args, files }, bytes) {
+  for (const file of files) {
+    const isInput = args.includes(file.name);
+    const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? (isInput ? faultOf(file.name, file.size, bytes[file.name]) : undefined);
+    if (fault) return fault;
   }
+  return undefined;
+}
+
+async function add(list) {
+  if (abort) return say('The page is still at work: wait until it is done, or cancel it.');
+  say();
+  const faults = [];
+  for (const input of inputsOf(list)) {
+    const bytes = {}, fault = await load(input, bytes);
+    if (fault) faults.push(fault);
+    else await open({ name: input.name, args: input.args, bytes });
+  }
+  if (faults.length > 0) say(faults.join(' '));
 }
 
 async function open(input) {

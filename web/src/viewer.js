@@ -83,9 +83,8 @@ export function makeViewer(root, report) {
     view.request();
   }
   function setLayout(layout) {
-    view.layout = layout;
+    view.setLayout(layout);
     layouts.choose(layout);
-    view.frame(true);
   }
   // Where most of the errors are seen: what 99 percent are below, or else the worst.
   function setScale() {
