@@ -51,7 +51,8 @@ void main() {
   bool hasNone = dot(vNormal, vNormal) < 1e-8;
   bool isJudged = vDegrees > -0.5;
   vec3 n = hasNone ? face : normalize(vNormal);
-  if (!gl_FrontFacing && !hasNone) n = -n;
+  // Behind a silhouette, a face may look away while its normals hardly do; those are as beside it.
+  if (!gl_FrontFacing && !hasNone && dot(n, eye) < -0.4) n = -n;
   if (mode == ${ERROR}) {
     float depth = 0.72 + 0.28 * max(dot(face, eye), 0.0);
     gl_FragColor = vec4((isJudged ? colourOf(vDegrees / scale) : vec3(0.5)) * depth, 1.0);
