@@ -100,6 +100,20 @@ test('every host of the page has the number of the audit', () => {
   assert.equal(hosts.length, 9);
 });
 
+test('weights that are set by hand drive the extra targets of a baked file', () => {
+  const player = makePlayer(dataOf('bumps', path('bumps.glb')), () => {});
+  const setAll = (one) => [0, 1, 2].forEach((k) => one.setWeight(k, 0.4 + 0.2 * k));
+  player.choosePart(0);
+  setAll(player);
+  const before = player.surface.degrees[player.worst];
+  chronormal('bake', path('bumps.glb'), '--encode', 'exact', '--force', '-q', '-o', path('exact.glb'));
+  const baked = makePlayer(dataOf('exact', path('exact.glb')), () => {});
+  baked.choosePart(0);
+  setAll(baked);
+  assert.ok(baked.formulas.length > 0 && before > 1, `${baked.formulas.length} extra targets, ${before} degrees before`);
+  assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
+});
+
 describe('in Chromium', () => {
   let pages;
   before(async () => (pages = await openPages()));
