@@ -46,9 +46,12 @@ export function choosers(report, player) {
   return { box, fill };
 }
 
+/** The worst places that are off by more than next to nothing, worst first. */
+export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees >= 0.0005);
+
 /** The worst places, each of which can be visited. */
 export function worstPlaces(report, onVisit) {
-  const places = report.worst.filter(({ degrees }) => degrees > 0);
+  const places = shownPlaces(report);
   if (places.length === 0) return null;
   // What all of them are in need not be said.
   const pieces = places.map(({ label }) => label.split(', '));

@@ -1,7 +1,7 @@
 // A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
-import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, verdict, weightSliders, worstPlaces } from './panels.js';
+import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
 import { worstSample } from './motions.js';
 import { makePlayer } from './player.js';
 import { makePlot } from './plot.js';
@@ -50,7 +50,7 @@ export function makeViewer(root, report) {
   const chooser = choosers(report, player);
   const weights = report.kind === 'gltf' ? weightSliders(player) : null;
   const places = worstPlaces(report, visit);
-  const previous = () => visit(visited <= 0 ? report.worst.length - 1 : visited - 1), next = () => visit((visited + 1) % report.worst.length);
+  const stops = shownPlaces(report).length, next = () => visit((visited + 1) % stops), previous = () => visit((visited <= 0 ? stops : visited) - 1);
   const help = h('dialog', { className: 'help' }, h('h2', {}, 'Keys'),
     h('dl', {}, KEYS.map(([key, what]) => [h('dt', {}, key), h('dd', {}, what)])),
     h('p', {}, 'Drag to turn, pinch or scroll to come nearer, two fingers or the right button to move. What is under the pointer is named with its error.'),
@@ -143,7 +143,7 @@ export function makeViewer(root, report) {
     if (!plotBox.hidden) plot.show(motion, motion.schemes?.find(({ name }) => name === player.scheme) ?? motion);
   }
   function visit(i) {
-    if (!report.worst.length) return;
+    if (stops === 0) return;
     visited = i;
     const vertex = player.visit(report.worst[i]);
     places?.querySelectorAll('button').forEach((button, n) => button.setAttribute('aria-current', String(n === i)));
