@@ -119,7 +119,23 @@ TEST_F(ReportCli, a_file_without_targets_is_refused_with_what_to_do) {
   test::ShadedMesh still = test::hinge();
   still.targets.clear();
   folder_.write("still.glb", still.file().glb());
-  expect_error(run("still.glb -o still.bin"), 3, "no morph target");
+  expect_error(run("still.glb -o still.bin"), 3,
+               "no morph target of it moves anything that has normals, so there is nothing to show");
+}
+
+TEST_F(ReportCli, keyframes_that_do_not_move_are_refused) {
+  folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_error(run("a.obj a.obj -o still.bin"), 3,
+               "nothing in it moves that could be judged, so there is nothing to show");
+}
+
+TEST_F(ReportCli, a_mesh_whose_normals_stay_right_has_no_worst_places) {
+  folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder_.write("b.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+  const ProcessResult result = run("a.obj b.obj -o slide.bin");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("no normal is off by more than 0.001 degrees\n"), std::string::npos) << result.out;
+  EXPECT_EQ(test::ReportFile(bytes("slide.bin")).json["worst"], Json::array());
 }
 
 TEST_F(ReportCli, sequence_says_which_of_its_vertices_are_worst) {
