@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -142,19 +141,6 @@ TEST_F(ReportCli, sequence_says_which_of_its_vertices_are_worst) {
   const ProcessResult result = run("--sample twist -o twist.bin");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("vertex 7601  0.5 s    39.12"), std::string::npos) << result.out;
-}
-
-TEST_F(ReportCli, captured_face_fits_into_a_page) {
-  const char* const data = std::getenv("CHRONORMAL_DATA");
-  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
-  const ProcessResult result = run(std::string(data) +
-                                   "/rigs/ict_capture.glb -o face.html --template page.html "
-                                   "--no-plan --samples 2 --animation 0 --json");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json json = Json::parse(result.out);
-  EXPECT_LT(json["output"]["bytes"], 14000000);
-  EXPECT_EQ(json["thinned"], Json::array());
-  EXPECT_EQ(json["parts"][0]["vertices"], 26719);
 }
 
 }  // namespace
