@@ -34,9 +34,10 @@ const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll(
 const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
 
 // Whose work is inside: the licences of libraries, in a comment at the end of the page.
-const packageOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
+const licenceOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
 function licences(more = {}) {
-  const texts = { chronormal: readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8'), three: packageOf('three'), uPlot: packageOf('uplot'), ...more };
+  const own = readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8');
+  const texts = { chronormal: own, three: licenceOf('three'), uPlot: licenceOf('uplot'), ...more };
   const whole = Object.entries(texts).map(([name, text]) => `${name}\n\n${text.trim()}`).join('\n\n\n');
   return `<!--\n${whole.replaceAll('--', '- -')}\n-->\n`;
 }
@@ -50,7 +51,9 @@ async function reportPage() {
 async function enginePage(folder) {
   const wasm = gzipSync(readFileSync(join(folder, 'wasm/program.wasm')), { level: 9 });
   const program = { name: 'program', setup: (made) => made.onResolve({ filter: /wasm\/program\.js$/ }, () => ({ path: join(resolve(folder), 'wasm/program.js') })) };
-  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define: { 'import.meta.url': '"file:///engine/src/run.js"' } });
+  // run.js names the module beside it, which the page hands over instead.
+  const define = { 'import.meta.url': '"file:///engine/src/run.js"' };
+  const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define });
   const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });
   return filled(readFileSync(source('page.html'), 'utf8'), {
     '/*style*/': styles(),

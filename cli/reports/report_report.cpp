@@ -26,7 +26,7 @@ std::string parts_table(const Report& report) {
 }
 
 std::string places_table(const Report& report) {
-  if (report.worst.empty()) return "every normal is right\n";
+  if (report.worst.empty()) return formatted("no normal is off by more than {} degrees\n", kLeastPlace);
   Table table;
   table.add_column("worst place", "", Align::kLeft);
   table.add_column("at", "", Align::kLeft);

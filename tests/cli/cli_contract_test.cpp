@@ -17,6 +17,7 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/shaded_mesh.h"
 
 namespace chronormal::cli_contract_test {
 namespace {
@@ -215,7 +216,6 @@ const std::map<std::string, std::string> kUses = {
     {"--max-expansion", "a.obj b.obj --max-expansion 5"},
     {"--max-targets", "face.glb --max-targets 9"},
     {"--no-audit", "face.glb --no-audit"},
-    {"--no-plan", "face.glb --no-plan"},
     {"--no-times", "a.obj b.obj --no-times"},
     {"--no-weld", "a.obj b.obj --no-weld"},
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
@@ -224,6 +224,10 @@ const std::map<std::string, std::string> kUses = {
     {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},
     {"--recompute-base", "face.glb --recompute-base"},
+    {"report --allow-external", "shaded.glb --allow-external"},
+    {"report --animation", "shaded.glb --animation 0"},
+    {"report --host", "shaded.glb --host three"},
+    {"report --no-plan", "shaded.glb --no-plan"},
     {"--rule", "a.obj b.obj --rule slerp"},
     {"--sample", "--sample twist"},
     {"--samples", "a.obj b.obj --samples 3"},
@@ -258,6 +262,9 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
   test::GltfBuilder face = test::quad_document();
   face.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   write("face.glb", face.glb());
+  test::GltfBuilder shaded = test::hinge().file();
+  shaded.add_track(shaded.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  write("shaded.glb", shaded.glb());
   write("poses.json", "[[1, 1]]");
   write("page.html", "<!--chronormal-data-->");
   std::set<std::string> all;

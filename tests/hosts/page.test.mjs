@@ -100,6 +100,11 @@ test('what cannot be used gets a message that says what to do, and the page goes
   await drop(path('rest.glb'));
   assert.match(await said(), /no shape keys \(morph targets\).*in Blender/s);
 
+  await drop(path('face.png'), path('bumps.glb'));
+  await page.waitForSelector('.message:not([hidden])', WAIT);
+  assert.match(await said(), /is a picture/);
+  assert.equal(await page.$eval('.top .file', (name) => name.textContent || document.querySelector('.file-choice').selectedOptions[0].textContent), 'bumps.glb');
+
   await drop(path('bumps.glb'));
   assert.equal(await said(), '');
 });
@@ -118,6 +123,7 @@ for (const name of FULL ? files : []) {
   test(`${name}, dropped, shows the number of the audit`, async () => {
     const file = join(DATA, name), { worst_degrees: worst, judged } = audited(file);
     await drop(file);
-    if (judged > 0 && worst > 0) assert.ok(Math.abs((await clickWorst(page)).degrees - worst) < NEAR, `${basename(name)}: ${worst}`);
+    if (judged === 0) return assert.match(await said(), /nothing to mend/);
+    if (worst > 0) assert.ok(Math.abs((await clickWorst(page)).degrees - worst) < NEAR, `${basename(name)}: ${worst}`);
   });
 }

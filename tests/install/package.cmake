@@ -28,6 +28,10 @@ foreach(file lib/libchronormal.a lib/libchronormal_c.so.0 lib/pkgconfig/chronorm
     message(FATAL_ERROR "the package has no ${file}")
   endif()
 endforeach()
+# The page of reports is made by npm, so that it may be missing; where it was made, it is packed, and found.
+if(EXISTS ${BUILD}/../share/chronormal/report.html)
+  run(said ${FOLDER}/root/usr/bin/chronormal report --sample twist -o twist.html)
+endif()
 run(said ${FOLDER}/root/usr/bin/chronormal sample --sample twist --times 0.5 -o normals.npy)
 file(SIZE ${FOLDER}/normals.npy bytes)
 if(bytes LESS 1000)

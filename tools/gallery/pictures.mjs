@@ -48,7 +48,9 @@ function drawPicture({ from, near, at, scale }) {
     ink.font = '14px "DejaVu Sans", "Liberation Sans", sans-serif';
     ink.fillText(texts[i], i * WIDTH + 8, 18);
   });
-  return { picture: sheet.toDataURL('image/jpeg', 0.88), mean: motion.mean[best], worst: motion.worst[best], at: motion.at[best], most: worstOf([motion]), alone: worstOf(player.part.motions.filter(({ kind }) => kind === 'target')) };
+  const alone = worstOf(player.part.motions.filter(({ kind }) => kind === 'target'));
+  const numbers = { mean: motion.mean[best], worst: motion.worst[best], at: motion.at[best], most: worstOf([motion]), alone };
+  return { picture: sheet.toDataURL('image/jpeg', 0.88), ...numbers };
 }
 
 const out = process.argv[2], folder = mkdtempSync(join(tmpdir(), 'chronormal-gallery-')), pages = await openPages(), { page } = pages;

@@ -22,8 +22,9 @@ export function makeBakePanel(input, { plan, bake }) {
     return h('label', { className: 'tick' }, box, title);
   });
   const number = (title, name, placeholder, unit) =>
-    h('label', { className: 'field wide' }, h('span', {}, title), h('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal', name, placeholder, value: chosen[name],
-      oninput: ({ target }) => (chosen[name] = target.value) }), h('span', {}, unit));
+    h('label', { className: 'field wide' }, h('span', {}, title),
+      h('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal', name, placeholder, value: chosen[name], oninput: ({ target }) => (chosen[name] = target.value) }),
+      h('span', {}, unit));
   const isGltf = input.came.kind === 'gltf';
   const planned = input.plan && choiceTable({ plan: input.plan.plan });
   if (planned) planned.open = true;

@@ -33,8 +33,9 @@ const EXPORT = 'Export the model from your 3D program as glTF 2.0 (.glb), with i
 export function faultOf(name, size, bytes) {
   const megabytes = Math.round(size / 1e6).toLocaleString('en');
   if (size > MOST) {
-    return `“${name}” has ${megabytes} MB, and this page takes files of up to ${Math.round(MOST / 1e6)} MB, since the browser has to hold several copies in memory. ` +
-      'Export the moving mesh alone, without its textures, or use the chronormal program on your computer, which has no such limit.';
+    return `“${name}” has ${megabytes} MB, and this page takes files of up to ${Math.round(MOST / 1e6)} MB, since the browser has to hold ` +
+      'several copies in memory. Export the moving mesh alone, without its textures, or use the chronormal program on your computer, which has ' +
+      'no such limit.';
   }
   if (size === 0) return `“${name}” is empty. ${EXPORT}`;
   if (!bytes) return undefined;

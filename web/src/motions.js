@@ -43,7 +43,10 @@ export function segmentAt({ segment, t }, at) {
 export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (value > worst[best] || !(worst[best] >= 0) ? i : best), 0);
 
 /** A sample for people: "jawOpen at 0.55", "talk at 1.25 s". */
-export const momentOf = (motion, sample) => `${motion.name ? `${motion.name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
+export function momentOf(motion, sample) {
+  const name = motion.name || (motion.kind === 'target' ? `target ${motion.target}` : '');
+  return `${name ? `${name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
+}
 
 /** What a motion is called, for people. */
 export function nameOf(motion) {

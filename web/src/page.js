@@ -66,12 +66,14 @@ async function during(title, step) {
   }
 }
 
+const TOO_LARGE = 'The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.';
+const UNUSABLE = 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.';
+
 function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);
-  if (/memory/i.test(error.message)) return say('The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.', error.message);
+  if (/memory/i.test(error.message)) return say(TOO_LARGE, error.message);
   if (/nothing to show/.test(error.message)) return say(NOTHING_MOVES, error.message);
-  const text = error.code === 3 ? 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.' : 'The program could not do this.';
-  say(text, error.message);
+  say(error.code === 3 ? UNUSABLE : 'The program could not do this.', error.message);
 }
 
 async function reportOf(call, { args, bytes }) {
@@ -90,20 +92,26 @@ async function read(file, bytes) {
   }
 }
 
-async function add(list) {
-  say();
-  for (const input of inputsOf(list)) {
-    const bytes = {};
-    for (const file of input.files) {
-      const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? faultOf(file.name, file.size, bytes[file.name]);
-      if (fault) {
-        say(fault);
-        break;
-      }
-    }
-    if (!message.hidden) continue;
-    await open({ name: input.name, args: input.args, bytes });
+// Reads the files of an input; returns why they cannot be used, or undefined. What lies beside a .gltf may be anything.
+async function load({ args, files }, bytes) {
+  for (const file of files) {
+    const isInput = args.includes(file.name);
+    const fault = faultOf(file.name, file.size) ?? (await read(file, bytes)) ?? (isInput ? faultOf(file.name, file.size, bytes[file.name]) : undefined);
+    if (fault) return fault;
   }
+  return undefined;
+}
+
+async function add(list) {
+  if (abort) return say('The page is still at work: wait until it is done, or cancel it.');
+  say();
+  const faults = [];
+  for (const input of inputsOf(list)) {
+    const bytes = {}, fault = await load(input, bytes);
+    if (fault) faults.push(fault);
+    else await open({ name: input.name, args: input.args, bytes });
+  }
+  if (faults.length > 0) say(faults.join(' '));
 }
 
 async function open(input) {
@@ -163,7 +171,8 @@ async function make(input) {
   if (!found) return;
   input.baked = found;
   show(input, 'baked');
-  if (found.warnings) remark(found.within ? 'The file is baked, and there is something to know about it.' : 'The file is baked, but nothing within these limits is as right as you asked for.', found.warnings);
+  const text = found.within ? 'The file is baked, and there is something to know about it.' : 'The file is baked, but nothing within these limits is as right as you asked for.';
+  if (found.warnings) remark(text, found.warnings);
 }
 
 function save() {
@@ -176,16 +185,20 @@ function save() {
 
 work.append(h('section', { className: 'welcome' },
   h('h2', {}, 'Are the normals of your model right while it moves?'),
-  h('p', {}, 'Drop a .glb here, or several. You see your model as it is shown beside as it should be, how many degrees it is off and where, and take a baked file home, with nothing changed but its normals.'),
+  h('p', {}, 'Drop a .glb here, or several. You see your model as it is shown beside as it should be, how many degrees it is off and where, ' +
+    'and take a baked file home, with nothing changed but its normals.'),
   h('p', {}, h('button', { type: 'button', className: 'primary', onclick: () => picker.click() }, 'Choose files'), ' ',
     h('button', { type: 'button', className: 'plain', onclick: example }, 'Show me an example')),
   h('p', { className: 'note' }, 'GLB, VRM, glTF with its .bin; keyframes as OBJ or PLY; a mesh with a .pc2, .mdd, .npy or Maya cache.'),
   h('p', { className: 'note' }, 'Nothing is sent anywhere: the whole program is in this page, and it works without a network.')));
 
-for (const [name, act] of [['dragover', () => document.body.classList.add('dropping')], ['dragleave', () => document.body.classList.remove('dropping')], ['drop', ({ dataTransfer }) => {
-  document.body.classList.remove('dropping');
-  add(dataTransfer.files);
-}]]) addEventListener(name, (event) => (event.preventDefault(), act(event)));
+for (const name of ['dragover', 'dragleave', 'drop']) {
+  addEventListener(name, (event) => {
+    event.preventDefault();
+    document.body.classList.toggle('dropping', name === 'dragover');
+    if (name === 'drop') add(event.dataTransfer.files);
+  });
+}
 
 addEventListener('keydown', (event) => {
   if (viewer?.key(event)) event.preventDefault();

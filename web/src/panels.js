@@ -46,15 +46,22 @@ export function choosers(report, player) {
   return { box, fill };
 }
 
+/** The worst places that are off by more than next to nothing, worst first. */
+export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees >= 0.0005);
+
 /** The worst places, each of which can be visited. */
 export function worstPlaces(report, onVisit) {
-  const places = report.worst.filter(({ degrees }) => degrees > 0);
+  const places = shownPlaces(report);
   if (places.length === 0) return null;
   // What all of them are in need not be said.
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
-  const list = h('ol', { className: 'places' }, places.map((place, i) => h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) },
-    h('b', {}, degreesText(place.degrees)), h('span', { title: place.label }, pieces[i].slice(same).join(', '), h('small', {}, momentOf(report.parts[place.part].motions[place.motion], place.sample)))))));
+  const item = ({ part, motion, sample, degrees, label }, i) => {
+    const moment = h('small', {}, momentOf(report.parts[part].motions[motion], sample));
+    const place = h('span', { title: label }, pieces[i].slice(same).join(', '), moment);
+    return h('li', {}, h('button', { type: 'button', onclick: () => onVisit(i) }, h('b', {}, degreesText(degrees)), place));
+  };
+  const list = h('ol', { className: 'places' }, places.map(item));
   return panel(`Worst places (${places.length})`, true, list);
 }
 
@@ -70,7 +77,8 @@ export function weightSliders(player) {
       const own = player.part.targets.flatMap(({ name, extra }, k) => (extra ? [] : [{ k, name: name || `target ${k}` }]));
       const extras = player.part.targets.length - own.length;
       rows = own.map(({ k, name }) => {
-        const number = h('output', {}, '0'), slider = h('input', { type: 'range', min: 0, max: 1, step: 0.01, 'aria-label': name, oninput: () => player.setWeight(k, Number(slider.value)) });
+        const number = h('output', {}, '0'), oninput = () => player.setWeight(k, Number(slider.value));
+        const slider = h('input', { type: 'range', min: 0, max: 1, step: 0.01, 'aria-label': name, oninput });
         return { k, slider, number, row: h('label', {}, h('span', { title: name }, name), slider, number) };
       });
       list.replaceChildren(...rows.map(({ row }) => row));
@@ -94,7 +102,8 @@ export function weightSliders(player) {
 /** What each host shows of the file, the whole audit in a row. */
 export function hostTable({ audit }) {
   if (!audit?.hosts?.length) return null;
-  const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) => ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
+  const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) =>
+    ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
   const rows = [row('glTF to the letter', audit), ...audit.hosts.map((host) => row(host.title, host))];
   return panel('What hosts show', false, table('Errors in each host', ['host', 'mean ', '99.9 % below ', 'worst '], rows));
 }

@@ -28,7 +28,8 @@ export function logo() {
   svg.setAttribute('class', 'mark');
   for (const [d, colour] of [['M2 16 Q10 8 18 16', 'currentColor'], ['M10 12 L10 3 M6.8 6 L10 2.8 L13.2 6', 'var(--accent)']]) {
     const path = document.createElementNS(space, 'path');
-    for (const [name, value] of Object.entries({ d, fill: 'none', stroke: colour, 'stroke-width': '2', 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })) path.setAttribute(name, value);
+    const line = { d, fill: 'none', stroke: colour, 'stroke-width': '2', 'stroke-linecap': 'round', 'stroke-linejoin': 'round' };
+    for (const [name, value] of Object.entries(line)) path.setAttribute(name, value);
     svg.append(path);
   }
   return svg;

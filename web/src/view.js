@@ -228,6 +228,14 @@ export function makeView(stage, onPoint) {
     request();
   };
 
+  /** "side" or "wipe"; the camera comes nearer or goes away, so that as much is seen as before. */
+  view.setLayout = (layout) => {
+    const before = distanceOf(1);
+    view.layout = layout;
+    camera.position.sub(controls.target).multiplyScalar(distanceOf(1) / before).add(controls.target);
+    controls.update();
+    request();
+  };
   view.setLabels = (texts) => texts.forEach((text, side) => (labels[side].textContent = text));
   view.setScale = (degrees) => {
     uniforms.scale.value = degrees;

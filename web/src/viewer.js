@@ -1,7 +1,7 @@
 // A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
-import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, verdict, weightSliders, worstPlaces } from './panels.js';
+import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
 import { worstSample } from './motions.js';
 import { makePlayer } from './player.js';
 import { makePlot } from './plot.js';
@@ -32,16 +32,17 @@ export function makeViewer(root, report) {
   const stage = h('div', { className: 'stage' }), tip = h('div', { className: 'tip', hidden: true });
   const view = makeView(stage, point);
   const slider = h('input', { type: 'range', className: 'time', 'aria-label': 'moment of the motion', min: 0, max: 1, step: 'any' });
-  const play = h('button', { type: 'button', className: 'round', onclick: () => player.toggle() });
-  const moment = h('output', { className: 'moment' }), now = h('button', { type: 'button', className: 'plain now', title: 'Go to the worst vertex of this moment', onclick: () => view.visit(player.worst) });
+  const button = (className, title, onclick, text = '') => h('button', { type: 'button', className, title, 'aria-label': title, onclick }, text);
+  const play = button('round', 'play, pause', () => player.toggle()), moment = h('output', { className: 'moment' });
+  const now = h('button', { type: 'button', className: 'plain now', title: 'Go to this vertex', onclick: () => view.visit(player.worst) });
   const plotBox = h('div', { className: 'plot', role: 'img', 'aria-label': 'the error over the motion' });
   const low = h('span', {}, '0°'), high = h('span', {}), bar = h('i', {});
   bar.style.background = gradient();
   const scale = h('select', { 'aria-label': 'where the scale ends', onchange: () => setScale() },
     h('option', { value: 'auto' }, 'scale: auto'), SCALES.map((end) => h('option', { value: end }, `0 to ${end}°`)));
   const legend = h('div', { className: 'legend' }, low, bar, high, scale);
-  const modes = segmented('what is drawn', [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between both (3)']], setMode);
-  const layouts = segmented('how both are shown', [['side', 'Side by side'], ['wipe', 'Wipe']], setLayout);
+  const drawings = [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between both (3)']];
+  const modes = segmented('what is drawn', drawings, setMode), layouts = segmented('how both are shown', [['side', 'Side by side'], ['wipe', 'Wipe']], setLayout);
   const plot = makePlot(plotBox, (x) => (player.pause(), player.goTo(x)));
   let visited = -1;
 
@@ -49,7 +50,7 @@ export function makeViewer(root, report) {
   const chooser = choosers(report, player);
   const weights = report.kind === 'gltf' ? weightSliders(player) : null;
   const places = worstPlaces(report, visit);
-  const previous = () => visit(visited <= 0 ? report.worst.length - 1 : visited - 1), next = () => visit((visited + 1) % report.worst.length);
+  const stops = shownPlaces(report).length, next = () => visit((visited + 1) % stops), previous = () => visit((visited <= 0 ? stops : visited) - 1);
   const help = h('dialog', { className: 'help' }, h('h2', {}, 'Keys'),
     h('dl', {}, KEYS.map(([key, what]) => [h('dt', {}, key), h('dd', {}, what)])),
     h('p', {}, 'Drag to turn, pinch or scroll to come nearer, two fingers or the right button to move. What is under the pointer is named with its error.'),
@@ -58,10 +59,12 @@ export function makeViewer(root, report) {
   root.classList.add('viewer');
   root.replaceChildren(
     h('section', { className: 'scene' },
-      h('div', { className: 'toolbar' }, modes, layouts, h('button', { type: 'button', className: 'plain', title: 'The whole mesh (F)', onclick: () => view.frame() }, 'Whole mesh'),
-        h('button', { type: 'button', className: 'plain keys', 'aria-label': 'keys', title: 'Keys (?)', onclick: () => help.showModal() }, '?')),
-      stage, legend, h('div', { className: 'timeline' }, play, slider, moment), h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
-    h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box, schemeTable(report, player), hostTable(report), choiceTable(report), notes(report), aboutOf(report)),
+      h('div', { className: 'toolbar' }, modes, layouts, button('plain', 'The whole mesh (F)', () => view.frame(), 'Whole mesh'),
+        button('plain keys', 'Keys (?)', () => help.showModal(), '?')),
+      stage, legend, h('div', { className: 'timeline' }, play, slider, moment),
+      h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
+    h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box,
+      schemeTable(report, player), hostTable(report), choiceTable(report), notes(report), aboutOf(report)),
     help);
 
   function point(found) {
@@ -80,9 +83,8 @@ export function makeViewer(root, report) {
     view.request();
   }
   function setLayout(layout) {
-    view.layout = layout;
+    view.setLayout(layout);
     layouts.choose(layout);
-    view.frame(true);
   }
   // Where most of the errors are seen: what 99 percent are below, or else the worst.
   function setScale() {
@@ -141,7 +143,7 @@ export function makeViewer(root, report) {
     if (!plotBox.hidden) plot.show(motion, motion.schemes?.find(({ name }) => name === player.scheme) ?? motion);
   }
   function visit(i) {
-    if (!report.worst.length) return;
+    if (stops === 0) return;
     visited = i;
     const vertex = player.visit(report.worst[i]);
     places?.querySelectorAll('button').forEach((button, n) => button.setAttribute('aria-current', String(n === i)));
@@ -187,7 +189,8 @@ function aboutOf(report) {
   const { audit } = report, lines = [];
   const vertices = report.parts.reduce((sum, part) => sum + part.vertices, 0), triangles = report.parts.reduce((sum, part) => sum + part.triangles.length / 3, 0);
   lines.push(`${vertices.toLocaleString('en')} vertices and ${triangles.toLocaleString('en')} triangles are drawn here.`);
-  if (audit?.weighting) lines.push(`Right normals are the exact ones, weighted by ${audit.weighting === 'area' ? 'the area of faces' : audit.weighting}; what the author turned at rest is kept.`);
+  const weighting = audit?.weighting === 'area' ? 'the area of faces' : audit?.weighting;
+  if (weighting) lines.push(`Right normals are the exact ones, weighted by ${weighting}; what the author turned at rest is kept.`);
   lines.push(`Numbers are those of ${report.program}; nothing was loaded, and nothing is sent.`);
   return panel('About', false, lines.map((line) => h('p', { className: 'note' }, line)));
 }

@@ -9,7 +9,7 @@
 /// plan of bake and compare say. What is right and what is shown at any moment in between is computed by the page, from the
 /// same positions and normals, so that its numbers at the worst places are those of the audit.
 ///
-/// Worst      at most kMostWorstPlaces vertices, each where it is off the most, none within kPlaceDistance of another of
+/// Worst      at most kMostWorstPlaces vertices, each where it is off the most, by more than kLeastPlace, none within kPlaceDistance of another of
 ///            the same mesh.
 /// Thinned    what would make the page larger than the limit is left out, and said: keyframes and samples between those
 ///            of the worst places, and then triangles far from these, which become fewer and are not judged. Everything that the
@@ -37,6 +37,7 @@ namespace chronormal {
 
 inline constexpr std::size_t kMostReportBytes = 30000000;  ///< of a page, its template counted in
 inline constexpr std::size_t kMostWorstPlaces = 20;
+inline constexpr double kLeastPlace = 0.001;    ///< degrees: what is off by no more is no worst place
 inline constexpr double kPlaceDistance = 0.04;  ///< of two worst places, as a share of the diagonal of the mesh
 
 struct ReportOptions {

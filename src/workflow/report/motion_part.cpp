@@ -125,7 +125,7 @@ Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals
 }
 
 ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
-                      const Comparison* comparison, WatchedPart watched) {
+                      const Comparison& comparison, WatchedPart watched) {
   ModelPart part;
   part.labels = vertices.labels;
   if (part.labels.size() == motion.topology.vertex_count()) {
@@ -150,8 +150,7 @@ ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const 
   add_keyframes(motion, normals, vertices, part);
   part.motions = std::move(watched.motions);
   part.peaks = std::move(watched.peaks);
-  if (comparison != nullptr)
-    for (ModelMotion& m : part.motions) add_schemes(*comparison, m);
+  for (ModelMotion& m : part.motions) add_schemes(comparison, m);
   return part;
 }
 

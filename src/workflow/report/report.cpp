@@ -87,7 +87,7 @@ Status read_motion(Input& input, const ReportOptions& options, Report& report, R
   Result<NamedComparison> compared = compare_schemes(input, *motion.value(), report.audit, options);
   if (!compared) return compared.error();
   model.kind = motion.value()->kind == MotionKind::kTargets ? "targets" : "sequence";
-  model.parts.push_back(motion_part(*motion.value(), *normals.value(), vertices.value(), &compared.value().comparison,
+  model.parts.push_back(motion_part(*motion.value(), *normals.value(), vertices.value(), compared.value().comparison,
                                     std::move(watched.take().begin()->second)));
   report.comparison = std::move(compared).value();
   return Success{};

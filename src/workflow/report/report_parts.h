@@ -34,9 +34,10 @@ struct MotionVertices {
 /// Finds them. Errors: of NormalGroups
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// A motion that is no glTF file, with what a comparison of schemes found, where there is one, with keep_samples.
+/// A motion that is no glTF file, with what a comparison of schemes on it found, with keep_samples at the samples of the
+/// audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
-                                    const Comparison* comparison, WatchedPart watched);
+                                    const Comparison& comparison, WatchedPart watched);
 
 }  // namespace chronormal::inline internal
 

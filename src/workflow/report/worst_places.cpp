@@ -53,7 +53,7 @@ std::vector<ReportPlace> find_worst_places(const std::vector<ModelPart>& parts) 
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
     diagonals.push_back(diagonal_of(parts[p].positions));
     for (std::uint32_t v = 0; v < parts[p].peaks.size(); ++v)
-      if (parts[p].peaks[v].degrees > 0) candidates.push_back({parts[p].peaks[v].degrees, p, v});
+      if (parts[p].peaks[v].degrees > kLeastPlace) candidates.push_back({parts[p].peaks[v].degrees, p, v});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.degrees > b.degrees; });

@@ -57,6 +57,7 @@ ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWo
   const nlohmann::json& worst = file.json["worst"];
   EXPECT_EQ(worst.size(), found.worst.size());
   EXPECT_GT(worst.size(), 0U);
+  if (worst.empty()) return file;
   EXPECT_NEAR(worst[0]["degrees"].get<double>(), found.audit.error.worst, kAgree);
   double before = 181;
   for (std::size_t i = 0; i < std::min(most_places, worst.size()); ++i) {
@@ -172,9 +173,14 @@ TEST(Report, numbers_of_a_baked_file_follow_from_its_extra_targets) {
   how.encoding = BakeEncoding::kExact;
   const test::Baked baked = test::bake_bytes(sheet_file(13, 0.2).glb(), how);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  const Result<Report> found = report_of_glb(baked.bytes, without_plan());
+  // By the weighting that it was baked for, nothing is left to be seen.
+  ReportOptions by_angle = without_plan();
+  by_angle.weighting = Weighting::kAngle;
+  const Result<Report> found = report_of_glb(baked.bytes, by_angle);
   ASSERT_TRUE(found) << found.error().text();
-  EXPECT_LT(found.value().audit.error.worst, 0.1);
+  const Result<Report> right = report_of_glb(baked.bytes, without_plan());
+  ASSERT_TRUE(right) << right.error().text();
+  EXPECT_TRUE(right.value().worst.empty());
   const ReportFile file = expect_numbers(found.value());
   const nlohmann::json& part = file.part(0);
   EXPECT_EQ(part["mark"], baked.mesh()["extras"]["chronormal"]);
