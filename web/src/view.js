@@ -5,7 +5,7 @@ import { VIRIDIS, degreesText } from './colors.js';
 import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
 import { meet } from './pick.js';
 
-export const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
+const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 
 const FLIGHT = 600; // milliseconds
 const ease = (x) => x * x * (3 - 2 * x);
