@@ -118,6 +118,7 @@ void thin_samples(ReportModel& model, std::size_t step) {
     for (std::size_t m = 0; m < model.parts[p].motions.size(); ++m) {
       ModelMotion& motion = model.parts[p].motions[m];
       const std::size_t samples = motion.at.size();
+      if (samples < 2) continue;
       std::vector<bool> is_kept(samples);
       for (std::size_t i = 0; i < samples; ++i) is_kept[i] = i % step == 0 || i + 1 == samples;
       for (const std::size_t i : worst_samples(model, p, m)) is_kept[i] = true;
