@@ -9,7 +9,7 @@ import { makeViewer } from './viewer.js';
 
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
-const inputs = []; // {name, args, bytes: {name: Uint8Array}, came, baked: {report, bytes, name, warnings}}
+const inputs = []; // {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings, within}}
 const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;
 
@@ -48,7 +48,6 @@ async function during(title, step) {
   const bar = h('progress', { max: 100 }), label = h('span', {}, title);
   busy.replaceChildren(label, bar, h('button', { type: 'button', className: 'plain', onclick: () => abort?.abort() }, 'Cancel'));
   busy.hidden = false;
-  document.body.classList.add('working');
   const { signal } = abort;
   const onProgress = ({ label: text, percent }) => {
     bar.value = percent;
@@ -62,7 +61,6 @@ async function during(title, step) {
   } finally {
     abort = undefined;
     busy.hidden = true;
-    document.body.classList.remove('working');
   }
 }
 

@@ -52,7 +52,7 @@ void main() {
   bool isJudged = vDegrees > -0.5;
   vec3 n = hasNone ? face : normalize(vNormal);
   // The back of a face has the opposite normal; not where it is seen from its edge, as behind silhouettes: there it is as beside it.
-  if (!gl_FrontFacing && !hasNone && abs(dot(face, eye)) > 0.2) n = -n;
+  if (!gl_FrontFacing && !hasNone && abs(dot(face, eye)) > 0.3) n = -n;
   if (mode == ${ERROR}) {
     float depth = 0.72 + 0.28 * max(dot(face, eye), 0.0);
     gl_FragColor = vec4((isJudged ? colourOf(vDegrees / scale) : vec3(0.5)) * depth, 1.0);

@@ -5,7 +5,7 @@ import { VIRIDIS, degreesText } from './colors.js';
 import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
 import { meet } from './pick.js';
 
-export const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
+const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 
 const FLIGHT = 600; // milliseconds
 const ease = (x) => x * x * (3 - 2 * x);
@@ -110,10 +110,12 @@ export function makeView(stage, onPoint) {
 
   function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
-    for (const v of part.triangles) {
-      for (let c = 0; c < 3; ++c) {
-        least[c] = Math.min(least[c], positions[3 * v + c]);
-        most[c] = Math.max(most[c], positions[3 * v + c]);
+    for (const triangles of [part.triangles, part.coarse ?? []]) {
+      for (const v of triangles) {
+        for (let c = 0; c < 3; ++c) {
+          least[c] = Math.min(least[c], positions[3 * v + c]);
+          most[c] = Math.max(most[c], positions[3 * v + c]);
+        }
       }
     }
     const [low, high] = [new Vector3(...least), new Vector3(...most)], centre = low.clone().add(high).multiplyScalar(0.5);

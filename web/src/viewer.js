@@ -7,7 +7,7 @@ import { makePlayer } from './player.js';
 import { makePlot } from './plot.js';
 import { makeView } from './view.js';
 
-export const KEYS = [
+const KEYS = [
   ['Space', 'play, pause'], ['← →', 'one sample back, on; with Shift ten'], ['1 2 3', 'lit, normals as colours, error'],
   ['W', 'side by side, or a wipe'], ['N P', 'next, previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
 ];
@@ -15,7 +15,7 @@ export const KEYS = [
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 
 /** What a vertex is called in the file. */
-export function labelOf(part, vertex) {
+function labelOf(part, vertex) {
   const found = part.primitives.findIndex(({ first, count }) => vertex >= first && vertex < first + count);
   const primitive = part.primitives[found], number = part.labels ? part.labels[vertex] : vertex - (primitive?.first ?? 0);
   const names = [part.mesh === null || part.mesh === undefined ? '' : `mesh ${part.mesh}`,
