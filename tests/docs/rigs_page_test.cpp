@@ -31,9 +31,9 @@ TEST(RigsPage, has_the_sizes_of_every_file_and_its_errors_as_it_is_and_baked_in_
   const std::string files = test::without_blocks(test::read_whole((test::kDocs / "rigs.md").string()), "files").inside;
   for (const Host& host : kHosts)
     EXPECT_NE(files.find(" " + std::string(host.title) + " "), std::string::npos) << host.title;
-  for (const std::string file :
-       {"AnimatedMorphCube.gltf", "AnimatedMorphSphere.gltf", "MorphPrimitivesTest.gltf", "MorphStressTest.gltf",
-        "RobotExpressive.glb", "01_cs_morph.gltf", "01_morphed_cube.gltf", "blender_suzanne_two_keys.glb", "ict_capture.glb"}) {
+  for (const std::string file : {"AnimatedMorphCube.gltf", "AnimatedMorphSphere.gltf", "MorphPrimitivesTest.gltf",
+                                 "MorphStressTest.gltf", "RobotExpressive.glb", "01_cs_morph.gltf",
+                                 "01_morphed_cube.gltf", "blender_suzanne_two_keys.glb", "ict_capture.glb"}) {
     std::size_t rows = 0;
     for (std::size_t at = 0; (at = files.find("| `" + file + "` ", at)) != std::string::npos; ++at) ++rows;
     EXPECT_EQ(rows, 3U) << file << ": its sizes, and two states";
