@@ -171,5 +171,22 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
+// What is said of a mesh that nothing drives is about this bake: extra targets that were written, or that gained nothing.
+TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
+  const auto said = [](const Baked& baked) {
+    const auto& warnings = baked.report.warnings;
+    return std::count_if(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.find("no animation drives its targets") != std::string::npos;
+    });
+  };
+  const Baked posed = test::bake_document(rig(1), smallest());
+  ASSERT_TRUE(posed.ok()) << posed.error;
+  ASSERT_GT(posed.report.added_targets, 0U);
+  EXPECT_EQ(said(posed), 0);
+  EXPECT_EQ(said(without_extras(1)), 1);
+  for (const std::string& warning : without_extras(1).report.warnings)
+    EXPECT_EQ(warning.find("--poses"), std::string::npos) << warning;
+}
+
 }  // namespace
 }  // namespace chronormal::bake_undriven_test

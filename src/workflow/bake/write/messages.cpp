@@ -114,10 +114,12 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
   const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
-  if (!plan.is_driven && is_harmless) {
-    warn(
-        "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
-        "(--poses writes extra targets for a program that drives them, and --encode exact all the same)");
+  if (!plan.is_driven && is_harmless && baked.extras.empty()) {
+    warn(options.is_posed
+             ? "no animation drives its targets, and no extra target that a program could drive brings its poses "
+               "nearer: each is right at weight 1"
+             : "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
+               "(--poses writes extra targets for a program that drives them, and --encode exact all the same)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
