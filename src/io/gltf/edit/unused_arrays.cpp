@@ -216,7 +216,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
     if (view.is_number() && view.get<double>() < static_cast<double>(is_used.size()))
       is_used[view.get<std::size_t>()] = true;
   }
-  const std::vector<bool> of_images = is_used;
+  std::vector<bool> is_whole = is_used;
   std::vector<std::vector<Part>> parts(count);
   std::vector<Range> used, unused;
   std::vector<std::size_t> unused_accessors;
@@ -225,6 +225,9 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
     if (!found) return {};
     parts[a] = std::move(*found);
     const bool is_dead = was[a] && !is[a];
+    // A view of interleaved arrays stays whole: three.js reads as many strides as there are elements.
+    if (const std::optional<std::size_t> view = model.accessors[a].view; view && !is_dead)
+      is_whole[*view] = is_whole[*view] || model.views[*view].stride.value_or(0) > model.accessors[a].element_size();
     if (is_dead && !parts[a].empty()) unused_accessors.push_back(a);
     for (const Part& part : parts[a]) {
       const BufferView& view = model.views[part.view];
@@ -242,7 +245,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
     const Range whole{view.offset, view.offset + view.length};
     if (is_unused[v] && !is_used[v])
       unused.push_back(whole);
-    else if (of_images[v] || !is_used[v])
+    else if (is_whole[v] || !is_used[v])
       used.push_back(whole);
   }
 
