@@ -47,7 +47,7 @@ export function makePlayer(report, onChange) {
     if (isGltf) {
       player.weights = new Float64Array(part.targets.length);
       player.shownWeights = new Float64Array(part.targets.length);
-      player.formulas = formulasOf(part.mark);
+      player.formulas = formulasOf(part.mark, part.targets.length);
       player.hosts = part.shown.flatMap(({ hosts }) => hosts);
       if (!player.hosts.includes(player.host)) player.host = 'specification';
     } else {
