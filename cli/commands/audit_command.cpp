@@ -24,10 +24,8 @@ namespace {
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::string rule;       // empty: what is usual for the input
-  std::string weighting;  // empty: what the stored base normals follow
-  std::string hosts;
-  std::optional<std::size_t> samples;
+  std::string rule;  // empty: what is usual for the input
+  JudgeArguments judge;
   std::optional<double> tolerance;
   std::optional<std::string> errors;  // where to write every single one
   bool no_weld = false;
@@ -70,8 +68,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   if (!opened) return opened.error();
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
-  if (document == nullptr && !how.hosts.empty())
-    return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+  if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
@@ -86,18 +83,9 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
     if (!rule) return misuse("--rule", rule.error().message);
     how.rule = rule.value();
   }
-  if (!options.weighting.empty()) {
-    const Result<Weighting> weighting = make_weighting(options.weighting);
-    if (!weighting) return misuse("--weighting", weighting.error().message);
-    how.weighting = weighting.value();
-  }
-  if (!options.hosts.empty()) {
-    const Result<std::vector<Host>> hosts = find_hosts(options.hosts);
-    if (!hosts) return misuse("--host", hosts.error().message);
-    how.hosts = hosts.value();
-    if (how.rule && *how.rule != AuditRule::kGltf)
-      return misuse("--host", "hosts go with the rule gltf, which they stand for");
-  }
+  if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
+  if (!how.hosts.empty() && how.rule && *how.rule != AuditRule::kGltf)
+    return misuse("--host", "hosts go with the rule gltf, which they stand for");
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -107,7 +95,7 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
       return output.error();
   }
   how.keep_errors = options.errors.has_value();
-  how.samples = options.samples;
+  how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
   how.progress = progress.callback("auditing");
@@ -224,19 +212,9 @@ Command audit_command() {
       {input_table(options->input, refused),
        {{"--rule NAME", &options->rule,
          "what a host makes of stored normals between keyframes: gltf (default for\n"
-         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"},
-        {"--weighting NAME", &options->weighting,
-         "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
-         "(default: as in the base normals of the file, else area)"},
-        {"--host NAME,...", &options->hosts,
-         "judge what these hosts show of a glTF file: three, babylon, playcanvas, godot,\n"
-         "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
-        {"--samples N",
-         &options->samples,
-         "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
-         "animations of more than 32 key intervals)",
-         {.check = check_whole(2, kMostAuditSamples)}},
-        {"--tolerance DEG", &options->tolerance,
+         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
+       options->judge.table("judge what these hosts show of a glTF file"),
+       {{"--tolerance DEG", &options->tolerance,
          "exit with code 4 if the worst error is larger, in any host of --host"},
         {"--errors FILE", &options->errors,
          "write the error of every vertex at every sample: .npz for programs, or .ply\n"

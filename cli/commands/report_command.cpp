@@ -12,6 +12,7 @@
 #include "cli/options/command.h"
 #include "cli/reports/report_report.h"
 #include "cli/terminal/print.h"
+#include "io/bytes/extension.h"
 #include "io/bytes/file.h"
 
 namespace chronormal::cli {
@@ -22,21 +23,13 @@ namespace fs = std::filesystem;
 struct Options {
   InputOptions input;
   CommonOptions common;
-  std::string weighting;  // empty: what the stored base normals follow
-  std::string hosts;      // empty: the specification alone
-  std::optional<std::size_t> samples;
+  JudgeArguments judge;
   std::optional<std::string> page_template;
   bool no_plan = false;
   bool json = false;
 };
 
-bool has_extension(const std::string& path, std::string_view extension) {
-  std::string own = fs::path(path).extension().string();
-  for (char& c : own) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-  return own == extension;
-}
-
-bool is_container(const Options& options) { return has_extension(options.common.output, ".bin"); }
+bool is_container(const Options& options) { return lower_extension(options.common.output) == ".bin"; }
 
 // The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not say
 // where that is.
@@ -64,21 +57,12 @@ Result<std::string> read_template(const Options& options) {
 
 Result<ReportOptions> understand(const Options& options, Progress& progress) {
   ReportOptions how;
-  if (!options.weighting.empty()) {
-    const Result<Weighting> weighting = make_weighting(options.weighting);
-    if (!weighting) return misuse("--weighting", weighting.error().message);
-    how.weighting = weighting.value();
-  }
-  if (!options.hosts.empty()) {
-    const Result<std::vector<Host>> hosts = find_hosts(options.hosts);
-    if (!hosts) return misuse("--host", hosts.error().message);
-    how.hosts = hosts.value();
-  }
+  if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
   if (const Status status = check_input(options.input); !status) return status.error();
-  if (!is_container(options) && !has_extension(options.common.output, ".html"))
+  if (!is_container(options) && lower_extension(options.common.output) != ".html")
     return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
   if (is_container(options) && options.page_template) return misuse("--template", "OUT.bin is data, and needs no page");
-  how.samples = options.samples;
+  how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.plan = !options.no_plan;
   how.progress = [&progress](std::string_view what, std::size_t done, std::size_t total) {
@@ -103,8 +87,7 @@ Result<int> run(const Options& options) {
   wanted.shading = KeepShading::kAll;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  if (input.value().document() == nullptr && !how.value().hosts.empty())
-    return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+  if (const Status known = check_hosts(how.value().hosts, input.value()); !known) return known.error();
   const Result<Report> found = report(input.value(), how.value());
   progress.clear();
   if (!found) return found.error();
@@ -133,18 +116,8 @@ Command report_command() {
       "report",
       "Write a page that shows an input as it is shown beside as it should be",
       {input_table(options->input, refused),
-       {{"--weighting NAME", &options->weighting,
-         "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
-         "(default: as in the base normals of the file, else area)"},
-        {"--host NAME,...", &options->hosts,
-         "glTF: what these hosts show can be looked at too: three, babylon, playcanvas, godot,\n"
-         "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
-        {"--samples N",
-         &options->samples,
-         "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
-         "animations of more than 32 key intervals)",
-         {.check = check_whole(2, kMostAuditSamples)}},
-        {"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
+       options->judge.table("glTF: what these hosts show can be looked at too"),
+       {{"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
         {"--template FILE",
          &options->page_template,
          "the page that the report goes into (default: the one beside the program)",

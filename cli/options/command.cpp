@@ -1,6 +1,9 @@
 #include "cli/options/command.h"
 
+#include <utility>
+
 #include "chronormal/io/builtin_morphs.h"
+#include "chronormal/workflow/audit.h"
 #include "cli/terminal/format.h"
 
 namespace chronormal::cli {
@@ -14,6 +17,39 @@ std::string morph_names() {
 }
 
 }  // namespace
+
+std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
+  return {{"--weighting NAME", &weighting,
+           "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
+           "(default: as in the base normals of the file, else area)"},
+          {"--host NAME,...", &hosts,
+           of_hosts + ": three, babylon, playcanvas, godot,\n"
+                      "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
+          {"--samples N",
+           &samples,
+           "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
+           "animations of more than 32 key intervals)",
+           {.check = check_whole(2, kMostAuditSamples)}}};
+}
+
+Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const {
+  if (!weighting.empty()) {
+    const Result<Weighting> found = make_weighting(weighting);
+    if (!found) return misuse("--weighting", found.error().message);
+    to_weighting = found.value();
+  }
+  if (!hosts.empty()) {
+    Result<std::vector<Host>> found = find_hosts(hosts);
+    if (!found) return misuse("--host", found.error().message);
+    to_hosts = std::move(found).value();
+  }
+  return Success{};
+}
+
+Status check_hosts(const std::vector<Host>& hosts, const Input& input) {
+  if (input.document() != nullptr || hosts.empty()) return Success{};
+  return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+}
 
 std::string short_name(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

@@ -11,6 +11,8 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/sample.h"
 #include "cli/options/options.h"
 #include "cli/terminal/progress.h"
@@ -48,6 +50,21 @@ struct ElementArguments {
   /// What was asked for. Errors: kUsage for a kind that does not exist, and for options that do not go with it.
   [[nodiscard]] Result<ElementOptions> options() const;
 };
+
+/// The options of commands that judge stored normals: --weighting, --host, --samples.
+struct JudgeArguments {
+  std::string weighting;               ///< empty: what the stored base normals follow
+  std::string hosts;                   ///< empty: the specification alone
+  std::optional<std::size_t> samples;  ///< of each segment
+
+  /// of_hosts is what the command does with the hosts that are named, for the help.
+  [[nodiscard]] std::vector<Option> table(const std::string& of_hosts);
+  /// Writes what was asked for; what was not asked for stays. Errors: kUsage for names that do not exist.
+  [[nodiscard]] Status read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const;
+};
+
+/// Errors: kUsage where hosts are named and the input is no glTF file.
+[[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);
 
 /// The last part of a path: what a person calls it.
 [[nodiscard]] std::string short_name(std::string path);
