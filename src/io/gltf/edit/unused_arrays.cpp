@@ -89,7 +89,7 @@ class References {
   std::vector<bool> referred_;
 };
 
-// The parts of views that an accessor has: its own, and those of a sparse one.
+// A part of a view that an accessor reads. A sparse accessor reads up to three: its own, its indices and its values.
 struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };
@@ -139,7 +139,7 @@ std::vector<Range> joined(std::vector<Range> ranges) {
   return result;
 }
 
-// What is left of some ranges without others, in whole multiples of kAlignment.
+// Takes some ranges out of others. The result has ranges whose sizes are multiples of kAlignment.
 std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const std::vector<Range>& without) {
   std::vector<Range> result;
   auto other = without.begin();
@@ -159,7 +159,7 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   return result;
 }
 
-// Where a byte is once ranges are left out.
+// Says where a byte is found after some ranges were left out.
 class Moved {
  public:
   explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {
@@ -209,7 +209,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
   const std::size_t count = model.accessors.size();
   const References was(source.value(), count), is(edited.value(), count);
 
-  // What each view is used for.
+  // A view is used where an image or a living accessor refers to it, and unused where only dead accessors do.
   std::vector<bool> is_used(model.views.size(), false), is_unused(model.views.size(), false);
   for (const Json& image : at(edited.value(), "images")) {
     const Json& view = at(image, "bufferView");

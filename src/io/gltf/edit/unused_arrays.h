@@ -31,7 +31,7 @@ struct UnusedArrays {
   std::vector<std::pair<std::string, std::string>> changes;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// What is left of the BIN chunk.
+  /// The pieces of the BIN chunk that remain.
   [[nodiscard]] std::vector<std::string_view> kept(std::string_view bin) const;
 };
 
