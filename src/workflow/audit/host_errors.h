@@ -36,7 +36,7 @@ class HostErrors {
   void add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
                   std::span<const double> largest);
 
-  /// Of each host, the weights of the last sample.
+  /// The weights that each host plays at the last sample.
   [[nodiscard]] std::span<const std::vector<double>> now() const noexcept { return now_; }
 
   /// One for each host.
