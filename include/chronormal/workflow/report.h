@@ -82,7 +82,7 @@ struct Report {
 /// what an audit takes. Errors: of audit(); kInvalidInput where nothing moves that could be judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
-/// What a template has once, where the report goes.
+/// A template holds this mark exactly once, and the report takes its place.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
 /// Whether a template holds the mark exactly once. Errors: kInvalidInput

@@ -53,7 +53,7 @@ struct FacesOfElements {
   std::vector<std::size_t> offsets, list;
 };
 
-// What stays of a part.
+// The faces, vertices and elements that stay in a part.
 struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
@@ -102,7 +102,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   std::vector<std::uint32_t> result(triangles.size());
   std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                        kStride, most, kAnyError, meshopt_SimplifyLockBorder);
-  // Where its topology or its borders keep a mesh from becoming coarse, its shape alone counts.
+  // The topology or the borders of a mesh may keep it from becoming coarse. Then only its shape counts.
   if (count > most + most / 2)
     count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                    kStride, most, kAnyError);

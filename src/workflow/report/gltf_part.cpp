@@ -20,7 +20,7 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// What one host keeps of the stored normals and deltas; of the specification all of it.
+// The normals and deltas that one host keeps of the stored ones. The specification keeps all of them.
 ModelShown shown_by(const GltfShading& shading, const Host& host) {
   ModelShown shown;
   shown.keeps_halves = host.keeps_halves();
@@ -45,7 +45,8 @@ bool show_alike(const Host& a, const Host& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// What the specification shows, and every host that shows the same, and then what `hosts` show beside it.
+// The first entry is what the specification shows, with the names of all hosts that show the same. The others are what the
+// rest of `hosts` show.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Host> hosts) {
   const Host specification{.name = "specification", .title = ""};
   std::vector<Host> firsts = {specification};

@@ -60,7 +60,7 @@ struct ModelMotion {
   std::vector<ModelWeights> weights;    ///< glTF; the first is the specification
   std::vector<float> worst, mean;       ///< (S) degrees
   std::vector<float> least;             ///< (E) the length below which a normal has no direction
-  /// Of schemes other than that of the audit.
+  /// The errors of a scheme that is not the one of the audit.
   struct Scheme {
     std::string name;
     std::vector<float> worst, mean;  ///< (S)
@@ -73,7 +73,7 @@ struct ModelPrimitive {
   bool is_flat = false;
 };
 
-/// What a vertex is off by, and when it is off the most.
+/// The largest error of a vertex, and the moment of it.
 struct ModelPeak {
   float degrees = 0;
   std::uint32_t motion = 0, sample = 0;

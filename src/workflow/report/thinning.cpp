@@ -24,7 +24,7 @@ std::size_t bytes_of_keyframes(const ModelPart& part) {
   return bytes;
 }
 
-// Of its weights alone: what else a sample has is small beside them.
+// The bytes that the weights of all samples take. Everything else that a sample has is small beside them.
 std::size_t bytes_of_samples(const ModelPart& part) {
   std::size_t bytes = 0;
   for (const ModelMotion& motion : part.motions)
@@ -60,7 +60,7 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
   return result;
 }
 
-// What is left of `most` beside what is taken.
+// How many of `most` remain when some are taken.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
 // The samples of a motion that are worst places.

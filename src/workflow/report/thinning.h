@@ -1,4 +1,4 @@
-/// What is left out of a report that would be too large. Private to workflow.
+/// Leaves parts of a report out that would make it too large. Private to workflow.
 ///
 ///     keyframes   of segments evenly over the motion; those of the worst places stay, with the segments beside them
 ///     samples     of glTF files evenly over each motion; those of the worst places stay

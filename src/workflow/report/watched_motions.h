@@ -34,7 +34,7 @@ class WatchedMotions {
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
-  // What one host plays in the motion that is being told.
+  // The weights that one host plays in the motion that the audit tells of.
   struct Played {
     const Host* host = nullptr;
     bool is_kept = false, is_specified = true;
