@@ -149,6 +149,31 @@ TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   EXPECT_EQ(left_out(skin), 32U) << "of 48 bytes the first 16 are those of a skin";
 }
 
+// A bake packs the sparse arrays of all targets into one view: what is behind an unused one is found by its offsets.
+TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_moved) {
+  GltfBuilder builder;
+  const std::size_t base = builder.add_positions(kBase);
+  const std::vector<float> values = {1, 2, 3, 4, 5, 6};
+  const std::string indices("\1\3\0\0", 4), pair = indices + bytes_of(values);
+  const std::size_t view = builder.add_view(pair + pair + pair);
+  std::vector<Json> targets;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t array = builder.add_accessor_over(std::nullopt, "VEC3", 5126, 4), at = k * pair.size();
+    builder.json["accessors"][array]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", view}, {"byteOffset", at}, {"componentType", 5121}}},
+        {"values", {{"bufferView", view}, {"byteOffset", at + indices.size()}}}};
+    targets.push_back(Json{{"NORMAL", array}});
+  }
+  add_mesh(builder, base, targets);
+  const GltfFixture fixture(builder);
+  const Parts before(builder.glb()), after(bytes_without_unused(fixture, {1}));
+  const std::size_t left_out = bytes_of(values).size();  // two indices are too few to leave out
+  EXPECT_EQ(after.bin.size(), before.bin.size() + 48 - left_out);
+  for (const std::size_t array : {1U, 3U}) EXPECT_EQ(after.elements(array), before.elements(array));
+  EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
+}
+
 // Random documents: views of one array and of many, strided ones, sparse arrays, and arrays that share bytes.
 TEST(UnusedArrays, all_other_arrays_keep_their_numbers) {
   constexpr unsigned kSeed = 20261123;

@@ -144,7 +144,6 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   std::vector<Range> result;
   auto other = without.begin();
   const auto add = [&](std::size_t begin, std::size_t end) {
-    begin = (begin + kAlignment - 1) / kAlignment * kAlignment;
     if (begin < end && end - begin >= kAlignment) result.push_back({begin, end - (end - begin) % kAlignment});
   };
   for (const Range& range : ranges) {
