@@ -23,7 +23,8 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr std::size_t kShuffledFrom = 10000000, kSchemesUpTo = 1500000, kBlendUpTo = 100000, kUsesUpTo = 1500000, kMost = 50000000;
+constexpr std::size_t kShuffledFrom = 10000000, kSchemesUpTo = 1500000, kBlendUpTo = 100000, kUsesUpTo = 1500000,
+                      kMost = 50000000;
 
 // "15k" or "10M".
 Size parse_size(const std::string& text) {
