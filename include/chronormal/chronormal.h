@@ -51,6 +51,7 @@
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
 #include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/report.h"   // what a page needs to show an input as it is shown beside as it should be
-#include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/truth.h"   // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

@@ -16,6 +16,7 @@
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
+#include "chronormal/workflow/truth.h"
 
 namespace chronormal {
 
@@ -41,6 +42,13 @@ struct NamedBlendComparison {
 };
 
 [[nodiscard]] std::string blend_json(const NamedBlendComparison& input);
+
+struct NamedTruthComparison {
+  std::string name;
+  TruthComparison comparison;
+};
+
+[[nodiscard]] std::string truth_json(const NamedTruthComparison& input);
 
 /// The audit of the input of a bake, and the audit of the file that it made.
 struct BeforeAndAfter {
