@@ -22,26 +22,6 @@ VectorView<const float> positions_of(const Motion::Keyframe& keyframe) {
   return VectorView<const float>::packed(std::span(keyframe.positions));
 }
 
-// The velocities of all vertices at keys[at]: the derivative there of the polynomial through all of these keyframes.
-std::vector<float> velocities_at(std::span<const Motion::Keyframe* const> keys, std::size_t at) {
-  std::vector<double> share(keys.size(), 0.0);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (i == at) continue;
-    const double apart = keys[at]->time - keys[i]->time;
-    share[at] += 1 / apart;
-    share[i] = -1 / apart;
-    for (std::size_t k = 0; k < keys.size(); ++k)
-      if (k != i && k != at) share[i] *= (keys[at]->time - keys[k]->time) / (keys[i]->time - keys[k]->time);
-  }
-  std::vector<float> result(keys[0]->positions.size());
-  for (std::size_t c = 0; c < result.size(); ++c) {
-    double sum = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) sum += share[i] * static_cast<double>(keys[i]->positions[c]);
-    result[c] = static_cast<float>(sum);
-  }
-  return result;
-}
-
 // The keyframes that are kept.
 class KeptKeys {
  public:
@@ -57,15 +37,10 @@ class KeptKeys {
   [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
     return std::span(motion_.keyframes).subspan(i * every_ + 1, every_ - 1);
   }
-  // Of a curve through all of them. Inside, the neighbours of a keyframe count; at an end the nearest four, of which as many
-  // as the motion has.
-  [[nodiscard]] std::vector<float> velocities(std::size_t i) const {
-    const bool is_end = i == 0 || i + 1 == count();
-    const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, count());
-    const std::size_t first = i == 0 ? 0 : is_end ? count() - used : i - 1;
+  [[nodiscard]] std::vector<const Motion::Keyframe*> all() const {
     std::vector<const Motion::Keyframe*> keys;
-    for (std::size_t k = first; k < first + used; ++k) keys.push_back(&(*this)[k]);
-    return velocities_at(keys, i - first);
+    for (std::size_t i = 0; i < count(); ++i) keys.push_back(&(*this)[i]);
+    return keys;
   }
 
  private:
@@ -230,19 +205,14 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   result.kept = keys.count();
   result.left_out = (keys.count() - 1) * (options.every - 1);
   result.bend = bend_of(motion, options.every);
-  for (const std::string& name : names) result.rows.push_back({"linear", name, {}});
-  if (has_curve) result.rows.push_back({"catmull-rom", "exact", {}});
+  for (const std::string& name : names) result.rows.push_back({std::string(path_name(PathKind::kLinear)), name, {}});
+  if (has_curve) result.rows.push_back({std::string(path_name(PathKind::kCatmullRom)), "exact", {}});
 
   const std::size_t blocks = (elements.count() + kBlockSize - 1) / kBlockSize;
   std::vector<std::vector<Quality>> found(blocks);
   for (std::size_t i = 0; i + 1 < keys.count(); ++i) {
     Piece piece{keys.segment(i), keys.between(i), elements.control_normals(keys.segment(i)), {}};
-    if (has_curve) {
-      const std::vector<float> start = keys.velocities(i), end = keys.velocities(i + 1);
-      piece.curved = elements.control_normals(hermite_segment(
-          motion.topology, piece.segment.from, VectorView<const float>::packed(std::span(start)), piece.segment.to,
-          VectorView<const float>::packed(std::span(end)), piece.segment.start_time, piece.segment.end_time));
-    }
+    if (has_curve) piece.curved = elements.control_normals(catmull_rom_segment(motion.topology, keys.all(), i));
     Elements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
       found[range.first / kBlockSize] = errors_of_block(piece, elements, range, names);
     });
