@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -92,33 +93,27 @@ std::size_t axis_of(const ControlNormals& n) {
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-// What a triangle does in a cell of time.
-struct Verdict {
-  enum Kind { kNothing, kCrossing, kOpen } kind;
-  int change = 0;  // of the winding number, by a crossing
-};
-
-Verdict judge(const CrossingSigns& signs, std::size_t axis, const Cell& cell) {
-  std::size_t never_right = 0, never_left = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::array<int, 3> side = signs.side(k, axis, cell);
-    const auto [least, most] = std::minmax({side[0], side[1], side[2]});
-    if (least == 0 && most == 0) return {Verdict::kNothing};
-    never_right += least >= 0;
-    never_left += most <= 0;
-    if (never_right > 0 && never_left > 0) return {Verdict::kNothing};
-  }
-  int changes = 0, last = 0;
-  for (const int sign : signs.volume(cell)) {
-    changes += sign * last < 0;
-    if (sign != 0) last = sign;
-  }
-  if (changes == 0) return {Verdict::kNothing};
-  if (changes == 1 && (never_right == 3 || never_left == 3)) return {Verdict::kCrossing, last};
-  return {Verdict::kOpen};
-}
-
 constexpr std::size_t kUpwards = 2;
+
+// A root in [0, 1], as far as double can tell; the first, where there is no change of sign between the ends. By Newton's
+// method, which is kept between the ends that bracket the root.
+std::optional<double> first_root(const Bernstein<double, 3>& p) {
+  if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
+    const Roots<3> roots = roots_in_unit_interval(p);
+    return roots.count > 0 ? std::optional(roots.t[0]) : std::nullopt;
+  }
+  double low = 0, high = 1, t = p[0] / (p[0] - p[3]);
+  for (int i = 0; i < 60; ++i) {
+    const Halves<double, 3> halves = split(p, t);
+    const double value = halves.after[0], slope = 3 * (halves.after[1] - value) / (1 - t);
+    ((value < 0) == (p[0] < 0) ? low : high) = t;
+    double next = t - value / slope;
+    if (!(low < next && next < high)) next = low + (high - low) / 2;
+    if (std::fabs(next - t) <= 0x1p-52) return next;
+    t = next;
+  }
+  return t;
+}
 
 // What all points need of a segment.
 struct MeshInSegment {
@@ -156,12 +151,7 @@ class Passage {
     const double share = static_cast<double>(t) / static_cast<double>(kTicks);
     visit_boxes(
         mesh_.nodes, mesh_.boxes, [&](const MovingBox& box) { return box.is_above(point_, share); },
-        [&](std::uint32_t i) {
-          const CrossingSigns signs = signs_of(i);
-          const int side = signs.side_at(0, kUpwards, t);
-          if (side == 0 || signs.side_at(1, kUpwards, t) != side || signs.side_at(2, kUpwards, t) != side) return;
-          if (signs.volume_at(t) == side) sum += side;
-        });
+        [&](std::uint32_t i) { sum += signs_of(i).crossing_of_ray(kUpwards, t); });
     return sum;
   }
 
@@ -200,7 +190,7 @@ class Passage {
   bool is_open(const CrossingSigns& signs, std::uint32_t i, const Cell& cell) {
     const std::size_t axis = axis_of(mesh_.normals[i]);
     if (axis == kNoAxis) return false;
-    const Verdict verdict = judge(signs, axis, cell);
+    const Verdict verdict = signs.judge(axis, cell);
     if (verdict.kind == Verdict::kCrossing) roots_.push_back({i, cell, verdict.change});
     return verdict.kind == Verdict::kOpen;
   }
@@ -214,9 +204,8 @@ class Passage {
     }
     std::array<Tick, 4> bounds{cell.from, cell.from + width / 2, cell.to, cell.to};
     if (level % 4 != 3) {
-      const Roots<3> roots = roots_in_unit_interval(signs_of(open[0]).rounded_volume(cell));
-      if (roots.count > 0) {
-        const Tick root = cell.from + std::llround(roots.t[0] * static_cast<double>(width));
+      if (const std::optional<double> share = first_root(signs_of(open[0]).rounded_volume(cell))) {
+        const Tick root = cell.from + std::llround(*share * static_cast<double>(width));
         const Tick margin = std::max(Tick{1}, width >> 16U);
         bounds[1] = std::max(cell.from, root - margin);
         bounds[2] = std::min(cell.to, root + margin);
@@ -264,9 +253,8 @@ class Passage {
     constexpr Tick kMargin = 8;
     const CrossingSigns signs = signs_of(root.triangle);
     Tick low = root.cell.from, high = root.cell.to;
-    const Roots<3> roots = roots_in_unit_interval(signs.rounded_volume(root.cell));
-    if (roots.count > 0) {
-      const double ticks = static_cast<double>(low) + roots.t[0] * static_cast<double>(high - low);
+    if (const std::optional<double> share = first_root(signs.rounded_volume(root.cell))) {
+      const double ticks = static_cast<double>(low) + *share * static_cast<double>(high - low);
       const Tick nearest = std::llround(ticks);
       if (sign_at(root, signs, nearest - kMargin) == -root.change &&
           sign_at(root, signs, nearest + kMargin) == root.change)

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "core/wide_integer.h"
 
@@ -70,38 +71,33 @@ void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) n
   }
 }
 
-// The corners seen from the point at both ends of a cell, as integers of one unit.
+// The corners seen from the point at both ends of a cell, as integers of one unit; each is made when it is asked for.
 class ExactCell {
  public:
-  ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept {
-    unsigned base = 253;
-    const auto lower = [&base](const MovingPoint& p) {
+  ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept
+      : corners_(corners), point_(point) {
+    const auto lower = [this](const MovingPoint& p) {
       for (const float x : {p.from.x, p.from.y, p.from.z, p.to.x, p.to.y, p.to.z}) {
         const FloatParts parts = FloatParts::of(x);
-        if (parts.mantissa != 0) base = std::min(base, parts.shift);
+        if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
       }
     };
     for (const MovingPoint& corner : corners) lower(corner);
     lower(point);
     const int zeros = std::min(kTickBits, std::countr_zero(static_cast<std::uint64_t>(cell.from | cell.to | kTicks)));
-    const auto at = [&](const MovingPoint& corner, Tick t, ExactVector& result) {
-      const Tick after = t >> zeros, before = (kTicks - t) >> zeros;
-      add_difference(corner.from, point.from, base, before, result);
-      add_difference(corner.to, point.to, base, after, result);
+    const auto weight = [zeros](Tick t) {
+      const Tick ticks = t >> zeros;
+      return UnitFraction{{ticks & (kDigitBase - 1), ticks >> kDigitBits, 0}, 0};
     };
-    for (std::size_t k = 0; k < 3; ++k) {
-      at(corners[k], cell.from, ends_[0][k]);
-      at(corners[k], cell.to, ends_[1][k]);
-    }
+    weights_ = {{{weight(kTicks - cell.from), weight(cell.from)}, {weight(kTicks - cell.to), weight(cell.to)}}};
   }
 
   // The sign of coefficient i of the volume: of the sum over all ways to take i corners at the end of the cell and the
   // others at its beginning.
-  [[nodiscard]] int volume(std::size_t i) const noexcept {
+  [[nodiscard]] int volume(std::size_t i) noexcept {
     Volume value;
-    ProductVector normal;
     for (const auto& at : choices(3, i)) {
-      const ExactVector &a = ends_[at[0]][0], &b = ends_[at[1]][1], &c = ends_[at[2]][2];
+      const ExactVector &a = seen(at[0], 0), &b = seen(at[1], 1), &c = seen(at[2], 2);
       ProductVector product;
       add_cross(b, c, product);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -110,10 +106,10 @@ class ExactCell {
       }
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // -n by degree 3: each choice of degree 3 leaves out a factor, which is 1.
+    // -n = (c - a) x (b - a), by degree 3: each choice leaves out a factor, which is 1.
+    ProductVector normal;
     for (const auto& at : choices(3, i)) {
-      const auto &first = ends_[at[0]], &second = ends_[at[1]];
-      add_cross(difference(second[2], second[0]), difference(first[1], first[0]), normal);
+      add_cross(difference(seen(at[0], 2), seen(at[0], 0)), difference(seen(at[1], 1), seen(at[1], 0)), normal);
     }
     for (Product& component : normal) {
       if (const int sign = settled_sign(component); sign != 0) return sign;
@@ -122,23 +118,22 @@ class ExactCell {
   }
 
   // The same of the side of an edge.
-  [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) const noexcept {
+  [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) noexcept {
     const std::size_t next = kNext[edge], x = first_of(axis), y = second_of(axis);
     Product value;
     for (const auto& at : choices(2, i)) {
-      const ExactVector &a = ends_[at[0]][edge], &b = ends_[at[1]][next];
-      value.add_product(a[x], b[y]);
-      value.add_product(a[y], b[x], -1);
+      const std::size_t a = at[0], b = at[1];
+      value.add_product(seen(a, edge, x), seen(b, next, y));
+      value.add_product(seen(a, edge, y), seen(b, next, x), -1);
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
     // - e_x (b - a)_y + e_y (b - a)_x, by degree 2: each choice leaves out a factor, which is 1.
     Coordinate along_x, along_y;
     for (const auto& at : choices(2, i)) {
-      const ExactVector &a = ends_[at[0]][edge], &b = ends_[at[0]][next];
-      along_x.add(a[y], 1);
-      along_x.add(b[y], -1);
-      along_y.add(b[x], 1);
-      along_y.add(a[x], -1);
+      along_x.add(seen(at[0], edge, y), 1);
+      along_x.add(seen(at[0], next, y), -1);
+      along_y.add(seen(at[0], next, x), 1);
+      along_y.add(seen(at[0], edge, x), -1);
     }
     const int by_x = settled_sign(along_x), by_y = settled_sign(along_y);
     return x < y ? (by_x != 0 ? by_x : by_y) : (by_y != 0 ? by_y : by_x);
@@ -160,28 +155,84 @@ class ExactCell {
     return {{{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}}}, 3};
   }
 
-  static void add_difference(const Vec3f& corner, const Vec3f& point, unsigned base, Tick factor,
-                             ExactVector& result) noexcept {
-    if (factor == 0) return;
-    const std::array<float, 3> c{corner.x, corner.y, corner.z}, p{point.x, point.y, point.z};
-    const UnitFraction weight{{factor & (kDigitBase - 1), factor >> kDigitBits, 0}, 0};
-    const auto parts = [base](float x) {
-      FloatParts of_x = FloatParts::of(x);
-      of_x.shift = of_x.mantissa == 0 ? 0 : of_x.shift - base;
-      return of_x;
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      WideInteger<kCoordinateDigits> seen;
-      seen.add_product(parts(c[k]), {1, 0});
-      seen.add_product(parts(p[k]), {1, 0}, -1);
-      seen.settle();
-      result[k].add_product(seen, weight);
-      result[k].settle();
-    }
+  // At one end of the cell, a corner, or one coordinate of it.
+  const ExactVector& seen(std::size_t end, std::size_t corner) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) (void)seen(end, corner, k);
+    return seen_[end][corner];
+  }
+  const Coordinate& seen(std::size_t end, std::size_t corner, std::size_t axis) noexcept {
+    Coordinate& result = seen_[end][corner][axis];
+    bool& is_made = is_made_[end][corner][axis];
+    if (is_made) return result;
+    const auto of = [axis](const Vec3f& p) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; };
+    add_difference(of(corners_[corner].from), of(point_.from), weights_[end][0], result);
+    add_difference(of(corners_[corner].to), of(point_.to), weights_[end][1], result);
+    result.settle();
+    is_made = true;
+    return result;
   }
 
-  std::array<std::array<ExactVector, 3>, 2> ends_;
+  // Adds (a - b) * weight.
+  void add_difference(float a, float b, const UnitFraction& weight, Coordinate& result) const noexcept {
+    if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
+    WideInteger<kCoordinateDigits> difference;
+    // Most differences are exact in double, and whole numbers of few bits.
+    constexpr double kMost = 0x1p62;
+    const double rounded = double{a} - double{b}, back = double{a} - rounded;
+    const bool is_exact = (double{a} - (rounded + back)) + (back - double{b}) == 0;
+    const double units = std::ldexp(rounded, 149 - static_cast<int>(base_));
+    if (is_exact && std::fabs(units) < kMost) {
+      const auto whole = static_cast<std::int64_t>(units);
+      difference.set_digit(0, whole & (kDigitBase - 1));
+      difference.set_digit(1, whole >> kDigitBits & (kDigitBase - 1));
+      difference.set_digit(2, whole >> 2 * kDigitBits);
+    } else {
+      const auto parts = [this](float x) {
+        FloatParts of_x = FloatParts::of(x);
+        of_x.shift = of_x.mantissa == 0 ? 0 : of_x.shift - base_;
+        return of_x;
+      };
+      difference.add_product(parts(a), {1, 0});
+      difference.add_product(parts(b), {1, 0}, -1);
+      difference.settle();
+    }
+    result.add_product(difference, weight);
+  }
+
+  const std::array<MovingPoint, 3>& corners_;
+  const MovingPoint& point_;
+  unsigned base_ = 253;  // all coordinates are multiples of 2^(base - 149)
+  std::array<std::array<UnitFraction, 2>, 2> weights_;
+  std::array<std::array<ExactVector, 3>, 2> seen_;
+  std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
+
+// An ExactCell that is made when it is asked for.
+struct Integers {
+  const std::array<MovingPoint, 3>& corners;
+  const MovingPoint& point;
+  Cell cell;
+  std::optional<ExactCell> made;
+
+  ExactCell& get() noexcept { return made ? *made : made.emplace(corners, point, cell); }
+};
+
+// The sign that all have, 0 where they differ or one is 0.
+template <std::size_t kCount>
+int common_sign(const std::array<int, kCount>& signs) noexcept {
+  for (const int sign : signs) {
+    if (sign != signs[0]) return 0;
+  }
+  return signs[0];
+}
+
+// Those that double is sure of; 0 is any other.
+template <std::size_t kCount>
+std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, double bound) noexcept {
+  std::array<int, kCount> signs;
+  for (std::size_t i = 0; i < kCount; ++i) signs[i] = (values[i] > bound) - (values[i] < -bound);
+  return signs;
+}
 
 }  // namespace
 
@@ -232,50 +283,66 @@ CrossingSigns::Corners CrossingSigns::corners_at(Tick t) const noexcept {
   return at;
 }
 
-// Those that double is sure of, and the others by integers.
-template <std::size_t kCount, class Exact>
-std::array<int, kCount> CrossingSigns::certain_signs(const std::array<double, kCount>& values, double bound,
-                                                     const Cell& cell, const Exact& sign_of_exact) const noexcept {
-  std::array<int, kCount> signs{};
-  bool is_certain = true;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    signs[i] = values[i] > bound ? 1 : values[i] < -bound ? -1 : 0;
-    is_certain = is_certain && signs[i] != 0;
-  }
-  if (is_certain) return signs;
-  const ExactCell exact(corners_, point_, cell);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    if (signs[i] == 0) signs[i] = sign_of_exact(exact, i);
-  }
-  return signs;
-}
-
-std::array<int, 3> CrossingSigns::side(std::size_t k, std::size_t axis, const Cell& cell) const noexcept {
+Verdict CrossingSigns::judge(std::size_t axis, const Cell& cell) const noexcept {
   const Corners from = corners_at(cell.from), to = corners_at(cell.to);
-  const Seen &a0 = from[k], &a1 = to[k], &b0 = from[kNext[k]], &b1 = to[kNext[k]];
-  const std::array<double, 3> s{side_of(a0, b0, axis), side_of(a0, b1, axis) + side_of(a1, b0, axis),
-                                side_of(a1, b1, axis)};
-  return certain_signs(s, side_bound_[axis], cell,
-                       [&](const ExactCell& exact, std::size_t i) { return exact.side(k, axis, i); });
+  std::array<std::array<int, 3>, 3> sides;
+  bool is_left = false, is_right = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Seen &a0 = from[k], &a1 = to[k], &b0 = from[kNext[k]], &b1 = to[kNext[k]];
+    sides[k] =
+        rounded_signs<3>({side_of(a0, b0, axis), side_of(a0, b1, axis) + side_of(a1, b0, axis), side_of(a1, b1, axis)},
+                         side_bound_[axis]);
+    const int sign = common_sign(sides[k]);
+    is_left = is_left || sign > 0;
+    is_right = is_right || sign < 0;
+  }
+  if (is_left && is_right) return {};
+  std::array<int, 4> volume = rounded_signs(volume_sums(from, to), volume_bound_);
+  if (common_sign(volume) != 0) return {};
+
+  Integers integers{corners_, point_, cell, {}};
+  std::size_t never_right = 0, never_left = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (sides[k][i] == 0) sides[k][i] = integers.get().side(k, axis, i);
+    }
+    const auto [least, most] = std::minmax({sides[k][0], sides[k][1], sides[k][2]});
+    if (least == 0 && most == 0) return {};
+    never_right += least >= 0;
+    never_left += most <= 0;
+    if (never_right > 0 && never_left > 0) return {};
+  }
+  int changes = 0, last = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const int sign = volume[i] != 0 ? volume[i] : integers.get().volume(i);
+    changes += sign * last < 0;
+    if (sign != 0) last = sign;
+  }
+  if (changes == 0) return {};
+  if (changes == 1 && (never_right == 3 || never_left == 3)) return {Verdict::kCrossing, last};
+  return {Verdict::kOpen};
 }
 
-std::array<int, 4> CrossingSigns::volume(const Cell& cell) const noexcept {
-  return certain_signs(volume_sums(corners_at(cell.from), corners_at(cell.to)), volume_bound_, cell,
-                       [](const ExactCell& exact, std::size_t i) { return exact.volume(i); });
-}
-
-int CrossingSigns::side_at(std::size_t k, std::size_t axis, Tick t) const noexcept {
+int CrossingSigns::crossing_of_ray(std::size_t axis, Tick t) const noexcept {
   const Corners at = corners_at(t);
-  const std::array<double, 1> s{side_of(at[k], at[kNext[k]], axis)};
-  return certain_signs(s, side_bound_[axis], {t, t},
-                       [&](const ExactCell& exact, std::size_t i) { return exact.side(k, axis, i); })[0];
+  std::array<int, 3> sides;
+  for (std::size_t k = 0; k < 3; ++k)
+    sides[k] = rounded_signs<1>({side_of(at[k], at[kNext[k]], axis)}, side_bound_[axis])[0];
+  const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+  if (least < 0 && most > 0) return 0;
+  const int volume = rounded_signs<1>({dot_of(at[0], cross_of(at[1], at[2]))}, volume_bound_)[0];
+  Integers integers{corners_, point_, {t, t}, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (sides[k] == 0) sides[k] = integers.get().side(k, axis, 0);
+    if (sides[k] == 0 || sides[k] != sides[0]) return 0;
+  }
+  return (volume != 0 ? volume : integers.get().volume(0)) == sides[0] ? sides[0] : 0;
 }
 
 int CrossingSigns::volume_at(Tick t) const noexcept {
   const Corners at = corners_at(t);
-  const std::array<double, 1> v{dot_of(at[0], cross_of(at[1], at[2]))};
-  return certain_signs(v, volume_bound_, {t, t},
-                       [](const ExactCell& exact, std::size_t i) { return exact.volume(i); })[0];
+  const int sign = rounded_signs<1>({dot_of(at[0], cross_of(at[1], at[2]))}, volume_bound_)[0];
+  return sign != 0 ? sign : ExactCell(corners_, point_, {t, t}).volume(0);
 }
 
 Bernstein<double, 3> CrossingSigns::rounded_volume(const Cell& cell) const noexcept {

@@ -49,6 +49,17 @@ struct MovingPoint {
   Vec3f from, to;
 };
 
+/// What a triangle does in a cell.
+struct Verdict {
+  enum Kind {
+    kNothing,   ///< the point does not cross it
+    kCrossing,  ///< the point crosses it, once
+    kOpen       ///< the cell is too long to tell
+  };
+  Kind kind = kNothing;
+  int change = 0;  ///< of a crossing: the sign of the volume behind it, which is what the winding number changes by
+};
+
 class CrossingSigns {
  public:
   CrossingSigns(const std::array<MovingPoint, 3>& corners, const MovingPoint& point) noexcept;
@@ -56,14 +67,15 @@ class CrossingSigns {
   /// Whether all corners are, along one axis, on the same side of the point throughout: then nothing is crossed.
   [[nodiscard]] bool is_beside() const noexcept;
 
-  /// The signs of the Bernstein coefficients over a cell: of the volume, and of the side of edge k, from corner k to
-  /// the next, along axis 0, 1 or 2.
-  [[nodiscard]] std::array<int, 4> volume(const Cell& cell) const noexcept;
-  [[nodiscard]] std::array<int, 3> side(std::size_t k, std::size_t axis, const Cell& cell) const noexcept;
+  /// What the triangle does in a cell, with sides along axis 0, 1 or 2.
+  [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
-  /// The sign of the volume at a moment, and that of the side of edge k.
+  /// What the triangle adds to the winding number at a moment: 1 where the half-line from the point along the axis leaves
+  /// through it, -1 where it enters, else 0.
+  [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
+
+  /// The sign of the volume at a moment.
   [[nodiscard]] int volume_at(Tick t) const noexcept;
-  [[nodiscard]] int side_at(std::size_t k, std::size_t axis, Tick t) const noexcept;
 
   /// The volume over a cell as far as double can tell.
   [[nodiscard]] Bernstein<double, 3> rounded_volume(const Cell& cell) const noexcept;
@@ -72,9 +84,6 @@ class CrossingSigns {
   using Seen = std::array<double, 3>;
   using Corners = std::array<Seen, 3>;
   [[nodiscard]] Corners corners_at(Tick t) const noexcept;
-  template <std::size_t kCount, class Exact>
-  [[nodiscard]] std::array<int, kCount> certain_signs(const std::array<double, kCount>& values, double bound,
-                                                      const Cell& cell, const Exact& sign_of_exact) const noexcept;
 
   std::array<MovingPoint, 3> corners_;
   MovingPoint point_;

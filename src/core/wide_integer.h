@@ -115,17 +115,6 @@ class WideInteger {
     for (std::size_t k = 0; k < other.size(); ++k) digits_[k + by] += power * other.digit(k);
   }
 
-  /// Adds sign * a * b. The digits of both must be settled.
-  template <std::size_t kA, std::size_t kB>
-  void add_product(const WideInteger<kA>& a, const WideInteger<kB>& b, std::int64_t sign = 1) noexcept {
-    if (a.size() == 0 || b.size() == 0) return;
-    grow(a.size() + b.size() - 1);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::int64_t digit = sign * a.digit(i);
-      for (std::size_t j = 0; j < b.size(); ++j) digits_[i + j] += digit * b.digit(j);
-    }
-  }
-
   /// Brings every digit into [-2^23, 2^23), and forgets leading zeros.
   void settle() noexcept {
     std::int64_t carry = 0;

@@ -1,17 +1,19 @@
 /// Winding numbers and crossings of moving points, in whole numbers and rationals: what containment is held against.
 ///
 /// A winding number is counted along a slanted half-line, and not an upright one, with signs of determinants of whole
-/// numbers. Where one of them is zero because the point is on something, the point is really moved, by 2^-400 along x,
-/// 2^-1000 along y and 2^-2000 along z, and asked again. Roots are isolated by Sturm's theorem in rationals.
+/// numbers. Where one of them is zero because the point is on something, the point is really moved, by a small step along x,
+/// one that is smaller by far along y, and one that is smaller still along z, and asked again. Roots are isolated by Sturm's theorem in rationals.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -42,7 +44,7 @@ struct Fraction {
   }
 };
 
-/// Twice 2^53 times a coordinate at t, and so whole, as seen from a point that moves too.
+/// 2^(149 + 53) times a coordinate at t, and so whole, as seen from a point that moves too.
 [[nodiscard]] inline Integers seen_at(const Vec3f& from, const Vec3f& to, const Vec3f& point_from,
                                       const Vec3f& point_to, const Fraction& t) {
   const mpz_class after = t.numerator, before = (std::int64_t{1} << 53) - t.numerator;
@@ -53,53 +55,74 @@ struct Fraction {
           at(from.z, to.z, point_from.z, point_to.z)};
 }
 
-[[nodiscard]] inline int sign_of_determinant(const Integers& a, const Integers& b, const Integers& c) {
-  const mpz_class x = b[1] * c[2] - b[2] * c[1], y = b[2] * c[0] - b[0] * c[2], z = b[0] * c[1] - b[1] * c[0];
-  return sgn(mpz_class(a[0] * x + a[1] * y + a[2] * z));
+/// Integer is mpz_class, or std::int64_t where that is enough.
+template <class Integer>
+using Place = std::array<Integer, 3>;
+
+inline int sign_of(const mpz_class& x) { return sgn(x); }
+inline int sign_of(std::int64_t x) { return (x > 0) - (x < 0); }
+
+template <class Integer>
+[[nodiscard]] int sign_of_determinant(const Place<Integer>& a, const Place<Integer>& b, const Place<Integer>& c) {
+  const Integer x = b[1] * c[2] - b[2] * c[1], y = b[2] * c[0] - b[0] * c[2], z = b[0] * c[1] - b[1] * c[0];
+  return sign_of(Integer(a[0] * x + a[1] * y + a[2] * z));
 }
 
 /// The winding number of the origin, or nothing where a determinant is zero.
-struct MaybeWinding {
-  bool is_certain = true;
+template <class Integer>
+[[nodiscard]] std::optional<int> winding_along(const std::vector<Place<Integer>>& vertices,
+                                               std::span<const Corners> faces, const Place<Integer>& direction) {
   int number = 0;
-};
-[[nodiscard]] inline MaybeWinding winding_along(const std::vector<Integers>& vertices, std::span<const Corners> faces,
-                                                const Integers& direction) {
-  MaybeWinding result;
   for (const Corners& face : faces) {
-    const Integers &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
+    const Place<Integer>&a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
     if (a == b || b == c || c == a) continue;  // without area
     const int ab = sign_of_determinant(direction, a, b);
-    if (ab == 0) return {false, 0};
+    if (ab == 0) return std::nullopt;
     const int bc = sign_of_determinant(direction, b, c);
-    if (bc == 0) return {false, 0};
+    if (bc == 0) return std::nullopt;
     if (ab != bc) continue;
     const int ca = sign_of_determinant(direction, c, a);
-    if (ca == 0) return {false, 0};
+    if (ca == 0) return std::nullopt;
     if (ab != ca) continue;
     const int volume = sign_of_determinant(a, b, c);
-    if (volume == 0) return {false, 0};
-    if (volume == ab) result.number += ab;
+    if (volume == 0) return std::nullopt;
+    if (volume == ab) number += ab;
   }
-  return result;
+  return number;
 }
 
 /// The winding number of a point at t. Corners are those of triangles.
 [[nodiscard]] inline int winding_number(const Segment& segment, std::span<const Corners> faces, const Vec3f& from,
                                         const Vec3f& to, double t) {
   std::vector<Integers> vertices;
-  for (std::size_t v = 0; v < segment.from.count; ++v)
+  mp_bitcnt_t zeros = 202;
+  mpz_class largest = 0;
+  for (std::size_t v = 0; v < segment.from.count; ++v) {
     vertices.push_back(seen_at(segment.from[v], segment.to[v], from, to, Fraction(t)));
-  const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
-  if (const MaybeWinding plain = winding_along(vertices, faces, directions[0]); plain.is_certain) return plain.number;
-  // One unit is 2^-202, so that the step along x is 2^-198 of it.
-  constexpr int kFinest = 2000 - 202;
+    for (const mpz_class& x : vertices.back()) {
+      if (x != 0) zeros = std::min(zeros, mpz_scan1(x.get_mpz_t(), 0));
+      if (abs(x) > largest) largest = abs(x);
+    }
+  }
+  // As small as they can be.
   for (Integers& v : vertices) {
-    const std::array<unsigned, 3> step{400, 1000, 2000};
-    for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << kFinest) - (mpz_class(1) << (2000U - step[k]));
+    for (mpz_class& x : v) x >>= zeros;
+  }
+  largest >>= zeros;
+  if (largest < (1 << 18)) {
+    std::vector<Place<std::int64_t>> small;
+    for (const Integers& v : vertices) small.push_back({v[0].get_si(), v[1].get_si(), v[2].get_si()});
+    if (const auto number = winding_along<std::int64_t>(small, faces, {3, 7, 11})) return *number;
+  }
+  const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
+  if (const auto number = winding_along(vertices, faces, directions[0])) return *number;
+  // Steps that are small against anything that is not zero: volumes and areas are whole, and areas below size^2.
+  const mp_bitcnt_t size = mpz_sizeinbase(largest.get_mpz_t(), 2) + 8, finest = 7 * size;
+  for (Integers& v : vertices) {
+    for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << finest) - (mpz_class(1) << (finest - (2 * k + 3) * size));
   }
   for (const Integers& direction : directions) {
-    if (const MaybeWinding moved = winding_along(vertices, faces, direction); moved.is_certain) return moved.number;
+    if (const auto number = winding_along(vertices, faces, direction)) return *number;
   }
   throw std::logic_error("no direction meets no edge");
 }
@@ -184,7 +207,7 @@ struct ExactCrossings {
 };
 [[nodiscard]] inline ExactCrossings find_crossings(const Segment& segment, std::span<const Corners> faces,
                                                    const Vec3f& from, const Vec3f& to) {
-  const mpq_class kWidth = mpq_class(1) / (mpz_class(1) << 64);
+  const mpq_class kWidth(1, mpz_class(1) << 50);
   using Line = std::array<Polynomial, 3>;
   const auto line = [&](std::uint32_t v) {
     const Vec3f a = segment.from[v], b = segment.to[v];
@@ -216,19 +239,27 @@ struct ExactCrossings {
     if (volume.is_zero()) return {false, {}};
     std::vector<SturmSequence> sides;
     for (const Line& area : areas) sides.emplace_back(dot(area, normal));
+    if (volume.sign_at(0) == 0 || volume.sign_at(1) == 0) return {false, {}};
+    const auto middle_of = [&volume](const mpq_class& from_t, const mpq_class& to_t) {
+      const mpq_class middle = (from_t + to_t) / 2;
+      return volume.sign_at(middle) != 0 ? middle : mpq_class((3 * from_t + 5 * to_t) / 8);
+    };
     std::vector<std::pair<mpq_class, mpq_class>> open{{0, 1}};
     while (!open.empty()) {
-      const auto [low, high] = open.back();
+      auto [low, high] = open.back();
       open.pop_back();
-      if (volume.sign_at(low) == 0 || volume.sign_at(high) == 0) return {false, {}};
       const int roots = volume.roots_between(low, high);
       if (roots == 0) continue;
-      if (roots > 1 || high - low > kWidth) {
+      if (roots > 1) {
         if (high - low < kWidth) return {false, {}};
-        const mpq_class middle = low + (high - low) * mpq_class(501, 1003);
+        const mpq_class middle = middle_of(low, high);
         open.emplace_back(low, middle);
         open.emplace_back(middle, high);
         continue;
+      }
+      while (high - low > kWidth) {
+        const mpq_class middle = middle_of(low, high);
+        (volume.sign_at(middle) == volume.sign_at(high) ? high : low) = middle;
       }
       bool is_inside = true;
       for (const SturmSequence& side : sides) {
