@@ -25,7 +25,7 @@ struct Options {
   std::string question;
   QuerySpan span;
   bool json = false;
-  std::vector<Question> questions = {collapse_question()};
+  std::vector<Question> questions = {collapse_question(), contain_question()};
 };
 
 // Whether the command line gave an option a value.
@@ -103,6 +103,7 @@ std::string footer(const std::vector<Question>& questions) {
          "  chronormal query collapse face.glb\n"
          "  chronormal query collapse walk/ --from 1 --to 2.5 --json\n"
          "  chronormal query collapse body.obj walk.pc2 -o collapses.npz\n"
+         "  chronormal query contain balloon.glb --points dust.npy -o crossings.npz\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 

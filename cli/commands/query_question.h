@@ -23,6 +23,7 @@ struct Question {
 };
 
 [[nodiscard]] Question collapse_question();
+[[nodiscard]] Question contain_question();
 
 }  // namespace chronormal::cli
 

@@ -319,15 +319,15 @@ Result<Containment> Containment::make(const Topology& topology, const Points& po
                                   std::move(faces), std::move(tree.nodes)}));
 }
 
-std::vector<std::int32_t> Containment::winding_numbers(const Segment& segment, double t,
-                                                       VectorView<const float> points) const {
-  assert(0 <= t && t <= 1);
+std::vector<std::int32_t> Containment::winding_numbers(const Segment& segment, double t, VectorView<const float> from,
+                                                       VectorView<const float> to) const {
+  assert(0 <= t && t <= 1 && from.count == to.count);
   const MeshInSegment mesh = mesh_->in(segment);
   const Tick tick = std::llround(t * static_cast<double>(kTicks));
-  std::vector<std::int32_t> result(points.count);
-  for_blocks(points.count, [&](std::size_t, const IndexRange& block) {
+  std::vector<std::int32_t> result(from.count);
+  for_blocks(from.count, [&](std::size_t, const IndexRange& block) {
     for (std::size_t p = block.first; p < block.end(); ++p)
-      result[p] = Passage(mesh, {points[p], points[p]}).winding_number(tick);
+      result[p] = Passage(mesh, {from[p], to[p]}).winding_number(tick);
   });
   return result;
 }

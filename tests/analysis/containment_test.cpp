@@ -87,8 +87,8 @@ struct Scene {
     return containment().crossings(segment(), view(a), view(b));
   }
   [[nodiscard]] std::vector<std::int32_t> windings(double t) const {
-    const std::vector<float> at = flat(t == 0 ? from : to);
-    return containment().winding_numbers(segment(), t, view(at));
+    const std::vector<float> a = flat(from), b = flat(to);
+    return containment().winding_numbers(segment(), t, view(a), view(b));
   }
   [[nodiscard]] int expected_winding(std::size_t p, double t) const {
     return exact::winding_number(segment(), faces, from[p], to[p], t);
@@ -345,7 +345,7 @@ TEST(Containment, faces_of_any_number_of_corners_and_seams_are_closed) {
   ASSERT_TRUE(containment.ok()) << containment.error().text();
   const Segment segment{&topology, view(xyz), view(xyz)};
   const std::vector<float> from = {0.5F, 0.5F, 0.5F}, to = {0.5F, 0.5F, 2};
-  EXPECT_EQ(containment.value().winding_numbers(segment, 0, view(from)), std::vector<std::int32_t>{1});
+  EXPECT_EQ(containment.value().winding_numbers(segment, 0, view(from), view(from)), std::vector<std::int32_t>{1});
   const std::vector<Crossing> crossings = containment.value().crossings(segment, view(from), view(to));
   ASSERT_EQ(crossings.size(), 1U);  // through the diagonal
   EXPECT_EQ(crossings[0].face, 1U);

@@ -64,14 +64,15 @@ class Containment {
   Containment& operator=(Containment&&) noexcept;
   ~Containment();
 
-  /// The winding number of each point at t, which is rounded to a multiple of 2^-48.
-  /// The segment must be of the topology that this was made of.
+  /// The winding number of each point at t, which is rounded to a multiple of 2^-48. Points move on straight lines as
+  /// the segment does; one that rests has the same position twice.
+  /// The segment must be of the topology that this was made of; from and to must have one position for each point
   [[nodiscard]] std::vector<std::int32_t> winding_numbers(const Segment& segment, double t,
-                                                          VectorView<const float> points) const;
+                                                          VectorView<const float> from,
+                                                          VectorView<const float> to) const;
 
-  /// All crossings of points that move on straight lines while the segment does, ordered by point and t.
+  /// All crossings in the segment, ordered by point and t.
   /// Cost: O(log F) for each point, and a cubic for each face that comes near it.
-  /// from and to must have one position for each point
   [[nodiscard]] std::vector<Crossing> crossings(const Segment& segment, VectorView<const float> from,
                                                 VectorView<const float> to) const;
 

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/io/points_file.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
@@ -85,6 +86,18 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// Errors: of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
+
+/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
+/// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
+/// motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them it moves
+/// straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
+///     ""         inside: one row for each point
+///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
+///                segment and weight
+/// Where the weights of an animation jump, a point may be elsewhere without a crossing.
+/// Errors: of segment_parts() and of Containment::make().
+[[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
+                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
 /// the table has no name. Errors: kUsage for another extension; those of write_output().
