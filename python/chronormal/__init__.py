@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "compare", "curves", "errors", "inspect",
-           "read"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "compare", "contain", "curves", "errors",
+           "inspect", "read"]
 
 
 def _vectors(array, place):
@@ -128,6 +128,24 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
         targets.append((vertices, _vectors(target, f"deltas[{k}]")))
     offsets, corners = _polygons(faces)
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
+
+
+def contain(positions, faces, points, times=None):
+    """Say which points are inside a closed mesh that deforms, and when each crosses its surface; return a dict of arrays.
+
+    positions  (T, V, 3) keyframes; vertices move on straight lines between them
+    faces      (F, 3) vertices of each face, counted from 0; polygons as the package says
+    points     (P, 3) points that rest, or (P, 2, 3): each moves straight from the first time to the last
+    times      (T,) ascending; None: 0, 1, 2 ...
+
+    inside (P,) bool is about the first time. crossing_point, crossing_time, crossing_segment, crossing_face, crossing_inward
+    and crossing_normal have a row for each crossing, ordered by point and time. A mesh that is not closed is a ValueError.
+    """
+    offsets, corners = _polygons(faces)
+    positions = _vectors(positions, "positions")
+    times = _np.arange(len(positions)) if times is None else times
+    return _chronormal.contain(positions, offsets, corners, _np.ascontiguousarray(times, dtype=_np.float64),
+                               _np.ascontiguousarray(points, dtype=_np.float64))
 
 
 def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
