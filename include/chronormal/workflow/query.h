@@ -21,6 +21,7 @@
 #include <variant>
 #include <vector>
 
+#include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
 #include "chronormal/io/points_file.h"
 #include "chronormal/motion/motion.h"
@@ -86,6 +87,16 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// Errors: of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
+
+/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that moves
+/// does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
+/// float32; over targets it moves with the weight. Tables:
+///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
+///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
+///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
+/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
+[[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
+                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
 /// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
