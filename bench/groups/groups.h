@@ -20,6 +20,8 @@ void run_blend(Suite& suite, const Size& size);
 
 /// What holds over a whole segment: collapse, facing.
 void run_uses(Suite& suite, const Size& size);
+/// Points that go through the surface.
+void run_containment(Suite& suite, const Size& size);
 
 /// How good a scheme is, to be held against what it costs.
 struct SchemeQuality {
