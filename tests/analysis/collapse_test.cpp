@@ -1,175 +1,170 @@
-#include "analysis/collapse.h"
+// When faces collapse, against polynomials in whole numbers of any size.
+
+#include "chronormal/analysis/collapse.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/whole_polynomial.h"
 
 namespace chronormal::collapse_test {
 namespace {
 
-std::vector<ControlNormals> normals_of(const Motion& motion) {
-  std::vector<ControlNormals> normals(motion.topology.face_count());
-  face_control_normals(motion.segment(0), {0, normals.size()}, normals);
-  return normals;
-}
+using test::WholePolynomial;
 
-// The curve with these values of a scalar quadratic (in power form) along z, beside a constant vector.
-ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}) {
-  const auto at = [&](double z) { return beside + Vec3d{0, 0, z}; };
-  return {at(a0), at(a0 + a1 / 2), at(a0 + a1 + a2)};
-}
-
-ControlNormals with_roots(double first, double second) { return along_z(first * second, -(first + second), 1); }
-
-TEST(Collapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
-  // a and b stand still, c goes from y = when to y = when - 1 in a plane.
-  for (const float when : {0.001F, 0.1F, 0.25F, 0.5F, 0.75F, 0.999F}) {
-    const double start = when, end = static_cast<double>(when) - 1;
-    const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 2}, {1, 0, 2}, {0.25, start, 2}},
-                                                {{0, 0, 2}, {1, 0, 2}, {0.5, end, 2}});
-    const Collapses found = find_collapses(normals_of(motion)[0]);
-    ASSERT_EQ(found.count, 1U) << when;
-    EXPECT_NEAR(found.at[0].t, start, 1e-6) << when;
-    EXPECT_TRUE(found.at[0].turns_over) << when;
-    EXPECT_FALSE(found.everywhere);
+// The components of n(t), from positions alone.
+std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::size_t face) {
+  const auto vertices = segment.topology->face(face);
+  std::array<test::WholeVector, 4> values;
+  for (const long t : {-1L, 0L, 1L, 2L}) {
+    values[static_cast<std::size_t>(t + 1)] = test::whole_normal(segment, vertices, t);
   }
+  const auto component = [&](std::size_t k) {
+    return WholePolynomial::through(values[0][k], values[1][k], values[2][k], values[3][k]);
+  };
+  return {component(0), component(1), component(2)};
 }
 
-TEST(Collapse, face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over) {
-  for (const ControlNormals& normals : normals_of(fixtures::point_reflected_soup(200))) {
-    const Collapses found = find_collapses(normals);
-    ASSERT_EQ(found.count, 1U);
-    EXPECT_NEAR(found.at[0].t, 0.5, 1e-5);
-    EXPECT_FALSE(found.at[0].turns_over);
+bool is_unit(const Vec3d& v) { return std::fabs(length(v) - 1) < 1e-14; }
+
+// Whether no component of a direction has another sign than n at t, where that is not next to nothing.
+bool points_along(const Vec3d& direction, const std::array<WholePolynomial, 3>& n, double t) {
+  const std::array<double, 3> components{direction.x, direction.y, direction.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::fabs(components[k]) > 1e-6 && components[k] * n[k].sign_at(t) < 0) return false;
   }
+  return true;
 }
 
-TEST(Collapse, mirror_image_turns_over_half_way) {
-  for (const ControlNormals& normals : normals_of(fixtures::inside_out_soup(200))) {
-    const Collapses found = find_collapses(normals);
-    ASSERT_EQ(found.count, 1U);
-    EXPECT_NEAR(found.at[0].t, 0.5, 1e-9);
-    EXPECT_TRUE(found.at[0].turns_over);
-  }
-}
-
-// In a plane, n(t) is a scalar: its roots by the school formula, in long double.
-TEST(Collapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
-  Motion motion = fixtures::large_soup(2000, 21);
-  for (Motion::Keyframe& keyframe : motion.keyframes) {
-    for (std::size_t i = 2; i < keyframe.positions.size(); i += 3) keyframe.positions[i] = 0;
-  }
-  const std::vector<ControlNormals> normals = normals_of(motion);
-  std::size_t once = 0, twice = 0, judged = 0;
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    const float *p = motion.keyframes[0].positions.data() + 9 * f, *q = motion.keyframes[1].positions.data() + 9 * f;
-    const auto cross_at = [](const float* e, const float* g, int a, int b) {
-      const auto edge = [](const float* points, int to, int k) {
-        return static_cast<long double>(points[3 * to + k]) - static_cast<long double>(points[k]);
-      };
-      return edge(e, a, 0) * edge(g, b, 1) - edge(e, a, 1) * edge(g, b, 0);
-    };
-    const long double start = cross_at(p, p, 1, 2), end = cross_at(q, q, 1, 2);
-    const long double mixed = cross_at(p, q, 1, 2) + cross_at(q, p, 1, 2);
-    const long double a = start + end - mixed, b = mixed - 2 * start, c = start;
-    std::vector<double> roots;
-    if (const long double d = b * b - 4 * a * c; d > 0) {
-      for (const int sign : {-1, 1}) {
-        const auto t = static_cast<double>((-b + static_cast<long double>(sign) * std::sqrt(d)) / (2 * a));
-        if (t > 0 && t < 1) roots.push_back(t);
-      }
+std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3>& n) {
+  const WholePolynomial common =
+      WholePolynomial::greatest_common_divisor(n[0], WholePolynomial::greatest_common_divisor(n[1], n[2]));
+  if (common.is_zero()) return found.always && found.count == 0 ? "" : "zero throughout";
+  if (found.always) return "not zero throughout";
+  const std::size_t roots = common.count_roots();
+  std::size_t inside = 0;
+  for (const Collapse& one : found.instants()) {
+    const bool is_double = one.lower == one.upper;
+    if (is_double && common.sign_at(one.lower) != 0) return "no zero at a double";
+    if (!is_double && std::nextafter(one.lower, 2.0) != one.upper && one.lower != 0) return "no neighbours";
+    inside += is_double ? 1 : common.count_roots(one.lower, one.upper);
+    const bool starts = is_double && one.lower == 0, ends = is_double && one.upper == 1;
+    const double low = starts      ? 0
+                       : is_double ? std::nextafter(one.lower, 0.0)
+                                   : one.lower,
+                 high = ends        ? 1
+                        : is_double ? std::nextafter(one.upper, 1.0)
+                                    : one.upper;
+    if (starts != (one.before == Vec3d{}) || ends != (one.after == Vec3d{})) return "a side that is not there";
+    if ((!starts && !is_unit(one.before)) || (!ends && !is_unit(one.after))) return "length of a direction";
+    const int before = common.sign_at(low), after = common.sign_at(high);
+    if (!starts && !ends && before != 0 && after != 0) {
+      if (one.turns_over != (before * after < 0)) return "turns over";
+      if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
-    if (roots.size() == 2 && roots[0] > roots[1]) std::swap(roots[0], roots[1]);
-    bool is_close_call = std::fabs(static_cast<double>(b * b - 4 * a * c)) < 1e-5;
-    for (const double t : roots) is_close_call |= t < 1e-3 || t > 1 - 1e-3;
-    if (is_close_call) continue;
-    ++judged;
-    const Collapses found = find_collapses(normals[f]);
-    ASSERT_EQ(found.count, roots.size()) << f;
-    for (std::size_t i = 0; i < roots.size(); ++i) {
-      EXPECT_NEAR(found.at[i].t, roots[i], 1e-9) << f;
-      EXPECT_TRUE(found.at[i].turns_over) << f;
-    }
-    once += roots.size() == 1 ? 1U : 0U;
-    twice += roots.size() == 2 ? 1U : 0U;
+    if ((starts || ends) && one.turns_over) return "turns over at an end";
+    if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
+    if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  EXPECT_GT(judged, 1900U);
-  EXPECT_GT(once, 500U);
-  EXPECT_GT(twice, 50U);
+  // Two that no double lies between count as one.
+  return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 
-TEST(Collapse, two_zeros_are_two_and_very_near_ones_are_one_that_comes_back) {
-  const Collapses two = find_collapses(with_roots(0.25, 0.75));
-  ASSERT_EQ(two.count, 2U);
-  EXPECT_NEAR(two.at[0].t, 0.25, 1e-12);
-  EXPECT_NEAR(two.at[1].t, 0.75, 1e-12);
-  EXPECT_TRUE(two.at[0].turns_over && two.at[1].turns_over);
-  const Collapses near = find_collapses(with_roots(0.5, 0.5001));
-  ASSERT_EQ(near.count, 1U);
-  EXPECT_NEAR(near.at[0].t, 0.5, 2e-4);
-  EXPECT_FALSE(near.at[0].turns_over);
-  EXPECT_EQ(find_collapses(with_roots(0.5, 0.51)).count, 2U);
+TEST(ExactCollapse, no_answer_is_wrong_in_any_family) {
+  std::size_t collapsing = 0, turning = 0;
+  const std::size_t wrong = test::judge_cases(815, [&](const Segment& segment, std::size_t face, test::Random&) {
+    const Collapses found = find_collapses(segment, face);
+    collapsing += found.count;
+    for (const Collapse& one : found.instants()) turning += one.turns_over ? 1U : 0U;
+    return fault_of(found, normal_polynomials(segment, face));
+  });
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(collapsing, 10000U);
+  EXPECT_GT(turning, 5000U);
 }
 
-TEST(Collapse, a_miss_counts_below_the_share_only) {
-  // n(t) = (d, 0, 2 t - 1): the largest control normal is 1.
-  EXPECT_EQ(find_collapses(along_z(-1, 2, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
-  EXPECT_EQ(find_collapses(along_z(-1, 1.5, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
-  EXPECT_EQ(find_collapses(along_z(-1, 1.5, 0, {kCollapseShare / 2, 0, 0})).count, 1U);
-  const Collapses found = find_collapses(along_z(-1, 2, 0, {kCollapseShare / 2, 0, 0}));
+TEST(Collapse, a_range_of_faces_has_those_that_collapse) {
+  test::Random random(4);
+  std::vector<test::MovingTriangle> triangles(500);
+  for (auto& triangle : triangles)
+    triangle = random.below(2) == 0 ? test::on_a_lattice(random) : test::ordinary(random);
+  const Motion motion = test::soup_of(triangles);
+  std::vector<ControlNormals> normals(400);
+  face_control_normals(motion.segment(0), {50, 400}, normals);
+  const std::vector<FaceCollapses> found = find_collapses(motion.segment(0), {50, 400}, normals);
+  std::size_t next = 0;
+  for (std::size_t f = 50; f < 450; ++f) {
+    const Collapses alone = find_collapses(motion.segment(0), f);
+    if (!alone.always && alone.count == 0) continue;
+    ASSERT_LT(next, found.size());
+    EXPECT_EQ(found[next].face, f);
+    EXPECT_EQ(found[next].collapses.count, alone.count);
+    EXPECT_EQ(found[next++].collapses.always, alone.always);
+  }
+  EXPECT_EQ(next, found.size());
+  EXPECT_GT(next, 50U);
+}
+
+Collapses collapses_of(const std::vector<fixtures::Point>& from, const std::vector<fixtures::Point>& to) {
+  const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);
+  return find_collapses(motion.segment(0), 0);
+}
+
+TEST(Collapse, a_vertex_that_crosses_the_opposite_edge_turns_the_face_over_at_a_rational_instant) {
+  // n(t) . z = 1 - 3 t, beside nothing.
+  const Collapses found = collapses_of({{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, {{0, 0, 2}, {1, 0, 2}, {0, -2, 2}});
   ASSERT_EQ(found.count, 1U);
-  EXPECT_TRUE(found.at[0].turns_over);
-  EXPECT_NEAR(found.at[0].t, 0.5, 1e-9);
+  const Collapse& one = found.at[0];
+  EXPECT_LT(3 * static_cast<long double>(one.lower), 1);
+  EXPECT_GT(3 * static_cast<long double>(one.upper), 1);
+  EXPECT_EQ(std::nextafter(one.lower, 1.0), one.upper);
+  EXPECT_TRUE(one.turns_over);
+  EXPECT_EQ(one.before, (Vec3d{0, 0, 1}));
+  EXPECT_EQ(one.after, (Vec3d{0, 0, -1}));
 }
 
-TEST(Collapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) {
-  using fixtures::Shape;
-  for (const auto& [start, end] :
-       {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
-    for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
-      const Collapses found = find_collapses(normals);
-      // Rare, and true: the reference says so at the very instant.
-      for (std::size_t i = 0; i < found.count; ++i)
-        EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
-      EXPECT_LE(found.count, 1U);
-    }
-  }
-  EXPECT_EQ(find_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 1}}).count, 0U);
-  EXPECT_EQ(find_collapses({{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}).count, 0U);
-  EXPECT_EQ(find_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 0}}).count, 0U);
+TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over) {
+  const Collapses found = collapses_of({{1, 1, 0}, {-1, 2, 0}, {3, -1, 1}}, {{-1, -1, 0}, {1, -2, 0}, {-3, 1, -1}});
+  ASSERT_EQ(found.count, 1U);
+  EXPECT_EQ(found.at[0].lower, 0.5);
+  EXPECT_EQ(found.at[0].upper, 0.5);
+  EXPECT_FALSE(found.at[0].turns_over);
+  EXPECT_EQ(found.at[0].before, found.at[0].after);
 }
 
-TEST(Collapse, zero_throughout_is_everywhere_and_no_instant) {
-  EXPECT_TRUE(find_collapses({}).everywhere);
-  EXPECT_EQ(find_collapses({}).count, 0U);
+TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
+  const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
+  EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
+  // Out of the plane by 2^-149 at both ends, the smallest float.
+  const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
+  EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }
 
-TEST(Collapse, random_faces_in_space_do_not_collapse) {
-  for (const ControlNormals& normals : normals_of(fixtures::large_soup(20000)))
-    EXPECT_EQ(find_collapses(normals).count, 0U);
+TEST(Collapse, a_face_that_begins_or_ends_without_area_collapses_there) {
+  const Collapses first = collapses_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  ASSERT_EQ(first.count, 1U);
+  EXPECT_EQ(first.at[0].upper, 0);
+  EXPECT_EQ(first.at[0].before, Vec3d{});
+  EXPECT_EQ(first.at[0].after, (Vec3d{0, 0, 1}));
+  EXPECT_FALSE(first.at[0].turns_over);
+  const Collapses last = collapses_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  ASSERT_EQ(last.count, 1U);
+  EXPECT_EQ(last.at[0].lower, 1);
+  EXPECT_EQ(last.at[0].after, Vec3d{});
 }
 
-TEST(Collapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
-  for (const Motion& motion : {fixtures::collapsing_soup(1e-8, 500), fixtures::inside_out_soup(100)}) {
-    std::size_t all = 0;
-    for (const ControlNormals& c : normals_of(motion)) {
-      const Collapses found = find_collapses(c);
-      const Collapses back = find_collapses({c.n1, c.m, c.n0});
-      const Collapses scaled = find_collapses({0x1p-200 * c.n0, 0x1p-200 * c.m, 0x1p-200 * c.n1});
-      ASSERT_EQ(back.count, found.count);
-      ASSERT_EQ(scaled.count, found.count);
-      all += found.count;
-      for (std::size_t i = 0; i < found.count; ++i) {
-        EXPECT_NEAR(back.at[found.count - 1 - i].t, 1 - found.at[i].t, 1e-6);
-        EXPECT_EQ(back.at[found.count - 1 - i].turns_over, found.at[i].turns_over);
-        EXPECT_EQ(scaled.at[i].t, found.at[i].t);
-      }
-    }
-    EXPECT_GT(all, 50U);
-  }
+TEST(Collapse, a_line_that_stays_a_line_has_no_area_always) {
+  const Collapses found = collapses_of({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}, {{1, 1, 1}, {2, 1, 1}, {5, 1, 1}});
+  EXPECT_EQ(found.count, 2U) << "the edges are parallel at both ends, and not between";
+  const Collapses always = collapses_of({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}, {{0, 0, 0}, {2, 4, 6}, {1, 2, 3}});
+  EXPECT_TRUE(always.always);
+  EXPECT_EQ(always.count, 0U);
 }
 
 }  // namespace

@@ -1,0 +1,122 @@
+/// Questions about the normals of a motion over whole intervals of time, answered as arrays: what `chronormal query` does.
+///
+/// A question takes a motion and a span of its time, looks at every segment that the span touches, and answers with
+/// tables of equally long columns. What one segment's answer is made of, and what is guaranteed, stands in the header
+/// of the same name in analysis/; here it becomes rows that name their segment and face.
+///
+///     const Result<QueryAnswer> answer = query_collapse(motion);
+///     write_query(answer.value(), "collapses.npz", false);
+///
+/// Units      a `t` is the fraction of a segment, in [0, 1]; a `time` is that of the motion: seconds, or the weight of a
+///            target.
+/// Threads    every question uses all (core/parallel.h); the answer is the same on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_QUERY_H_
+#define CHRONORMAL_WORKFLOW_QUERY_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chronormal/analysis/facing.h"
+#include "chronormal/core/result.h"
+#include "chronormal/io/points_file.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// The span that a question is about, in the time of the motion; of targets, in weights. Nothing: from its beginning, or
+/// to its end.
+struct QuerySpan {
+  std::optional<double> from = {}, to = {};
+};
+
+/// What a span takes of one segment: [t0, t1], with t0 < t1.
+struct SegmentPart {
+  std::size_t segment = 0;
+  double t0 = 0, t1 = 1;
+};
+
+/// The parts of all segments that lie in a span, ascending. Errors: kUsage, with --from or --to as the place, for a span
+/// that is empty or in which there is no motion.
+[[nodiscard]] Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span);
+
+/// A column of an answer: an array of which the first length is that of its table.
+struct QueryColumn {
+  /// Truths are one byte each, 0 or 1.
+  using Values =
+      std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<float>, std::vector<std::uint8_t>>;
+
+  std::string name;
+  Values values;
+  std::size_t width = 1;  ///< 3: an array (rows, 3)
+
+  [[nodiscard]] std::size_t rows() const noexcept;
+};
+
+struct QueryTable {
+  std::string name;     ///< prefix of its arrays in a file: "crossing" has crossing_face; may be empty
+  std::string meaning;  ///< what a row is, for people: "collapses of faces"
+  std::vector<QueryColumn> columns = {};
+
+  [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().rows(); }
+};
+
+/// A number that sums up the answer.
+struct QueryFact {
+  std::string name;     ///< its key in JSON: "faces"
+  std::string meaning;  ///< for people, behind the number: "faces that collapse"
+  double value = 0;
+};
+
+struct QueryAnswer {
+  std::string question;  ///< "collapse"
+  std::vector<QueryFact> facts;
+  std::vector<QueryTable> tables;
+};
+
+/// Called with (done, total) from the calling thread.
+using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// When and where faces collapse (analysis/collapse.h), decided exactly. Tables:
+///     ""        segment, face, lower, upper (t), time, turns_over, before, after: one row for each collapse
+///     always    segment, face: n is zero in the whole segment
+/// Errors: of segment_parts().
+[[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
+                                                 const QueryProgress& progress = {});
+
+/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that moves
+/// does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
+/// float32; over targets it moves with the weight. Tables:
+///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
+///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
+///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
+/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
+[[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
+                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
+/// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
+/// motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them it moves
+/// straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
+///     ""         inside: one row for each point
+///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
+///                segment and weight
+/// Where the weights of an animation jump, a point may be elsewhere without a crossing.
+/// Errors: of segment_parts() and of Containment::make().
+[[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
+                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
+/// the table has no name. Errors: kUsage for another extension; those of write_output().
+[[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
+
+/// Refuses before a long computation what write_query() would refuse.
+[[nodiscard]] Status check_query_output(const std::string& path, bool force);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_QUERY_H_
