@@ -66,7 +66,7 @@ struct Piece {
 };
 
 template <class Curve>
-ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options) {
+ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough) {
   std::array<Piece, kMostPieces> pieces;
   std::size_t count = 0;
   ErrorBounds result;
@@ -89,9 +89,8 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
     result.from = worst.a;
     result.to = worst.b;
     const double allowed = options.relative_gap * worst.upper + options.gap + 2 * worst.uncertainty;
-    if (worst.upper <= options.enough || worst.upper - result.lower <= allowed || count >= most ||
-        worst.b - worst.a <= kNarrowest)
-      return result;
+    const bool is_close = worst.upper < std::numbers::pi && worst.upper - result.lower <= allowed;
+    if (is_close || worst.upper <= enough || count >= most || worst.b - worst.a <= kNarrowest) return result;
     std::pop_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count--));
     const double middle = worst.a + (worst.b - worst.a) / 2;
     add(worst.a, middle);
@@ -130,27 +129,27 @@ class Certifier {
   }
 
   [[nodiscard]] ErrorBounds bounds(std::size_t i, const ControlNormals& normals, const ControlErrors& errors,
-                                   const CertifyOptions& options) const {
+                                   const CertifyOptions& options, double enough) const {
     if (reads_positions_) return {0, kExactTolerance, 0, 0, 1};
     const std::optional<Normal> normal = without_zero_ends(normals, errors);
     if (!normal) return {0, 0, 0, 0, 1};
-    if (fitted_ == nullptr) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options);
+    if (fitted_ == nullptr) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options, enough);
 
     const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
     switch (fitted_->formula) {
       case Formula::kRational:
-        return bounds_of(CubicCurve(c), *normal, options);
+        return bounds_of(CubicCurve(c), *normal, options, enough);
       case Formula::kGreatArc:
       case Formula::kCircleArc:
-        return bounds_of(ArcCurve(fitted_->formula, c), *normal, options);
+        return bounds_of(ArcCurve(fitted_->formula, c), *normal, options, enough);
       case Formula::kTimedCircleArc:
-        return of_warped_arc(c, *normal, options);
+        return of_warped_arc(c, *normal, options, enough);
       case Formula::kDeCasteljau:
-        return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), *normal, options);
+        return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), *normal, options, enough);
       default:
         if (!basis_) return kUnknown;
-        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), *normal, options);
-        return bounds_of(LagrangeCurve(*basis_, c), *normal, options);
+        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), *normal, options, enough);
+        return bounds_of(LagrangeCurve(*basis_, c), *normal, options, enough);
     }
   }
 
@@ -160,10 +159,11 @@ class Certifier {
     return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
   }
 
-  static ErrorBounds of_warped_arc(ElementCoefficients c, const Normal& normal, const CertifyOptions& options) {
+  static ErrorBounds of_warped_arc(ElementCoefficients c, const Normal& normal, const CertifyOptions& options,
+                                   double enough) {
     const Warp warp{static_cast<double>(c[10])};
     if (!(warp.share > 0 && warp.share < 1)) return kUnknown;
-    ErrorBounds bounds = bounds_of(ArcCurve(Formula::kTimedCircleArc, c), warp.normal(normal), options);
+    ErrorBounds bounds = bounds_of(ArcCurve(Formula::kTimedCircleArc, c), warp.normal(normal), options, enough);
     for (double* t : {&bounds.at, &bounds.from, &bounds.to}) *t = warp.time(*t);
     return bounds;
   }
@@ -180,11 +180,13 @@ void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBou
   assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
   assert(errors.empty() || errors.size() == result.size());
   const Certifier certifier(scheme);
+  double enough = options.enough;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const ControlNormals& c = block.normals[i];
     const ControlErrors promised = {kPromisedShare * max_abs(c.n0), kPromisedShare * max_abs(c.m),
                                     kPromisedShare * max_abs(c.n1)};
-    result[i] = certifier.bounds(i, c, errors.empty() ? promised : errors[i], options);
+    result[i] = certifier.bounds(i, c, errors.empty() ? promised : errors[i], options, enough);
+    if (options.only_worst) enough = std::max(enough, result[i].lower);
   }
 }
 

@@ -54,8 +54,10 @@ struct CertifyOptions {
   /// may be,
   double relative_gap = 1e-3;
   double gap = 1e-6;  ///< radians
-  /// or as soon as the upper one is not above this: of a mesh, mostly only the worst element is of interest,
+  /// or as soon as the upper one is not above this,
   double enough = 0;  ///< radians
+  /// or above the largest lower bound of the elements before it in the block: for those who only ask for the worst.
+  bool only_worst = false;
   /// or as soon as the segment is in so many pieces.
   std::size_t most_pieces = 256;  // at most 256
 };
