@@ -10,6 +10,7 @@
 #include "cli/reports/compare_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/text.h"
 
 namespace chronormal::cli {
 namespace {

@@ -113,7 +113,8 @@ CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexce
   if (degree == 1) {
     const Vec3d c0 = to_double(c.vector(0)), c1 = to_double(c.vector(1));
     p_ = {c0, (1.0 / 3) * (2.0 * c0 + c1), (1.0 / 3) * (c0 + 2.0 * c1), c1};
-    radius_ = {rounding * length_of(c0), rounding * length_of(c1)};
+    const double r0 = rounding * length_of(c0), r1 = rounding * length_of(c1);
+    radius_ = {r0, 0.5 * (r0 + r1), r1};
     return;
   }
   std::array<Vec3d, 4> p{};
@@ -124,21 +125,22 @@ CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexce
     for (std::size_t i = 0; i <= degree; ++i) p[i] = p[i] + basis.of_node(k)[i] * v;
   }
   p_ = degree == 3 ? p : elevated({p[0], p[1], p[2]});
-  radius_[0] = radius_[1] = (rounding * basis.most_weight() + basis.conversion_error()) * largest;
+  radius_.fill((rounding * basis.most_weight() + basis.conversion_error()) * largest);
 }
 
 CubicCurve::CubicCurve(ElementCoefficients c) noexcept : angle_(kScaling) {
   const Vec3d n0 = to_double(c.vector(0)), m = to_double(c.vector(1)), n1 = to_double(c.vector(2));
   p_ = elevated({n0, m, n1});
-  // The weights are those of a mean, so the largest length bounds the sum.
-  radius_[0] = radius_[1] = rounding_of_sum(3) * std::max({length_of(n0), length_of(m), length_of(n1)});
+  const double rounding = rounding_of_sum(3);
+  radius_ = {rounding * length_of(n0), rounding * length_of(m), rounding * length_of(n1)};
 }
 
 CubicCurve::CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept : p_(elevated(n)), angle_(angle) {}
 
 CurvePiece CubicCurve::over(double a, double b) const noexcept {
-  const auto radius = [this](double t) { return (1 - t) * radius_[0] + t * radius_[1]; };
-  CurvePiece piece = cubic_piece(restrict_to(p_, a, b), std::max(radius(a), radius(b)), radius(a + (b - a) / 2));
+  const Bernstein<double, 2> radius = restrict_to(radius_, a, b);
+  CurvePiece piece = cubic_piece(restrict_to(p_, a, b), *std::max_element(radius.begin(), radius.end()),
+                                 0.25 * (radius[0] + radius[2]) + 0.5 * radius[1]);
   piece.angle = angle_;
   return piece;
 }

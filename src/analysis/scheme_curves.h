@@ -61,7 +61,7 @@ class CubicCurve {
 
  private:
   Bernstein<Vec3d, 3> p_;
-  Bernstein<double, 1> radius_{};  // its ends; it is linear in t, or less
+  Bernstein<double, 2> radius_{};  // of the ball, over [0, 1]
   double angle_;
 };
 
