@@ -160,6 +160,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   for (const NamedComparison& input : inputs) {
     table.add_column(printable(short_name(input.name)), "sum, degrees", Align::kRight);
     table.add_column("", "vs linear", Align::kRight);
+    if (input.comparison.schemes.front().certified) table.add_column("", "at most", Align::kRight);
   }
   const std::size_t rows = inputs.front().comparison.schemes.size();
   for (std::size_t r = 0; r < rows; ++r) {
@@ -168,6 +169,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
       const SchemeComparison& row = input.comparison.schemes[r];
       cells.push_back(grouped_sum(degrees(row.quality.sum)));
       cells.push_back(ratio_cell(row.relative_to_linear));
+      if (row.certified) cells.push_back(rounded_up(degrees(row.certified->upper)));
     }
     table.add_row(std::move(cells));
   }

@@ -285,12 +285,12 @@ TEST(Certificates, are_close_on_ordinary_meshes) {
 }
 
 TEST(Certificates, of_the_worst_alone_are_as_close_for_the_worst) {
-  const Motion motion = fixtures::moderate_soup(300);
+  const Motion motion = fixtures::moderate_soup(100);
   const Segment segment = motion.segment(0);
   CertifyOptions options;
   options.only_worst = true;
   for (const std::string& scheme : all_schemes()) {
-    const IndexRange faces{0, 300};
+    const IndexRange faces{0, 100};
     const Prepared every(scheme, segment, faces), worst(scheme, segment, faces, options);
     const auto largest = [](const Prepared& p, double ErrorBounds::*member) {
       double value = 0;
