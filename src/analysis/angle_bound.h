@@ -8,7 +8,7 @@
 ///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   all (S.S)_k > 0
 ///
 /// which converges with the square of the width of the piece. S.S + D^2 = |p|^2 |n|^2 has the same coefficients at hand;
-/// its smallest says how much the ball and the error of n turn the two. (docs/theory.md, section 18)
+/// its smallest says how much the ball and the error of n turn the two. (docs/theory.md, section 19)
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_ANGLE_BOUND_H_

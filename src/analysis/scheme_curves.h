@@ -2,7 +2,7 @@
 ///
 /// Everything is taken from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so fits have no
 /// rounding of their own. What one evaluation adds, with e = 2^-24, is bounded for each formula of
-/// schemes/kernels/formulas-inl.h, operation by operation (docs/theory.md, section 18):
+/// schemes/kernels/formulas-inl.h, operation by operation (docs/theory.md, section 19):
 ///
 ///     weighted sums of K + 1       (K + 3) e sum |w_k| |c_k|
 ///     arcs                         e (2 A r + 2.1 (|p| + |q|) + 3 (|w| + |p| + |q|)),   r the larger of |p|, |q|

@@ -14,7 +14,7 @@
 /// Method     [0, 1] is cut into pieces. On each, the scheme is a cubic and a ball around it, the normal a quadratic,
 ///            and the Bernstein coefficients of their cross and dot products bound the angle; the piece with the
 ///            largest bound is halved until that bound meets the largest error found in the middle of a piece
-///            (docs/theory.md, section 18).
+///            (docs/theory.md, section 19).
 /// Rounding   is included: coefficients are taken as float32 has them, the ball has a proven bound of what evaluating
 ///            them in float32 adds, and control normals count as off by what their errors say. `polynomial` and
 ///            `recompute` have the bound that they promise, kExactTolerance.
