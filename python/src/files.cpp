@@ -105,7 +105,7 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
 
 py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
                          bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
-                         bool keep_errors) {
+                         bool keep_errors, bool certified, std::optional<double> tolerance) {
   CompareOptions options;
   options.schemes = schemes;
   options.samples = samples;
@@ -114,6 +114,8 @@ py::tuple compare_source(const py::dict& source, const std::vector<std::string>&
   options.elements.crease_angle = crease;
   options.elements.weld = weld;
   options.keep_errors = keep_errors;
+  options.certify = certified;
+  options.tolerance = tolerance;
   Opened opened = open(source, false, KeepShading::kNone);
   NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
     const Result<const Motion*> motion = opened.input.motion();
