@@ -82,7 +82,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
             weld: bool = True, times: bool = False, certify: bool = False, tolerance: float | None = None,
             sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
             world: bool = False) -> dict[str, Any]: ...
-def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exact", "endpoint"] | None = None,
+def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exact", "endpoint", "keys"] | None = None,
          hosts: str | Iterable[str] = "all", weighting: _Weighting | None = None, tolerance: float | None = None,
          smooth: bool = False, recompute_base: bool = False, sample: str | None = None,
          fps: float = 1.0) -> tuple[bytes, dict[str, Any]]: ...

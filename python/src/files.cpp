@@ -171,7 +171,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   BakeOptions options;
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
-    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact or endpoint");
+    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
   }
   options.hosts = value_or_raise(find_hosts(hosts));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
@@ -183,7 +183,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   const bool is_document = opened.input.document() != nullptr;
   if (!is_document) {
     require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
-            "a sequence is written exact or endpoint");
+            "a sequence is written exact, endpoint or keys");
     require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
   }
   std::string json;

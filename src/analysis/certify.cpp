@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "analysis/angle_bound.h"
+#include "analysis/line_bound.h"
 #include "analysis/scheme_curves.h"
 #include "chronormal/normals/normal_curves.h"
 #include "core/blocks.h"
@@ -66,7 +67,8 @@ struct Piece {
 };
 
 template <class Curve>
-ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough) {
+ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough,
+                      bool only_whether = false) {
   std::array<Piece, kMostPieces> pieces;
   std::size_t count = 0;
   ErrorBounds result;
@@ -90,6 +92,7 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
     result.to = worst.b;
     const double allowed = options.relative_gap * worst.upper + options.gap + 2 * worst.uncertainty;
     const bool is_close = worst.upper < std::numbers::pi && worst.upper - result.lower <= allowed;
+    if (only_whether && result.lower > enough) return result;
     if (is_close || worst.upper <= enough || count >= most || worst.b - worst.a <= kNarrowest) return result;
     std::pop_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count--));
     const double middle = worst.a + (worst.b - worst.a) / 2;
@@ -189,6 +192,20 @@ void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBou
     if (options.only_worst) enough = std::max(enough, result[i].lower);
   }
 }
+
+inline namespace internal {
+
+double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
+                  double enough) noexcept {
+  const ControlErrors errors = {kPromisedShare * max_abs(normals.n0), kPromisedShare * max_abs(normals.m),
+                                kPromisedShare * max_abs(normals.n1)};
+  const std::optional<Normal> normal = without_zero_ends(normals, errors);
+  if (!normal) return 0;
+  const NormalPiece piece = normal->over(a, b);
+  return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), {piece.n, piece.error}, {}, enough, true).upper;
+}
+
+}  // namespace internal
 
 Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
                                          Threads threads) {

@@ -111,10 +111,8 @@ CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexce
   assert(degree <= 3);
   const double rounding = rounding_of_sum(degree + 1);
   if (degree == 1) {
-    const Vec3d c0 = to_double(c.vector(0)), c1 = to_double(c.vector(1));
-    p_ = {c0, (1.0 / 3) * (2.0 * c0 + c1), (1.0 / 3) * (c0 + 2.0 * c1), c1};
-    const double r0 = rounding * length_of(c0), r1 = rounding * length_of(c1);
-    radius_ = {r0, 0.5 * (r0 + r1), r1};
+    const Vec3d from = to_double(c.vector(0)), to = to_double(c.vector(1));
+    *this = CubicCurve(from, rounding * length_of(from), to, rounding * length_of(to));
     return;
   }
   std::array<Vec3d, 4> p{};
@@ -127,6 +125,11 @@ CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexce
   p_ = degree == 3 ? p : elevated({p[0], p[1], p[2]});
   radius_.fill((rounding * basis.most_weight() + basis.conversion_error()) * largest);
 }
+
+CubicCurve::CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept
+    : p_{from, (1.0 / 3) * (2.0 * from + to), (1.0 / 3) * (from + 2.0 * to), to},
+      radius_{from_radius, 0.5 * (from_radius + to_radius), to_radius},
+      angle_(kScaling) {}
 
 CubicCurve::CubicCurve(ElementCoefficients c) noexcept : angle_(kScaling) {
   const Vec3d n0 = to_double(c.vector(0)), m = to_double(c.vector(1)), n1 = to_double(c.vector(2));

@@ -54,6 +54,8 @@ class CubicCurve {
   CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept;
   /// The quadratic of `rational`, whose weights are those of Bernstein.
   explicit CubicCurve(ElementCoefficients c) noexcept;
+  /// A line between two vectors, in balls of these radii around its ends.
+  CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
   /// A quadratic that is shown to within an angle.
   CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept;
 
