@@ -32,6 +32,7 @@
 
 #include "chronormal/analysis/certify.h"   // bounds of the largest error of a scheme, that no sample exceeds
 #include "chronormal/analysis/collapse.h"  // when a face has no area, and whether it turns over: decided exactly
+#include "chronormal/analysis/facing.h"    // from which side a face is seen, at every instant; silhouettes over time
 #include "chronormal/analysis/quality.h"   // the exact reference, and angular errors: sum, mean, rms, max and where
 #include "chronormal/analysis/surface.h"   // doubled vertices, edges, pieces, faces on each other
 
