@@ -13,7 +13,6 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 128;
-constexpr std::size_t kMostPieces = 64;  // of a segment, where all are cut alike
 
 // An instant: the segment it lies in, or at the end of which, and local t.
 struct Instant {
@@ -185,24 +184,22 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   }
 }
 
-// Into how many pieces each segment has to be cut where all are cut alike.
+// Into how many pieces each segment has to be cut where all are cut alike: as many as the one that needs most.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
-  const auto suffices = [&](std::size_t pieces) {
-    for (std::size_t s = 0; s < segments; ++s) {
-      for (std::size_t j = 0; j < pieces; ++j) {
-        const double start = static_cast<double>(s), step = 1 / static_cast<double>(pieces);
-        const double a = start + static_cast<double>(j) * step;
-        const double b = j + 1 == pieces ? start + 1 : start + static_cast<double>(j + 1) * step;
-        if (judge.error(a, b) > tolerance) return false;
-      }
-      judge.forget_before(s);
+  std::size_t pieces = 1;
+  const auto suffices = [&](double start) {
+    const double count = static_cast<double>(pieces);
+    for (std::size_t j = 0; j < pieces; ++j) {
+      const double i = static_cast<double>(j);
+      if (judge.error(start + i / count, start + (i + 1) / count) > tolerance) return false;
     }
     return true;
   };
-  for (std::size_t pieces = 1; pieces < kMostPieces; ++pieces) {
-    if (suffices(pieces)) return pieces;
+  for (std::size_t s = 0; s < segments; ++s) {
+    while (pieces < kKeySteps && !suffices(static_cast<double>(s))) ++pieces;
+    judge.forget_before(s);
   }
-  return kMostPieces;
+  return pieces;
 }
 
 }  // namespace

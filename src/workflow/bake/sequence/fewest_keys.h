@@ -31,7 +31,8 @@ struct SequenceKeys {
   std::vector<std::size_t> at;  ///< ascending, in steps: keyframe k is k kKeySteps
   double largest_error = 0;     ///< radians: no normal is off by more at any instant, but for those that are left out
   std::size_t beyond = 0;  ///< (normal, segment) pairs left out: not even lines of one step are within the tolerance
-  std::size_t even = 0;    ///< how many keys it takes where all keyframes stay, and all segments are cut alike
+  std::size_t even = 0;    ///< how many keys it takes where all keyframes stay, and all segments are cut alike; at most
+                           ///< kKeySteps pieces are tried
 };
 
 /// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached.
