@@ -198,5 +198,20 @@ TEST(BakeKeys, other_weights_and_no_tolerance_at_all_are_refused) {
   EXPECT_EQ(bake_sequence(motion, options, glb).error().code, ErrorCode::kUsage);
 }
 
+TEST(BakeKeys, there_must_be_times_for_them_in_float32) {
+  Motion motion = fixtures::smooth_morph(4);
+  motion.keyframes[0].time = 1000000;
+  motion.keyframes[1].time = 1000000.0625;  // the next float
+  motion.connect_as_sequence();
+  BakeOptions options;
+  options.encoding = BakeEncoding::kKeys;
+  options.tolerance = 0.1;
+  std::string glb;
+  const Result<SequenceBake> baked = bake_sequence(motion, options, glb);
+  ASSERT_FALSE(baked);
+  EXPECT_EQ(baked.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(baked.error().place, "keyframe 0");
+}
+
 }  // namespace
 }  // namespace chronormal::bake_keys_test
