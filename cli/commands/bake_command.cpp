@@ -160,8 +160,6 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
     how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
   how.progress = progress.callback("baking");
-  if (how.encoding == BakeEncoding::kKeys)
-    return misuse("--encode", "keys are for sequences; the weights of a glTF file may go anywhere");
   GltfEdit edit(document);
   Result<GltfBake> baked = bake(document, how, edit);
   progress.clear();
