@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -28,6 +30,8 @@ struct Options {
   bool json = false;
   bool csv = false;
   bool no_times = false;
+  bool certify = false;
+  std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
   BlendArguments blend;
   TruthArguments truth;
@@ -58,6 +62,8 @@ std::string option_of_schemes(const Options& options) {
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
+  if (options.certify) return "--certify";
+  if (options.tolerance) return "--tolerance";
   return options.each ? "--each" : "";
 }
 
@@ -72,20 +78,23 @@ std::string footer() {
          "  chronormal compare --each walk/ run/ --sample twist\n"
          "  chronormal compare --base face.obj targets/\n"
          "  chronormal compare face.glb --elements vertices\n"
+         "  chronormal compare walk/ --tolerance 0.5\n"
          "  chronormal compare face.glb --blend 100\n"
          "  chronormal compare walk/ --truth 2\n"
-         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
 Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
   const Result<const Motion*> motion = input.motion();
   if (!motion) return motion.error();
-  const CompareOptions compare_options{scheme_names(options),
-                                       options.sample_count(),
-                                       options.access == "sequential" ? Access::kSequential : Access::kRandom,
-                                       progress.callback("comparing"),
-                                       options.elements.options().value(),
-                                       options.errors.has_value()};
+  CompareOptions compare_options{scheme_names(options),
+                                 options.sample_count(),
+                                 options.access == "sequential" ? Access::kSequential : Access::kRandom,
+                                 progress.callback("comparing"),
+                                 options.elements.options().value(),
+                                 options.errors.has_value()};
+  compare_options.certify = options.certify;
+  compare_options.tolerance = options.tolerance;
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
   return comparison;
@@ -153,6 +162,8 @@ Result<int> run_blend(const Options& options) {
 std::string option_of_samples(const Options& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
+  if (options.certify) return "--certify";
+  if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
   return options.each ? "--each" : "";
 }
@@ -184,6 +195,11 @@ Result<int> run(const Options& options) {
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
   if (options.truth.every) return run_truth(options);
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
+  if (options.access == "sequential" && (options.certify || options.tolerance))
+    return misuse(options.certify ? "--certify" : "--tolerance",
+                  "it is about normals at random access: leave out --access sequential");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   if (options.errors) {
@@ -214,7 +230,16 @@ Result<int> run(const Options& options) {
     text = compare_table(comparisons.value().front(), with_times);
   if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
-  return kExitDone;
+  int exit = kExitDone;
+  for (const NamedComparison& input : comparisons.value()) {
+    if (!options.tolerance || input.comparison.cheapest) continue;
+    say("compare",
+        formatted("{}: no scheme is within the tolerance of {:g} degrees at every time", printable(input.name),
+                  *options.tolerance),
+        Tone::kError);
+    exit = kExitBeyond;
+  }
+  return exit;
 }
 
 }  // namespace
@@ -238,6 +263,10 @@ Command compare_command() {
              &options->access,
              "random (default): each moment on its own; sequential: each from the one before",
              {.check = check_access}}},
+           {{"--certify", &options->certify,
+             "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+            {"--tolerance DEG", &options->tolerance,
+             "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
            options->blend.table(),
            options->truth.table(),
            {{"--errors FILE", &options->errors,

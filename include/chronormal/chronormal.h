@@ -30,6 +30,7 @@
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
+#include "chronormal/analysis/certify.h"      // bounds of the largest error of a scheme, that no sample exceeds
 #include "chronormal/analysis/collapse.h"     // when a face has no area, and whether it turns over: decided exactly
 #include "chronormal/analysis/containment.h"  // which points are inside a closed mesh, and when they cross its surface
 #include "chronormal/analysis/facing.h"       // from which side a face is seen, at every instant; silhouettes over time
@@ -57,6 +58,6 @@
 #include "chronormal/workflow/query.h"    // questions about whole intervals of time, answered as arrays
 #include "chronormal/workflow/report.h"   // what a page needs to show an input as it is shown beside as it should be
 #include "chronormal/workflow/sample.h"
-#include "chronormal/workflow/truth.h"   // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/truth.h"  // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

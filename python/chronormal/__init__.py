@@ -22,7 +22,7 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "collapse", "compare", "contain",
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "contain",
            "curves", "errors", "facing", "inspect", "read"]
 
 
@@ -130,6 +130,19 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
+def certify(p0, p1, faces, scheme="linear", threads=0):
+    """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
+
+    p0, p1, faces, threads  as for curves()
+    scheme   a name that compare() knows
+    lower    degrees; the error is as large as that at the local time `at`
+    upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
+    from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
+    """
+    offsets, corners = _polygons(faces)
+    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
+
+
 def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Read a motion; return Motion, whose arrays curves() takes.
 
@@ -161,16 +174,18 @@ def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, t
 
 
 def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
-            times=False, sample=None, base=None, fps=1.0, animation=None, world=False):
+            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
-    schemes  names; empty: the usual ones
-    times    whether measured times are in it, which differ from run to run
+    schemes    names; empty: the usual ones
+    times      whether measured times are in it, which differ from run to run
+    certify    whether to bound the largest error of each scheme at any time
+    tolerance  degrees: certify, and find the cheapest scheme that is never off by more
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
     text, _ = _chronormal.compare(_source(source, sample, base, fps, animation, world), list(schemes), samples,
-                                  access == "sequential", elements, crease, weld, times, False)
+                                  access == "sequential", elements, crease, weld, times, False, certify, tolerance)
     return _json.loads(text)
 
 
@@ -220,7 +235,7 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
         _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
-                                        weld, False, True)
+                                        weld, False, True, False, None)
     return [ErrorTable(**table) for table in tables]
 
 

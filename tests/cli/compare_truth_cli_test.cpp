@@ -76,7 +76,8 @@ TEST_F(CompareTruth, says_where_keyframes_are_too_far_apart_and_where_exact_is_n
 
 TEST_F(CompareTruth, refuses_what_does_not_go_with_it) {
   write_turn(0.2, 5);
-  for (const std::string other : {"--blend 4", "--each", "--samples 5", "--access random", "--errors e.npz"}) {
+  for (const std::string other :
+       {"--blend 4", "--each", "--samples 5", "--access random", "--certify", "--tolerance 1", "--errors e.npz"}) {
     const ProcessResult refused = run("--truth 2 " + other);
     EXPECT_EQ(refused.exit_code, 2) << other;
     EXPECT_NE(refused.err.find(other == "--blend 4" ? "--truth" : other.substr(0, other.find(' '))), std::string::npos)
