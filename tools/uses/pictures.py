@@ -15,9 +15,17 @@ matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from PIL import Image  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 PICTURES = HERE.parent.parent / "docs" / "pictures"
+
+
+def save(figure, path):
+    """Writes a PNG of 96 colours, a third of the size of one with all."""
+    figure.canvas.draw()
+    picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+    picture.quantize(96, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def main():
@@ -27,11 +35,11 @@ def main():
         figure = importlib.import_module(name).draw()
         there = PICTURES / f"uses_{name}.png"
         if not is_check:
-            figure.savefig(there, dpi=100, metadata={"Software": None})
+            save(figure, there)
             continue
         with tempfile.TemporaryDirectory() as folder:
             drawn = Path(folder) / there.name
-            figure.savefig(drawn, dpi=100, metadata={"Software": None})
+            save(figure, drawn)
             now, before = matplotlib.image.imread(drawn), matplotlib.image.imread(there)
         if now.shape != before.shape or np.abs(now - before).mean() > 0.002:
             print(f"{there} looks different now: tools/make_uses draws it", file=sys.stderr)
