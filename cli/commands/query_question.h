@@ -23,6 +23,7 @@ struct Question {
 };
 
 [[nodiscard]] Question collapse_question();
+[[nodiscard]] Question facing_question();
 
 }  // namespace chronormal::cli
 

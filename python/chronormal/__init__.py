@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "compare", "curves", "errors",
-           "inspect", "read"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "curves",
+           "errors", "facing", "inspect", "read"]
 
 
 def _vectors(array, place):
@@ -237,3 +237,53 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
                                         weld, False, True, False, None)
     return [ErrorTable(**table) for table in tables]
+
+
+def _keyframes(positions, faces, times):
+    """What the extension asks a question about: positions (T, V, 3), offsets and corners, times."""
+    positions = _vectors(positions, "positions")
+    if positions.ndim != 3 or positions.shape[2] != 3:
+        raise ValueError(f"positions: the shape is {positions.shape} and must be (T, V, 3)")
+    times = _np.arange(len(positions), dtype=_np.float64) if times is None else _np.asarray(times, dtype=_np.float64)
+    return positions, *_polygons(faces), _np.ascontiguousarray(times)
+
+
+def collapse(positions, faces, times=None, *, start=None, end=None):
+    """Return when faces have no area, decided exactly: a dict of arrays with a row for each collapse.
+
+    positions   (T, V, 3) keyframes; between two of them vertices move on straight lines
+    faces       as for curves()
+    times       (T,) of the keyframes; None: 0, 1, 2 ...
+    start, end  the span to look at, in these times; None: all
+
+    segment, face   where; lower, upper: t of the segment lies between them, in [0, 1]; time: that of the motion
+    turns_over      whether the direction after is opposed to that before
+    before, after   (rows, 3) the limits of the unit normal on both sides
+    always_segment, always_face   faces that have no area in a whole segment
+    """
+    return _chronormal.query_collapse(*_keyframes(positions, faces, times), start, end)
+
+
+def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=None, silhouettes=False, start=None, end=None):
+    """Return when faces show their front to a viewer: a dict of arrays with a row for each interval.
+
+    positions, faces, times, start, end   as for collapse()
+    direction    (3,) the viewer is infinitely far away in this direction; or
+    eye, eye_to  (3,) the viewer is at eye, and moves straight to eye_to over all times; None: stands still
+    silhouettes  whether to list edges between a front and a back, too
+
+    segment, face             where
+    from, from_upper          the interval begins between these t of the segment
+    to_lower, to              and ends between these
+    silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
+    """
+    if (direction is None) == (eye is None):
+        raise ValueError("direction: say who looks, by a direction or an eye")
+    if eye_to is not None and eye is None:
+        raise ValueError("eye_to: there must be an eye that moves there")
+    first = _vectors(eye if direction is None else direction, "direction" if eye is None else "eye")
+    last = first if eye_to is None else _vectors(eye_to, "eye_to")
+    if first.shape != (3,) or last.shape != (3,):
+        raise ValueError("direction: a place or a direction is an array of 3 numbers")
+    return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
+                                    silhouettes)

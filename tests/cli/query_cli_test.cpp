@@ -33,6 +33,11 @@ class QueryCli : public testing::Test {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   }
+  // Brackets are narrower than this.
+  static void expect_near(const Json& values, const std::vector<double>& wanted) {
+    ASSERT_EQ(values.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(values[i].get<double>(), wanted[i], 1e-12) << i;
+  }
   void expect_misuse(const std::string& arguments, const std::string& word) const {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments;
@@ -77,6 +82,42 @@ TEST_F(QueryCli, arrays_are_those_of_json) {
   EXPECT_EQ(arrays.size(), json_of("collapse a.obj b.obj c.obj").at("arrays").size());
 }
 
+TEST_F(QueryCli, faces_show_their_front_in_intervals) {
+  // Face 1 is seen from above until t = 1/2, and in the second segment from then on.
+  const Json above = json_of("facing a.obj b.obj c.obj --direction 0,0,1").at("arrays");
+  EXPECT_EQ(above.at("segment"), Json({0, 0, 1, 1}));
+  EXPECT_EQ(above.at("face"), Json({0, 1, 0, 1}));
+  expect_near(above.at("from"), {0, 0, 0, 0.5});
+  expect_near(above.at("from_upper"), {0, 0, 0, 0.5});
+  expect_near(above.at("to_lower"), {1, 0.5, 1, 1});
+  expect_near(above.at("to"), {1, 0.5, 1, 1});
+  EXPECT_LE(above.at("from")[3], 0.5);
+  EXPECT_GE(above.at("from_upper")[3], 0.5);
+  EXPECT_EQ(json_of("facing a.obj b.obj c.obj --eye 0,0,9").at("arrays").at("face"), above.at("face"));
+  const Json below = json_of("facing a.obj b.obj c.obj --direction 0,0,-1 --from .25 --to 1.25").at("arrays");
+  EXPECT_EQ(below.at("face"), Json({1, 1}));
+  expect_near(below.at("from"), {0.5, 0});
+  expect_near(below.at("to"), {1, 0.25});
+}
+
+TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
+  // It passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 is seen from its front in the
+  // first quarter and the second.
+  const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
+  EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
+  EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));
+  expect_near(arrays.at("from"), {0, 0, 0});
+  expect_near(arrays.at("to"), {1, 0.5, 0.5});
+}
+
+TEST_F(QueryCli, silhouettes_are_edges_between_front_and_back) {
+  const Json json = json_of("facing a.obj b.obj c.obj --direction 0,0,1 --silhouettes");
+  EXPECT_EQ(json.at("summary").at("silhouettes"), 2);
+  EXPECT_EQ(json.at("arrays").at("silhouette_vertices"), Json::parse("[[1, 2], [1, 2]]"));
+  expect_near(json.at("arrays").at("silhouette_from"), {0.5, 0});
+  expect_near(json.at("arrays").at("silhouette_to"), {1, 0.5});
+}
+
 TEST_F(QueryCli, people_get_a_table) {
   const ProcessResult result = run("collapse a.obj b.obj c.obj");
   EXPECT_EQ(result.exit_code, 0);
@@ -89,6 +130,11 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("", "QUESTION: name one: ");
   expect_misuse("why a.obj b.obj", "there is no 'why'; there are ");
   expect_misuse("collapse a.obj b.obj -o table.txt", "arrays are written as .npz");
+  expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: it belongs to query facing");
+  expect_misuse("facing a.obj b.obj", "--direction: say who looks");
+  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: it must be X,Y,Z or");
+  expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
+  expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: it must not be 0,0,0");
   expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");
   expect_misuse("collapse a.obj b.obj --to 0", "--to: there is no motion before 0");
   expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: it must be later than --from");

@@ -21,6 +21,7 @@
 #include <variant>
 #include <vector>
 
+#include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
 
@@ -85,6 +86,16 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// Errors: of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
+
+/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that moves
+/// does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
+/// float32; over targets it moves with the weight. Tables:
+///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
+///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
+///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
+/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
+[[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
+                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
 /// the table has no name. Errors: kUsage for another extension; those of write_output().
