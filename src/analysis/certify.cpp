@@ -59,9 +59,9 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
 
 // The piece of which the bound is the largest comes first.
 struct Piece {
-  double a = 0, b = 1;
-  double upper = 0;
-  double uncertainty = 0;  // in its middle
+  double a, b;
+  double upper;
+  double uncertainty;  // in its middle
 
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };

@@ -1,18 +1,10 @@
-"""Draws the picture of certificates in docs/uses.md: the error of linear interpolation on the worst face of `twist` over all
-t, six samples that miss its largest value, and the certified bounds that enclose it.
+"""The error of linear interpolation on the worst face of `twist` over all t, samples that miss its largest value, and the
+certified bounds that enclose it."""
 
-    PYTHONPATH=build/release/python python3 tools/uses/certificates.py docs/pictures/certificates.svg
-"""
+import matplotlib.pyplot as plt
+import numpy as np
 
-import sys
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-
-import chronormal as cn  # noqa: E402
+import chronormal as cn
 
 SAMPLES = np.linspace(0, 1, 6)
 
@@ -30,15 +22,14 @@ def errors(p0, p1, face, times):
     return np.array(result)
 
 
-def draw(path):
+def draw():
     motion = cn.read(sample="twist")
     p0, p1 = motion.positions
     bounds = cn.certify(p0, p1, motion.faces, "linear")
     face = motion.faces[np.argmax(bounds["upper"])]
     worst = {name: float(values[np.argmax(bounds["upper"])]) for name, values in bounds.items()}
     times = np.linspace(0, 1, 401)
-    matplotlib.rcParams["svg.hashsalt"] = "chronormal"
-    figure, axes = plt.subplots(figsize=(7, 3.2))
+    figure, axes = plt.subplots(figsize=(7, 3.2), constrained_layout=True)
     axes.axvspan(worst["from"], worst["to"], color="0.9", label="piece with the largest bound")
     axes.plot(times, errors(p0, p1, face, times), color="tab:blue", label="error of linear")
     axes.plot(SAMPLES, errors(p0, p1, face, SAMPLES), "o", color="tab:orange", label="6 samples")
@@ -46,9 +37,4 @@ def draw(path):
     axes.plot(worst["at"], worst["lower"], "v", color="tab:green", label=f"at least {worst['lower']:.2f}")
     axes.set(xlabel="t", ylabel="degrees", xlim=(0, 1), ylim=(0, None))
     axes.legend(loc="lower center", fontsize=8)
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
-
-
-if __name__ == "__main__":
-    draw(sys.argv[1])
+    return figure
