@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "analysis/kernels/cones.h"
+#include "analysis/part_normals.h"
 #include "core/portable_math.h"
-#include "normals/control/exact_curve.h"
 #include "normals/control/local_time.h"
 
 namespace chronormal {
@@ -19,46 +19,6 @@ constexpr std::size_t kRefinements = 16;
 constexpr double kRounding = 0x1p-46;  // of the sine of a sum of angles
 
 bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
-
-// The cone around the control normals that are not zero, each within `share` of its length.
-NormalCone cone_around(ControlNormals c, double share) noexcept {
-  const std::array<Vec3d*, 3> vectors{&c.n0, &c.m, &c.n1};
-  const auto first = std::find_if_not(vectors.begin(), vectors.end(), [](const Vec3d* v) { return is_zero(*v); });
-  if (first == vectors.end()) return NormalCone::empty();
-  // One that is there already changes nothing.
-  for (Vec3d* const v : vectors) {
-    if (is_zero(*v)) *v = **first;
-  }
-  NormalCone cone;
-  std::uint8_t flags = 0;
-  cones_of_three(&c, 1, share, &cone, &flags);
-  return flags == 0 ? cone : NormalCone::whole_sphere();
-}
-
-// The control normals of a part, and the largest share of one that is unknown.
-struct Part {
-  ControlNormals normals;
-  double unknown = kNormalShare;
-};
-
-Part part_of(const ControlNormals& c, const Restriction& restriction) noexcept {
-  Part part;
-  const std::array<const Vec3d*, 3> from{&c.n0, &c.m, &c.n1};
-  const std::array<Vec3d*, 3> to{&part.normals.n0, &part.normals.m, &part.normals.n1};
-  for (std::size_t k = 0; k < 3; ++k) {
-    double size = 0;
-    bool has_term = false;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double weight = restriction.weights[k][j];
-      if (weight == 0 || is_zero(*from[j])) continue;
-      *to[k] = *to[k] + weight * *from[j];
-      size += weight * max_abs(*from[j]);
-      has_term = true;
-    }
-    if (has_term) part.unknown = std::fmax(part.unknown, (kNormalShare * size + kUnderflow) / max_abs(*to[k]));
-  }
-  return part;
-}
 
 bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 
@@ -78,8 +38,8 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
     for (std::size_t bit = 0; flags[b] >> bit != 0; ++bit) {
       if ((flags[b] >> bit & 1) == 0) continue;
       const std::size_t i = b * kConesPerFlags + bit;
-      const Part part = is_whole(t0, t1) ? Part{normals[i]} : part_of(normals[i], restriction);
-      result[i] = part.unknown <= kLargestUnknown ? cone_around(part.normals, part.unknown) : settle(i);
+      const PartNormals part = is_whole(t0, t1) ? PartNormals{normals[i]} : part_of(normals[i], restriction);
+      result[i] = part.is_known() ? cone_around(part) : settle(i);
     }
   }
 }
@@ -137,7 +97,7 @@ void normal_cones(std::span<const ControlNormals> normals, double t0, double t1,
   for (std::size_t first = 0; first < normals.size(); first += kBlock) {
     const auto block = normals.subspan(first, std::min(kBlock, normals.size() - first));
     cones_of_block(block, from, to, result.subspan(first, block.size()),
-                   [&](std::size_t i) { return cone_around(block[i], kNormalShare); });
+                   [&](std::size_t i) { return cone_around({block[i]}); });
   }
 }
 
@@ -151,8 +111,7 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
     const std::span<ControlNormals> normals(memory.data(), std::min(kBlock, faces.count - first));
     face_control_normals(segment, {faces.first + first, normals.size()}, normals);
     cones_of_block(normals, from, to, result.subspan(first, normals.size()), [&](std::size_t i) {
-      const ExactCurve exact = ExactCurve::of_polygon(segment, segment.topology->face(faces.first + first + i));
-      return cone_around({exact.normal_at(from), exact.blossom_at(from, to), exact.normal_at(to)}, kNormalShare);
+      return cone_around(exact_part_of(segment, segment.topology->face(faces.first + first + i), from, to));
     });
   }
 }

@@ -275,7 +275,7 @@ TEST(Cones, are_tight) {
     std::cout << "  " << morph.name << ": " << 100 * (ours / smallest - 1) << " % wider than any cone must be; around "
               << "those of four parts, " << 100 * (of_parts / smallest - 1) << " %\n";
     EXPECT_LT(ours, (morph.name == "eversion" ? 2.5 : 1.2) * smallest) << morph.name;
-    EXPECT_LT(of_parts, 1.2 * smallest) << morph.name;
+    EXPECT_LT(of_parts, (morph.name == "eversion" ? 1.8 : 1.3) * smallest) << morph.name;
   }
 }
 

@@ -73,9 +73,9 @@ HWY_INLINE Doubles3 MiddleOf(const Doubles3 (&u)[3]) {
   const Doubles3 through_all =
       Select(hn::Lt(side, hn::Zero(kDoubles)),
              Doubles3{hn::Neg(perpendicular.x), hn::Neg(perpendicular.y), hn::Neg(perpendicular.z)}, perpendicular);
-  // Of vectors that are closer than 1e-6 rad the differences are too rough, and any middle will do.
-  const DoubleMask pair_holds =
-      hn::Or(hn::Ge(others, hn::Add(one, widest)), hn::Gt(widest, hn::Set(kDoubles, 1 - 1e-12)));
+  // Where the third lies hardly outside, or all are hardly apart, differences are too rough for an axis through all three.
+  const Doubles slack = hn::Add(hn::Mul(hn::Set(kDoubles, 1e-8), hn::Sub(one, widest)), hn::Set(kDoubles, 0x1p-48));
+  const DoubleMask pair_holds = hn::Ge(hn::Add(others, slack), hn::Add(one, widest));
   return Select(pair_holds, pair, through_all);
 }
 
