@@ -78,6 +78,7 @@ struct JudgeArguments {
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command inspect_command();
+[[nodiscard]] Command query_command();
 [[nodiscard]] Command report_command();
 [[nodiscard]] Command sample_command();
 

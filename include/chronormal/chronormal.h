@@ -30,8 +30,9 @@
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
-#include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/collapse.h"  // when a face has no area, and whether it turns over: decided exactly
+#include "chronormal/analysis/quality.h"   // the exact reference, and angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/surface.h"   // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/bake_mark.h"       // what a bake leaves in a glTF file about itself
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
@@ -50,6 +51,7 @@
 #include "chronormal/workflow/hosts.h"    // programs that show glTF files, and what they make of stored normals
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
 #include "chronormal/workflow/json.h"     // the results of these as JSON
+#include "chronormal/workflow/query.h"    // questions about whole intervals of time, answered as arrays
 #include "chronormal/workflow/report.h"   // what a page needs to show an input as it is shown beside as it should be
 #include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
 

@@ -86,6 +86,18 @@ class WideInteger {
     for (std::size_t k = 0; k < other.size(); ++k) digits_[k] += factor * other.digit(k);
   }
 
+  /// Adds sign * a * b. The digits of both must be settled; thousands of products may be added before settle().
+  template <std::size_t kA, std::size_t kB>
+  void add_product(const WideInteger<kA>& a, const WideInteger<kB>& b, std::int64_t sign = 1) noexcept {
+    if (a.size() == 0 || b.size() == 0) return;
+    grow(a.size() + b.size() - 1);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const std::int64_t factor = sign * a.digit(i);
+      if (factor == 0) continue;
+      for (std::size_t k = 0; k < b.size(); ++k) digits_[i + k] += factor * b.digit(k);
+    }
+  }
+
   /// Adds other * t 2^t.scale, or other * 2^shift. The digits of other must be below 2^26.
   template <std::size_t kOther>
   void add_product(const WideInteger<kOther>& other, const UnitFraction& t) noexcept {
@@ -114,6 +126,9 @@ class WideInteger {
     }
     while (size_ > 0 && digits_[size_ - 1] == 0) --size_;
   }
+
+  /// -1, 0 or 1. Must be settled.
+  [[nodiscard]] int sign() const noexcept { return size_ == 0 ? 0 : digits_[size_ - 1] < 0 ? -1 : 1; }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::int64_t digit(std::size_t k) const noexcept { return digits_[k]; }

@@ -223,6 +223,8 @@ const std::map<std::string, std::string> kUses = {
     {"--plan", "face.glb --plan"},
     {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},
+    {"--from", "a.obj b.obj --from 0.25"},
+    {"--to", "a.obj b.obj --to 0.75"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},
     {"report --animation", "shaded.glb --animation 0"},
@@ -247,6 +249,7 @@ std::string needs_of(const std::string& command, const std::string& use) {
   if (use == "--help") return "";
   if (command == "bake") return " -o out.glb";
   if (command == "convert") return " -o out.npz";
+  if (command == "query") return use.find("--json") != std::string::npos ? " -o out.txt" : " -o out.npz";
   if (command == "report") return use.find("--template") != std::string::npos ? " -o out.html" : " -o out.bin";
   if (command != "sample") return " -o out.txt";
   const bool has_moments = use.find("--times") != std::string::npos || use.find("--weights") != std::string::npos;
@@ -281,7 +284,9 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
       const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
       const auto use = special != kUses.end() ? special : usual;
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
-      const ProcessResult result = run(command + " " + use->second + needs_of(command, use->second));
+      // An option of one question names it: {"query --points", "contain ..."}.
+      const std::string question = command == "query" && special == kUses.end() && name != "--help" ? "collapse " : "";
+      const ProcessResult result = run(command + " " + question + use->second + needs_of(command, use->second));
       EXPECT_TRUE(result.exit_code == 0 || (name == "--tolerance" && result.exit_code == 4)) << result.err;
       for (const char* const file :
            {"out.txt", "out.glb", "out.npz", "out.npy", "out.bin", "out.html", "drivers.json", "errors.npz"})

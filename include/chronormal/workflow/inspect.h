@@ -65,7 +65,7 @@ struct Inspection {
 
   Places no_area;           ///< keyframes: no area at all
   Places slivers;           ///< keyframes: see inspect()
-  Places collapses;         ///< segments: the normal vanishes inside, or nearly (analysis/collapse.h)
+  Places collapses;         ///< segments: the normal vanishes inside, or falls below 1e-6 of its control normals
   Places turned_over;       ///< segments: those of which the normal is opposed afterwards
   Places turned_far;        ///< segments: the normals at both ends are more than 90 degrees apart
   Places without_normals;   ///< segments: no area throughout, so there is no direction to give

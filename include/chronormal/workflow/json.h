@@ -1,4 +1,4 @@
-/// The results of inspect, audit, compare and bake as JSON: what the program prints for --json, for whoever has the results
+/// The results of inspect, audit, compare, bake and query as JSON: what the program prints for --json, for whoever has the results
 /// and not the program. docs/cli.md has the fields.
 ///
 /// Text       indented by two, with a line end; names that are no UTF-8 get U+FFFD, and numbers that are infinite or no
@@ -16,6 +16,7 @@
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
+#include "chronormal/workflow/query.h"
 
 namespace chronormal {
 
@@ -61,6 +62,9 @@ struct BakeReport {
 
 /// Lists the targets, bytes and errors that each form of each mesh would have, as --encode smallest compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
+
+/// input is the name of what was asked about. Columns are arrays, named as in a .npz file.
+[[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal
 

@@ -250,6 +250,11 @@ NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std:
   for (const std::int64_t value : values) binary::append(bytes_, value, kOrder);
 }
 
+NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::uint8_t> values)
+    : bytes_(npy::write_header("|b1", shape)) {
+  for (const std::uint8_t value : values) bytes_.push_back(static_cast<char>(value));
+}
+
 void NpyBytes::append(std::span<const float> values) {
   for (const float value : values) binary::append(bytes_, value, kOrder);
 }

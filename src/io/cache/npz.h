@@ -62,6 +62,8 @@ class NpyBytes {
   /// A whole array.
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values);
+  /// An array of truths, each 0 or 1.
+  NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::uint8_t> values);
 
   void append(std::span<const float> values);
 

@@ -140,6 +140,14 @@ ExactCurve::CoefficientVector ExactCurve::bend() const noexcept {
   return result;
 }
 
+std::array<ExactCurve::CoefficientVector, 3> ExactCurve::in_powers() const noexcept {
+  std::array<CoefficientVector, 3> result = {n0_, linear(), bend()};
+  for (CoefficientVector& coefficient : result) {
+    for (Coefficient& component : coefficient) component.settle();
+  }
+  return result;
+}
+
 Vec3d ExactCurve::normal_at(double t) const noexcept {
   const UnitFraction fraction = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();

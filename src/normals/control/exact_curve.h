@@ -30,6 +30,11 @@ namespace chronormal::inline internal {
 
 class ExactCurve {
  public:
+  // Products reach up to digit 23; the rest is for sums of 2^40 of them.
+  static constexpr std::size_t kDigits = 26;
+  using Coefficient = WideInteger<kDigits>;
+  using CoefficientVector = std::array<Coefficient, 3>;
+
   /// Makes the curve of one polygon, which is given by its vertices, or of several faces, whose normals it adds up.
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
@@ -48,6 +53,8 @@ class ExactCurve {
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(double t) const noexcept;
+  /// The coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
+  [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
  private:
   template <class Body>
@@ -61,11 +68,6 @@ class ExactCurve {
   void for_components(const Body& body) const;
 
   [[nodiscard]] int unit() const noexcept { return 2 * static_cast<int>(base_) - 298; }
-
-  // Products reach up to digit 23; the rest is for sums of 2^40 of them.
-  static constexpr std::size_t kDigits = 26;
-  using Coefficient = WideInteger<kDigits>;
-  using CoefficientVector = std::array<Coefficient, 3>;
 
   [[nodiscard]] CoefficientVector linear() const noexcept;  // 2m - 2 n0
   [[nodiscard]] CoefficientVector bend() const noexcept;    // n0 - 2m + n1

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "analysis/collapse.h"
+#include "analysis/near_collapse.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
@@ -122,12 +122,12 @@ SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNorm
     if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value)
       result.turn = {angle, segment.index, f};
     if (dot(c.n0, c.n1) < 0) tally.turned_far.add(f, kTurnsFar, marks);
-    const Collapses collapses = find_collapses(c);
+    const NearCollapses collapses = find_near_collapses(c);
     if (collapses.everywhere) tally.without_normals.add(f, kWithoutNormal, marks);
     if (collapses.count == 0) continue;
     tally.collapses.add(f, kCollapses, marks, collapses.at[0].t);
     const auto end = collapses.at.begin() + static_cast<std::ptrdiff_t>(collapses.count);
-    const auto over = std::find_if(collapses.at.begin(), end, [](const Collapse& each) { return each.turns_over; });
+    const auto over = std::find_if(collapses.at.begin(), end, [](const NearCollapse& each) { return each.turns_over; });
     if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
   }
   result.turned_far = tally.turned_far.count;

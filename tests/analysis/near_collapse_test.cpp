@@ -1,4 +1,4 @@
-#include "analysis/collapse.h"
+#include "analysis/near_collapse.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/support/fixtures.h"
 
-namespace chronormal::collapse_test {
+namespace chronormal::near_collapse_test {
 namespace {
 
 std::vector<ControlNormals> normals_of(const Motion& motion) {
@@ -24,13 +24,13 @@ ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}
 
 ControlNormals with_roots(double first, double second) { return along_z(first * second, -(first + second), 1); }
 
-TEST(Collapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
+TEST(NearCollapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
   // a and b stand still, c goes from y = when to y = when - 1 in a plane.
   for (const float when : {0.001F, 0.1F, 0.25F, 0.5F, 0.75F, 0.999F}) {
     const double start = when, end = static_cast<double>(when) - 1;
     const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 2}, {1, 0, 2}, {0.25, start, 2}},
                                                 {{0, 0, 2}, {1, 0, 2}, {0.5, end, 2}});
-    const Collapses found = find_collapses(normals_of(motion)[0]);
+    const NearCollapses found = find_near_collapses(normals_of(motion)[0]);
     ASSERT_EQ(found.count, 1U) << when;
     EXPECT_NEAR(found.at[0].t, start, 1e-6) << when;
     EXPECT_TRUE(found.at[0].turns_over) << when;
@@ -38,18 +38,18 @@ TEST(Collapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
   }
 }
 
-TEST(Collapse, face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over) {
+TEST(NearCollapse, face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over) {
   for (const ControlNormals& normals : normals_of(fixtures::point_reflected_soup(200))) {
-    const Collapses found = find_collapses(normals);
+    const NearCollapses found = find_near_collapses(normals);
     ASSERT_EQ(found.count, 1U);
     EXPECT_NEAR(found.at[0].t, 0.5, 1e-5);
     EXPECT_FALSE(found.at[0].turns_over);
   }
 }
 
-TEST(Collapse, mirror_image_turns_over_half_way) {
+TEST(NearCollapse, mirror_image_turns_over_half_way) {
   for (const ControlNormals& normals : normals_of(fixtures::inside_out_soup(200))) {
-    const Collapses found = find_collapses(normals);
+    const NearCollapses found = find_near_collapses(normals);
     ASSERT_EQ(found.count, 1U);
     EXPECT_NEAR(found.at[0].t, 0.5, 1e-9);
     EXPECT_TRUE(found.at[0].turns_over);
@@ -57,7 +57,7 @@ TEST(Collapse, mirror_image_turns_over_half_way) {
 }
 
 // In a plane, n(t) is a scalar: its roots by the school formula, in long double.
-TEST(Collapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
+TEST(NearCollapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   Motion motion = fixtures::large_soup(2000, 21);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
     for (std::size_t i = 2; i < keyframe.positions.size(); i += 3) keyframe.positions[i] = 0;
@@ -87,7 +87,7 @@ TEST(Collapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
     for (const double t : roots) is_close_call |= t < 1e-3 || t > 1 - 1e-3;
     if (is_close_call) continue;
     ++judged;
-    const Collapses found = find_collapses(normals[f]);
+    const NearCollapses found = find_near_collapses(normals[f]);
     ASSERT_EQ(found.count, roots.size()) << f;
     for (std::size_t i = 0; i < roots.size(); ++i) {
       EXPECT_NEAR(found.at[i].t, roots[i], 1e-9) << f;
@@ -101,64 +101,64 @@ TEST(Collapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   EXPECT_GT(twice, 50U);
 }
 
-TEST(Collapse, two_zeros_are_two_and_very_near_ones_are_one_that_comes_back) {
-  const Collapses two = find_collapses(with_roots(0.25, 0.75));
+TEST(NearCollapse, two_zeros_are_two_and_very_near_ones_are_one_that_comes_back) {
+  const NearCollapses two = find_near_collapses(with_roots(0.25, 0.75));
   ASSERT_EQ(two.count, 2U);
   EXPECT_NEAR(two.at[0].t, 0.25, 1e-12);
   EXPECT_NEAR(two.at[1].t, 0.75, 1e-12);
   EXPECT_TRUE(two.at[0].turns_over && two.at[1].turns_over);
-  const Collapses near = find_collapses(with_roots(0.5, 0.5001));
+  const NearCollapses near = find_near_collapses(with_roots(0.5, 0.5001));
   ASSERT_EQ(near.count, 1U);
   EXPECT_NEAR(near.at[0].t, 0.5, 2e-4);
   EXPECT_FALSE(near.at[0].turns_over);
-  EXPECT_EQ(find_collapses(with_roots(0.5, 0.51)).count, 2U);
+  EXPECT_EQ(find_near_collapses(with_roots(0.5, 0.51)).count, 2U);
 }
 
-TEST(Collapse, a_miss_counts_below_the_share_only) {
+TEST(NearCollapse, a_miss_counts_below_the_share_only) {
   // n(t) = (d, 0, 2 t - 1): the largest control normal is 1.
-  EXPECT_EQ(find_collapses(along_z(-1, 2, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
-  EXPECT_EQ(find_collapses(along_z(-1, 1.5, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
-  EXPECT_EQ(find_collapses(along_z(-1, 1.5, 0, {kCollapseShare / 2, 0, 0})).count, 1U);
-  const Collapses found = find_collapses(along_z(-1, 2, 0, {kCollapseShare / 2, 0, 0}));
+  EXPECT_EQ(find_near_collapses(along_z(-1, 2, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
+  EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
+  EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {kCollapseShare / 2, 0, 0})).count, 1U);
+  const NearCollapses found = find_near_collapses(along_z(-1, 2, 0, {kCollapseShare / 2, 0, 0}));
   ASSERT_EQ(found.count, 1U);
   EXPECT_TRUE(found.at[0].turns_over);
   EXPECT_NEAR(found.at[0].t, 0.5, 1e-9);
 }
 
-TEST(Collapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) {
+TEST(NearCollapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) {
   using fixtures::Shape;
   for (const auto& [start, end] :
        {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
     for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
-      const Collapses found = find_collapses(normals);
+      const NearCollapses found = find_near_collapses(normals);
       // Rare, and true: the reference says so at the very instant.
       for (std::size_t i = 0; i < found.count; ++i)
         EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
       EXPECT_LE(found.count, 1U);
     }
   }
-  EXPECT_EQ(find_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 1}}).count, 0U);
-  EXPECT_EQ(find_collapses({{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}).count, 0U);
-  EXPECT_EQ(find_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 0}}).count, 0U);
+  EXPECT_EQ(find_near_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 1}}).count, 0U);
+  EXPECT_EQ(find_near_collapses({{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}).count, 0U);
+  EXPECT_EQ(find_near_collapses({{0, 0, 0}, {0, 0, 1}, {0, 0, 0}}).count, 0U);
 }
 
-TEST(Collapse, zero_throughout_is_everywhere_and_no_instant) {
-  EXPECT_TRUE(find_collapses({}).everywhere);
-  EXPECT_EQ(find_collapses({}).count, 0U);
+TEST(NearCollapse, zero_throughout_is_everywhere_and_no_instant) {
+  EXPECT_TRUE(find_near_collapses({}).everywhere);
+  EXPECT_EQ(find_near_collapses({}).count, 0U);
 }
 
-TEST(Collapse, random_faces_in_space_do_not_collapse) {
+TEST(NearCollapse, random_faces_in_space_do_not_collapse) {
   for (const ControlNormals& normals : normals_of(fixtures::large_soup(20000)))
-    EXPECT_EQ(find_collapses(normals).count, 0U);
+    EXPECT_EQ(find_near_collapses(normals).count, 0U);
 }
 
-TEST(Collapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
+TEST(NearCollapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
   for (const Motion& motion : {fixtures::collapsing_soup(1e-8, 500), fixtures::inside_out_soup(100)}) {
     std::size_t all = 0;
     for (const ControlNormals& c : normals_of(motion)) {
-      const Collapses found = find_collapses(c);
-      const Collapses back = find_collapses({c.n1, c.m, c.n0});
-      const Collapses scaled = find_collapses({0x1p-200 * c.n0, 0x1p-200 * c.m, 0x1p-200 * c.n1});
+      const NearCollapses found = find_near_collapses(c);
+      const NearCollapses back = find_near_collapses({c.n1, c.m, c.n0});
+      const NearCollapses scaled = find_near_collapses({0x1p-200 * c.n0, 0x1p-200 * c.m, 0x1p-200 * c.n1});
       ASSERT_EQ(back.count, found.count);
       ASSERT_EQ(scaled.count, found.count);
       all += found.count;
@@ -173,4 +173,4 @@ TEST(Collapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
 }
 
 }  // namespace
-}  // namespace chronormal::collapse_test
+}  // namespace chronormal::near_collapse_test

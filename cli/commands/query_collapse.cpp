@@ -1,0 +1,13 @@
+// chronormal query collapse: when faces have no area.
+
+#include "cli/commands/query_question.h"
+
+namespace chronormal::cli {
+
+Question collapse_question() {
+  return {"collapse", "when faces collapse, and which turn over: decided exactly", {}, [] {
+            return Result<Ask>(query_collapse);
+          }};
+}
+
+}  // namespace chronormal::cli

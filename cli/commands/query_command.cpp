@@ -1,0 +1,131 @@
+// chronormal query: asks one of several questions about whole intervals of time. A question stands in a file of its own
+// (cli/commands/query_question.h); here is what they share: the input, the span, and where the answer goes.
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/json.h"
+#include "cli/commands/query_question.h"
+#include "cli/options/command.h"
+#include "cli/reports/query_report.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  InputOptions input;
+  CommonOptions common;
+  std::string question;
+  QuerySpan span;
+  bool json = false;
+  std::vector<Question> questions = {collapse_question()};
+};
+
+// Whether the command line gave an option a value.
+bool was_given(const Option& option) {
+  return std::visit(
+      [](const auto* target) {
+        using Target = std::remove_const_t<std::remove_pointer_t<decltype(target)>>;
+        if constexpr (std::is_same_v<Target, bool>)
+          return *target;
+        else if constexpr (requires { target->has_value(); })
+          return target->has_value();
+        else if constexpr (requires { target->empty(); })
+          return !target->empty();
+        else
+          return *target != Target{};
+      },
+      option.target);
+}
+
+Result<Question> find_question(const Options& options) {
+  const auto& questions = options.questions;
+  std::string names;
+  for (const Question& question : questions) names += (names.empty() ? "" : ", ") + question.name;
+  if (options.question.empty()) return misuse("QUESTION", "name one: " + names);
+  const auto found = std::find_if(questions.begin(), questions.end(),
+                                  [&](const Question& question) { return question.name == options.question; });
+  if (found == questions.end())
+    return misuse("QUESTION", formatted("there is no '{}'; there are {}", printable(options.question), names));
+  for (const Question& other : questions) {
+    for (const Option& option : other.options)
+      if (other.name != found->name && was_given(option))
+        return misuse(option.spelling.substr(0, option.spelling.find(' ')), "it belongs to query " + other.name);
+  }
+  return *found;
+}
+
+Result<int> run(const Options& options) {
+  const Result<Question> question = find_question(options);
+  if (!question) return question.error();
+  const Result<Ask> ask = question.value().understand();
+  if (!ask) return ask.error();
+  const std::string& output = options.common.output;
+  const bool is_file = !options.json && output != "-";
+  if (const Status status =
+          is_file ? check_query_output(output, options.common.force) : check_output(output, options.common.force);
+      !status)
+    return status.error();
+
+  Progress progress(options.common.quiet);
+  Result<Input> input = open_input(options.input, progress);
+  if (!input) return input.error();
+  const Result<const Motion*> motion = input.value().motion();
+  if (!motion) return motion.error();
+  const Result<QueryAnswer> answer =
+      ask.value()(*motion.value(), options.span, progress.callback(question.value().name));
+  progress.clear();
+  if (!answer) return answer.error();
+  const std::string& name = input.value().name();
+  const Status written =
+      is_file ? write_query(answer.value(), output, options.common.force)
+              : print_to(output, options.json ? query_json(name, answer.value()) : query_text(name, answer.value()),
+                         options.common.force);
+  if (!written) return written.error();
+  return kExitDone;
+}
+
+std::string footer(const std::vector<Question>& questions) {
+  std::string text = "Questions:\n";
+  for (const Question& question : questions) text += formatted("  {:<12}{}\n", question.name, question.summary);
+  return text +
+         "\nThe answer is a table for people, with --json one JSON object, and in OUT.npz arrays: a row for each\n"
+         "interval or face, with its segment. Times t are fractions of a segment. docs/uses.md says what is "
+         "guaranteed.\n"
+         "\nExamples:\n"
+         "  chronormal query collapse face.glb\n"
+         "  chronormal query collapse walk/ --from 1 --to 2.5 --json\n"
+         "  chronormal query collapse body.obj walk.pc2 -o collapses.npz\n"
+         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+}  // namespace
+
+Command query_command() {
+  auto options = std::make_shared<Options>();
+  std::vector<Option> input = input_table(options->input), own;
+  input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});
+  for (const Question& question : options->questions)
+    for (Option option : question.options) {
+      option.help = question.name + ": " + option.help;
+      own.push_back(std::move(option));
+    }
+  own.push_back({"--from T", &options->span.from,
+                 "ask about what is at or after this time of the motion (of targets, this weight)"});
+  own.push_back({"--to T", &options->span.to, "ask about what is at or before this time"});
+  own.push_back({"--json", &options->json, "print one JSON object, for programs"});
+  return {"query",
+          "Ask what normals do over whole intervals of time",
+          {std::move(input), std::move(own), options->common.table(false)},
+          footer(options->questions),
+          [options] { return run(*options); }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,29 @@
+/// A question of `chronormal query`: one file query_NAME.cpp, with one function that describes it.
+#ifndef CLI_COMMANDS_QUERY_QUESTION_H_
+#define CLI_COMMANDS_QUERY_QUESTION_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/workflow/query.h"
+#include "cli/options/options.h"
+
+namespace chronormal::cli {
+
+/// Asks a motion.
+using Ask = std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&)>;
+
+struct Question {
+  std::string name, summary;
+  std::vector<Option> options;  ///< that only this question has
+  /// Reads what the options say, before any input is read. Errors: kUsage with an option as the place.
+  std::function<Result<Ask>()> understand;
+};
+
+[[nodiscard]] Question collapse_question();
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_COMMANDS_QUERY_QUESTION_H_

@@ -1,0 +1,16 @@
+/// The answer of `query` for people.
+#ifndef CLI_REPORTS_QUERY_REPORT_H_
+#define CLI_REPORTS_QUERY_REPORT_H_
+
+#include <string>
+
+#include "chronormal/workflow/query.h"
+
+namespace chronormal::cli {
+
+/// The facts, a line each, and the first rows of every table. input is the name of what was asked about.
+[[nodiscard]] std::string query_text(const std::string& input, const QueryAnswer& answer);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_QUERY_REPORT_H_

@@ -1,0 +1,98 @@
+/// Questions about the normals of a motion over whole intervals of time, answered as arrays: what `chronormal query` does.
+///
+/// A question takes a motion and a span of its time, looks at every segment that the span touches, and answers with
+/// tables of equally long columns. What one segment's answer is made of, and what is guaranteed, stands in the header
+/// of the same name in analysis/; here it becomes rows that name their segment and face.
+///
+///     const Result<QueryAnswer> answer = query_collapse(motion);
+///     write_query(answer.value(), "collapses.npz", false);
+///
+/// Units      a `t` is the fraction of a segment, in [0, 1]; a `time` is that of the motion: seconds, or the weight of a
+///            target.
+/// Threads    every question uses all (core/parallel.h); the answer is the same on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_QUERY_H_
+#define CHRONORMAL_WORKFLOW_QUERY_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+/// The span that a question is about, in the time of the motion; of targets, in weights. Nothing: from its beginning, or
+/// to its end.
+struct QuerySpan {
+  std::optional<double> from = {}, to = {};
+};
+
+/// What a span takes of one segment: [t0, t1], with t0 < t1.
+struct SegmentPart {
+  std::size_t segment = 0;
+  double t0 = 0, t1 = 1;
+};
+
+/// The parts of all segments that lie in a span, ascending. Errors: kUsage, with --from or --to as the place, for a span
+/// that is empty or in which there is no motion.
+[[nodiscard]] Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span);
+
+/// A column of an answer: an array of which the first length is that of its table.
+struct QueryColumn {
+  /// Truths are one byte each, 0 or 1.
+  using Values =
+      std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<float>, std::vector<std::uint8_t>>;
+
+  std::string name;
+  Values values;
+  std::size_t width = 1;  ///< 3: an array (rows, 3)
+
+  [[nodiscard]] std::size_t rows() const noexcept;
+};
+
+struct QueryTable {
+  std::string name;     ///< prefix of its arrays in a file: "crossing" has crossing_face; may be empty
+  std::string meaning;  ///< what a row is, for people: "collapses of faces"
+  std::vector<QueryColumn> columns = {};
+
+  [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().rows(); }
+};
+
+/// A number that sums up the answer.
+struct QueryFact {
+  std::string name;     ///< its key in JSON: "faces"
+  std::string meaning;  ///< for people, behind the number: "faces that collapse"
+  double value = 0;
+};
+
+struct QueryAnswer {
+  std::string question;  ///< "collapse"
+  std::vector<QueryFact> facts;
+  std::vector<QueryTable> tables;
+};
+
+/// Called with (done, total) from the calling thread.
+using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// When and where faces collapse (analysis/collapse.h), decided exactly. Tables:
+///     ""        segment, face, lower, upper (t), time, turns_over, before, after: one row for each collapse
+///     always    segment, face: n is zero in the whole segment
+/// Errors: of segment_parts().
+[[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
+                                                 const QueryProgress& progress = {});
+
+/// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
+/// the table has no name. Errors: kUsage for another extension; those of write_output().
+[[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
+
+/// Refuses before a long computation what write_query() would refuse.
+[[nodiscard]] Status check_query_output(const std::string& path, bool force);
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_QUERY_H_

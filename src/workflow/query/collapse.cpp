@@ -1,0 +1,88 @@
+#include <utility>
+
+#include "chronormal/analysis/collapse.h"
+#include "chronormal/workflow/query.h"
+#include "workflow/query/parts.h"
+
+namespace chronormal {
+namespace {
+
+struct Found {
+  std::size_t face = 0;
+  Collapses collapses;
+};
+
+// The faces of one part that collapse in it.
+std::vector<Found> collapses_of(const Motion& motion, const SegmentPart& part) {
+  const Segment segment = motion.segment(part.segment);
+  std::vector<ControlNormals> normals(motion.topology.face_count());
+  face_control_normals(segment, {0, normals.size()}, normals);
+  std::vector<Found> found;
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const Collapses all = find_collapses(segment, f, normals[f]);
+    Collapses inside{{}, 0, all.always};
+    for (const Collapse& one : all.instants()) {
+      if (one.upper >= part.t0 && one.lower <= part.t1) inside.at[inside.count++] = one;
+    }
+    if (inside.always || inside.count > 0) found.push_back({f, inside});
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
+  const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
+  if (!parts) return parts.error();
+  const std::vector<std::vector<Found>> found = for_parts<std::vector<Found>>(
+      parts.value(), progress, [&](const SegmentPart& part) { return collapses_of(motion, part); });
+
+  std::vector<std::int64_t> segments, faces, always_segments, always_faces;
+  std::vector<double> lower, upper, times, before, after;
+  std::vector<std::uint8_t> turns_over;
+  std::size_t turned = 0;
+  const auto append = [](std::vector<double>& list, const Vec3d& v) { list.insert(list.end(), {v.x, v.y, v.z}); };
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    const auto s = static_cast<std::int64_t>(parts.value()[p].segment);
+    const Segment segment = motion.segment(parts.value()[p].segment);
+    for (const auto& [face, collapses] : found[p]) {
+      if (collapses.always) {
+        always_segments.push_back(s);
+        always_faces.push_back(static_cast<std::int64_t>(face));
+      }
+      for (const Collapse& one : collapses.instants()) {
+        segments.push_back(s);
+        faces.push_back(static_cast<std::int64_t>(face));
+        lower.push_back(one.lower);
+        upper.push_back(one.upper);
+        times.push_back(segment.start_time + one.upper * (segment.end_time - segment.start_time));
+        turns_over.push_back(one.turns_over ? 1 : 0);
+        turned += one.turns_over ? 1 : 0;
+        append(before, one.before);
+        append(after, one.after);
+      }
+    }
+  }
+  const auto count = [](std::size_t value) { return static_cast<double>(value); };
+  return QueryAnswer{"collapse",
+                     {{"segments", "segments looked at", count(parts.value().size())},
+                      {"faces", "faces in each", count(motion.topology.face_count())},
+                      {"collapses", "collapses", count(faces.size())},
+                      {"turns_over", "of them turn the face over", count(turned)},
+                      {"always", "times a face has no area in a whole segment", count(always_faces.size())}},
+                     {{"",
+                       "collapses, at t in [lower, upper]",
+                       {{"segment", std::move(segments)},
+                        {"face", std::move(faces)},
+                        {"lower", std::move(lower)},
+                        {"upper", std::move(upper)},
+                        {"time", std::move(times)},
+                        {"turns_over", std::move(turns_over)},
+                        {"before", std::move(before), 3},
+                        {"after", std::move(after), 3}}},
+                      {"always",
+                       "no area in the whole segment",
+                       {{"segment", std::move(always_segments)}, {"face", std::move(always_faces)}}}}};
+}
+
+}  // namespace chronormal

@@ -1,0 +1,87 @@
+// What all questions share: the parts of segments that lie in a span, and answers as files.
+
+#include "chronormal/workflow/query.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "core/charconv.h"
+#include "io/cache/npz.h"
+
+namespace chronormal {
+namespace {
+
+std::string npy_of(const QueryColumn& column) {
+  std::vector<std::uint64_t> shape = {column.rows()};
+  if (column.width != 1) shape.push_back(column.width);
+  if (const auto* const values = std::get_if<std::vector<float>>(&column.values)) {
+    NpyBytes array(shape);
+    array.append(*values);
+    return std::move(array).bytes();
+  }
+  if (const auto* const values = std::get_if<std::vector<double>>(&column.values))
+    return NpyBytes(shape, *values).bytes();
+  if (const auto* const values = std::get_if<std::vector<std::int64_t>>(&column.values))
+    return NpyBytes(shape, *values).bytes();
+  return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
+}
+
+// The fewest digits that read back as the same number, so that it can be pasted.
+std::string text_of(double number) {
+  char digits[32];
+  return {digits, to_chars(digits, digits + sizeof digits, number).ptr};
+}
+
+Error no_motion(const char* option, double time, double first, double last) {
+  return Error{ErrorCode::kUsage, option,
+               "there is no motion " + std::string(option == std::string("--from") ? "after " : "before ") +
+                   text_of(time) + ": it goes from " + text_of(first) + " to " + text_of(last)};
+}
+
+}  // namespace
+
+std::size_t QueryColumn::rows() const noexcept {
+  return std::visit([](const auto& list) { return list.size(); }, values) / width;
+}
+
+Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span) {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  const double from = span.from.value_or(-kEndless), to = span.to.value_or(kEndless);
+  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "it must be later than --from"};
+  std::vector<SegmentPart> parts;
+  double first = kEndless, last = -kEndless;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    const Segment segment = motion.segment(s);
+    first = std::min(first, segment.start_time);
+    last = std::max(last, segment.end_time);
+    const double length = segment.end_time - segment.start_time;
+    const double t0 = from <= segment.start_time ? 0 : (from - segment.start_time) / length;
+    const double t1 = to >= segment.end_time ? 1 : (to - segment.start_time) / length;
+    if (t0 < t1) parts.push_back({s, t0, t1});
+  }
+  if (!parts.empty()) return parts;
+  return from >= last ? no_motion("--from", from, first, last) : no_motion("--to", to, first, last);
+}
+
+Status check_query_output(const std::string& path, bool force) {
+  if (std::filesystem::path(path).extension() != ".npz")
+    return Error{ErrorCode::kUsage, path, "arrays are written as .npz; --json is for programs, and a table for people"};
+  return check_output(path, force);
+}
+
+Status write_query(const QueryAnswer& answer, const std::string& path, bool force) {
+  if (const Status status = check_query_output(path, force); !status) return status.error();
+  std::vector<std::pair<std::string, std::string>> arrays;
+  for (const QueryTable& table : answer.tables) {
+    const std::string prefix = table.name.empty() ? "" : table.name + '_';
+    for (const QueryColumn& column : table.columns) arrays.emplace_back(prefix + column.name, npy_of(column));
+  }
+  std::vector<NpzMember> members;
+  for (const auto& [name, bytes] : arrays) members.push_back({name, bytes});
+  return write_output(path, write_npz(members), force);
+}
+
+}  // namespace chronormal

@@ -1,0 +1,99 @@
+// What scripts and people get from `query`: tables, JSON, arrays, and the exit codes of misuse.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/array_file.h"
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::query_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+class QueryCli : public testing::Test {
+ protected:
+  // Two triangles of a square. The last vertex comes across the diagonal, and back again by the same way: face 1 turns
+  // over at t = 1/2 of both segments, and face 0 stands still.
+  QueryCli() {
+    for (const auto& [name, corner] : {std::pair{"a.obj", "1 1 0"}, {"b.obj", "0 0 0"}, {"c.obj", "1 1 0"}})
+      folder_.write(name, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv ") + corner + "\nf 1 2 3\nf 2 4 3\n");
+  }
+
+  [[nodiscard]] ProcessResult run(const std::string& arguments) const {
+    return run_shell(std::string(kProgram) + " query " + arguments, folder_.path());
+  }
+  [[nodiscard]] Json json_of(const std::string& arguments) const {
+    const ProcessResult result = run(arguments + " --json");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out);
+  }
+  void expect_misuse(const std::string& arguments, const std::string& word) const {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << " in " << result.err;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(QueryCli, collapses_are_rows_of_segment_and_face) {
+  const Json json = json_of("collapse a.obj b.obj c.obj");
+  EXPECT_EQ(json.at("question"), "collapse");
+  EXPECT_EQ(json.at("summary").at("collapses"), 2);
+  const Json& arrays = json.at("arrays");
+  EXPECT_EQ(arrays.at("segment"), Json({0, 1}));
+  EXPECT_EQ(arrays.at("face"), Json({1, 1}));
+  EXPECT_EQ(arrays.at("lower"), Json({0.5, 0.5}));
+  EXPECT_EQ(arrays.at("upper"), Json({0.5, 0.5}));
+  EXPECT_EQ(arrays.at("time"), Json({0.5, 1.5}));
+  EXPECT_EQ(arrays.at("turns_over"), Json({true, true}));
+  EXPECT_EQ(arrays.at("before"), Json::parse("[[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]"));
+  EXPECT_EQ(arrays.at("after"), Json::parse("[[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]"));
+}
+
+TEST_F(QueryCli, a_span_asks_about_its_own_time_only) {
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from 1").at("arrays").at("segment"), Json({1}));
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --to 0.75").at("arrays").at("segment"), Json({0}));
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from .6 --to 1.4").at("summary").at("segments"), 2);
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from .6 --to 1.4").at("summary").at("collapses"), 0);
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from 5 --to 15 --fps .1").at("summary").at("collapses"), 2);
+}
+
+TEST_F(QueryCli, arrays_are_those_of_json) {
+  EXPECT_EQ(run("collapse a.obj b.obj c.obj -o found.npz").exit_code, 0);
+  const auto arrays = test::parse_npz(test::read_whole(folder_ / "found.npz"));
+  EXPECT_EQ(arrays.at("segment").as<std::int64_t>(), (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(arrays.at("lower").as<double>(), (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(arrays.at("before").shape, (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(arrays.at("turns_over").shape, (std::vector<std::size_t>{2}));
+  EXPECT_EQ(arrays.at("always_face").shape, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(arrays.size(), json_of("collapse a.obj b.obj c.obj").at("arrays").size());
+}
+
+TEST_F(QueryCli, people_get_a_table) {
+  const ProcessResult result = run("collapse a.obj b.obj c.obj");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* const word :
+       {"a.obj ... c.obj\n", "2  collapses\n", "2  of them turn the face over", "turns over", "0 0 -1"})
+    EXPECT_NE(result.out.find(word), std::string::npos) << word << " in " << result.out;
+}
+
+TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
+  expect_misuse("", "QUESTION: name one: ");
+  expect_misuse("why a.obj b.obj", "there is no 'why'; there are ");
+  expect_misuse("collapse a.obj b.obj -o table.txt", "arrays are written as .npz");
+  expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");
+  expect_misuse("collapse a.obj b.obj --to 0", "--to: there is no motion before 0");
+  expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: it must be later than --from");
+  EXPECT_EQ(run("collapse a.obj").exit_code, 3) << "a mesh that stands still is no motion";
+}
+
+}  // namespace
+}  // namespace chronormal::query_cli_test
