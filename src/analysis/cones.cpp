@@ -27,7 +27,7 @@ bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 template <class Settle>
 void cones_of_block(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result,
                     const Settle& settle) noexcept {
-  std::array<std::uint8_t, kBlock / kConesPerFlags> flags;
+  std::array<std::uint16_t, kBlock / kConesPerFlags> flags;
   const Restriction restriction = Restriction::to(t0, t1);
   if (is_whole(t0, t1)) {
     cones_of_three(normals.data(), normals.size(), kNormalShare, result.data(), flags.data());

@@ -44,7 +44,7 @@ NormalCone cone_around(PartNormals part) noexcept {
     if (*v == Vec3d{}) *v = **first;
   }
   NormalCone cone;
-  std::uint8_t flags = 0;
+  std::uint16_t flags = 0;
   cones_of_three(&c, 1, part.unknown, &cone, &flags);
   return flags == 0 ? cone : NormalCone::whole_sphere();
 }

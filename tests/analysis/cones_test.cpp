@@ -190,10 +190,10 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
   EXPECT_EQ(half_angle(cones[0]), 0);
   for (const std::size_t i : {1U, 2U}) {
     EXPECT_EQ(cones[i].axis, (Vec3f{1, 0, 0}));
-    EXPECT_LT(half_angle(cones[i]), 1e-7);
+    EXPECT_LT(half_angle(cones[i]), 4e-7);
   }
   for (const std::size_t i : {3U, 4U}) {
-    EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 1e-4);
+    EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
   // Over the first half {zero, zero, x} still begins with zeros, and over the second it has none.
@@ -220,6 +220,23 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
+// At t = 1/2 these control normals nearly cancel, so that 2^-26 of one of them turns n(t) by far more than that.
+TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
+  for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
+    const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
+    ControlNormals exact = given;
+    exact.m.y = 0x1p-26;
+    NormalCone cone;
+    normal_cones({&given, 1}, 0.5, 0.5, {&cone, 1});
+    if (left >= 0x1p-14) {
+      EXPECT_LE(angle_between(normal_at(exact, 0.5), to_double(cone.axis)), half_angle(cone)) << left;
+      EXPECT_LT(half_angle(cone), 0x1p-24 / left + 1e-6) << left;
+    } else {
+      EXPECT_TRUE(cone.is_whole_sphere());
+    }
+  }
+}
+
 // Two edges and a corner of a cube, and the smallest cones around them.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
@@ -229,7 +246,7 @@ TEST(Cones, are_the_smallest_around_three_directions) {
   const std::vector<double> degrees{std::atan(std::sqrt(2.0)) * kDegreesPerRadian, 45,
                                     std::atan(std::sqrt(2.0)) * kDegreesPerRadian};
   for (std::size_t i = 0; i < cones.size(); ++i) {
-    EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, degrees[i], 1e-4);
+    EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, degrees[i], 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, degrees[i]);
   }
 }
@@ -333,7 +350,7 @@ TEST(EnclosingCone, of_few_is_the_smallest_and_special_cones_keep_their_meaning)
   EXPECT_TRUE(enclosing({x, NormalCone::whole_sphere()}).is_whole_sphere());
   EXPECT_TRUE(enclosing({x, minus_x}).is_whole_sphere());
   EXPECT_TRUE(enclosing({x, y, minus_x}).is_whole_sphere());
-  EXPECT_NEAR(degrees(enclosing({x, y})), 45, 1e-4);
+  EXPECT_NEAR(degrees(enclosing({x, y})), 45, 3e-4);
   EXPECT_NEAR(degrees(enclosing({x, y, z})), std::atan(std::sqrt(2.0)) * kDegreesPerRadian, 1);
   EXPECT_NEAR(degrees(enclosing({x, wide})), 30, 1);
   EXPECT_NEAR(degrees(enclosing({y, wide})), 60, 1.5);

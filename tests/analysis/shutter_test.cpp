@@ -99,6 +99,21 @@ TEST(Shutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_closed_for
   EXPECT_LT(largest_bound, 2e-6);
 }
 
+// Each control normal is off by almost 2^-26 of its length, all of them the same way.
+TEST(Shutter, has_a_bound_that_covers_the_rounding_of_control_normals) {
+  fixtures::Random random(503);
+  double smallest_bound = 1;
+  for (int i = 0; i < 200; ++i) {
+    const fixtures::Point p = random.in_cube(1), q = random.in_cube(1);
+    const Vec3d from = unit({p[0], p[1], p[2]}), to = unit(from + Vec3d{q[0] / 4, q[1] / 4, q[2] / 4});
+    const Vec3d off = 0.99 * 0x1p-26 * any_perpendicular(unit(from + to));
+    const ShutterNormal s = shutter_normal({from + off, 0.5 * (from + to) + off, to + off}, 0, 1);
+    EXPECT_LE(distance(s.mean_unit, mean_of_line(from, to)), s.error);
+    smallest_bound = std::min(smallest_bound, s.error);
+  }
+  EXPECT_LT(smallest_bound, 1e-7);
+}
+
 TEST(Shutter, of_faces_is_within_its_bound_of_dense_quadrature) {
   fixtures::Random random(502);
   double largest_error = 0, largest_bound = 0;

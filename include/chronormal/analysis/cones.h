@@ -13,7 +13,7 @@
 ///
 /// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are taken to be within 2^-26
 ///            of their length, as face_control_normals() makes them, and all rounding of the cone itself is added. What
-///            this adds to the half-angle is about 2e-7 rad. (docs/theory.md, section 16)
+///            this adds to the half-angle is about 3e-7 rad, and 1e-6 of its sine. (docs/theory.md, section 16)
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Tong, Wang, Manocha: Fast continuous collision detection using deforming non-penetration filters
@@ -59,7 +59,7 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 
 /// Returns a cone that contains all of these: that of a cluster from its faces, of a node from its children, of a face
 /// from several segments. Empty ones do not count; the cone of none is empty. It is near the smallest one (within 3 % of
-/// its half-angle, mostly), and each level of a hierarchy adds about 2e-7 rad of rounding. Cost: 16 passes over the cones.
+/// its half-angle, mostly), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 16 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
 }  // namespace chronormal

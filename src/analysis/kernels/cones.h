@@ -31,19 +31,20 @@ struct Restriction {
   }
 };
 
-/// How many elements share a byte of flags.
-inline constexpr std::size_t kConesPerFlags = 8;
+/// How many elements share a number of flags.
+inline constexpr std::size_t kConesPerFlags = 16;
 
 /// Writes the cone around the three vectors of each element, of which each is within `share` of its length, and flags
-/// those of which a vector is zero or not finite: their cones mean nothing. Bit i of flags[b] is element 8 b + i.
-/// result must have room for `count` cones, flags for a byte for every 8 begun
+/// those of which a vector is zero, not finite, or below 2^-1022 or above 2^1023: their cones mean nothing. Bit i of
+/// flags[b] is element 16 b + i.
+/// result must have room for `count` cones, flags for a number for every 16 begun
 void cones_of_three(const ControlNormals* normals, std::size_t count, double share, NormalCone* result,
-                    std::uint8_t* flags) noexcept;
+                    std::uint16_t* flags) noexcept;
 
 /// The same for parts of segments; also flags elements of which a restricted control normal is unknown by more than
 /// kLargestUnknown.
 void cones_of_parts(const ControlNormals* normals, std::size_t count, const Restriction& part, NormalCone* result,
-                    std::uint8_t* flags) noexcept;
+                    std::uint16_t* flags) noexcept;
 
 }  // namespace chronormal::inline internal
 
