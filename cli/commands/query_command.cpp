@@ -25,7 +25,7 @@ struct Options {
   std::string question;
   QuerySpan span;
   bool json = false;
-  std::vector<Question> questions = {collapse_question()};
+  std::vector<Question> questions = {collapse_question(), cones_question(), shutter_question()};
 };
 
 // Whether the command line gave an option a value.

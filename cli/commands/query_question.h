@@ -23,6 +23,8 @@ struct Question {
 };
 
 [[nodiscard]] Question collapse_question();
+[[nodiscard]] Question cones_question();
+[[nodiscard]] Question shutter_question();
 
 }  // namespace chronormal::cli
 

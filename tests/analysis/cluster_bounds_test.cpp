@@ -19,6 +19,7 @@
 
 #include "chronormal/io/builtin_morphs.h"
 #include "tests/support/cone_oracle.h"
+#include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"

@@ -17,6 +17,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "simd/targets.h"
 #include "tests/support/cone_oracle.h"
+#include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"

@@ -15,6 +15,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "tests/support/cone_oracle.h"
+#include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 
@@ -76,7 +77,7 @@ Vector mean_of_line(const Vec3d& from, const Vec3d& to) {
   return mean;
 }
 
-TEST(Shutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_closed_form) {
+TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_closed_form) {
   fixtures::Random random(501);
   double largest_error = 0, largest_bound = 0;
   const std::size_t wanted = test::wanted_cases() / 50;

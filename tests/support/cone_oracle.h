@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 
 #include "chronormal/analysis/cones.h"
 #include "tests/support/fixtures.h"
@@ -49,12 +48,6 @@ namespace chronormal::test {
     times[i] = std::fmin(std::fmax(t < 0x1p-200 ? 0 : t, t0), t1);
   }
   return times;
-}
-
-/// How many cases a test looks at, of 100,000 or what CHRONORMAL_FULL_CASES says.
-[[nodiscard]] inline std::size_t wanted_cases() {
-  const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
-  return full == nullptr ? 100000 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
 }
 
 }  // namespace chronormal::test

@@ -1,0 +1,288 @@
+// Sides of faces over time, against polynomials in whole numbers of any size.
+
+#include "chronormal/analysis/facing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "tests/support/exact_cases.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/whole_polynomial.h"
+
+namespace chronormal::facing_test {
+namespace {
+
+using test::WholePolynomial;
+
+// n(t) . w(t) from positions alone: at t = -1, 0, 1 and 2 the corners are whole.
+WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
+  const auto vertices = segment.topology->face(face);
+  std::array<test::Whole, 4> values;
+  for (const long t : {-1L, 0L, 1L, 2L}) {
+    const test::WholeVector a =
+        test::on_line(test::whole(segment.from[vertices[0]]), test::whole(segment.to[vertices[0]]), t);
+    const test::WholeVector viewer = test::on_line(test::whole(view.from), test::whole(view.to), t);
+    const test::WholeVector n = test::whole_normal(segment, vertices, t);
+    values[static_cast<std::size_t>(t + 1)] = test::dot_of(n, view.is_eye ? test::minus(viewer, a) : viewer);
+  }
+  return WholePolynomial::through(values[0], values[1], values[2], values[3]);
+}
+
+int sign_of(Side side) { return static_cast<int>(side); }
+
+// What is wrong with the changes of sides of one face; empty if nothing is.
+std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Random& random) {
+  if (f.is_zero()) return facing.count == 0 && facing.side == Side::kNone ? "" : "zero throughout";
+  const std::size_t roots = f.count_roots();
+  std::size_t inside = 0;
+  double last = -1;
+  int side = facing.count == 0 ? sign_of(facing.side) : 0;
+  std::vector<std::pair<double, int>> parts = {{0, side}};  // from where on the sign is known, and which it is
+  for (const FacingChange& change : facing.changes()) {
+    if (!(last < change.lower || (last == change.lower && last > 0)) || change.lower > change.upper)
+      return "not ascending";
+    if (change.lower == change.upper) {
+      if (f.sign_at(change.lower) != 0) return "no root at a double";
+      ++inside;
+    } else {
+      const int below = f.sign_at(change.lower), above = f.sign_at(change.upper);
+      if (below == 0 && change.lower > 0) return "lower end is a root";
+      const bool crosses = below * above < 0;
+      inside += crosses && change.upper < change.lower + 1e-12 ? 1 : f.count_roots(change.lower, change.upper);
+      if (below != 0 && below != sign_of(change.before)) return "side before";
+      if (above != 0 && above != sign_of(change.after)) return "side after";
+    }
+    if (parts.back().second != 0 && parts.back().second != sign_of(change.before)) return "sides do not meet";
+    if (parts.size() == 1) parts[0].second = sign_of(change.before);
+    parts.emplace_back(change.upper, sign_of(change.after));
+    last = change.upper;
+  }
+  if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
+  // Exact signs at many instants, close to the brackets too.
+  for (std::size_t i = 0; i < test::wanted_times(); ++i) {
+    double t = random.uniform(0, 1);
+    if (facing.count > 0 && i % 2 == 1) {
+      const FacingChange& change = facing.at[random.below(facing.count)];
+      const double step = std::ldexp(random.uniform(0.5, 1), -static_cast<int>(random.below(54)));
+      t = std::clamp(random.below(2) == 0 ? change.lower - step : change.upper + step, 0.0, 1.0);
+    }
+    bool is_inside = false;
+    int expected = parts[0].second;
+    for (const FacingChange& change : facing.changes()) {
+      is_inside |= change.lower <= t && t <= change.upper;
+      if (change.upper < t) expected = sign_of(change.after);
+    }
+    if (!is_inside && f.sign_at(t) != expected) return "side at t = " + std::to_string(t);
+  }
+  return "";
+}
+
+// A viewer somewhere, or so placed that the face is edge-on at a simple t.
+View some_view(const Segment& segment, std::size_t face, test::Random& random) {
+  const auto vertices = segment.topology->face(face);
+  const Vec3f a = segment.from[vertices[0]], b = segment.to[vertices[1]], c = segment.to[vertices[2]];
+  const auto lattice = [&random] {
+    const auto one = [&random] { return static_cast<float>(random.below(7)) - 3; };
+    const float x = one(), y = one();
+    return Vec3f{x, y, one()};
+  };
+  const auto somewhere = [&random](double size) {
+    const auto p = random.in_cube(size);
+    return Vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+  };
+  const auto clamped = [](const Vec3f& v) {
+    return Vec3f{std::clamp(v.x, -3e38F, 3e38F), std::clamp(v.y, -3e38F, 3e38F), std::clamp(v.z, -3e38F, 3e38F)};
+  };
+  switch (random.below(8)) {
+    case 0:
+      return View::of_direction(lattice());
+    case 1:
+      return View::of_direction(somewhere(1));
+    case 2:  // along an edge: edge-on at t = 1
+      return View::of_direction(clamped(c - b));
+    case 3:
+      return View::of_eye(lattice());
+    case 4:
+      return View::of_eye(somewhere(3));
+    case 5:
+      return View::of_eye(a);
+    case 6:
+      return View::of_moving_eye(lattice(), lattice());
+    default:
+      return View::of_moving_eye(clamped(a + somewhere(1)), clamped(c + somewhere(1)));
+  }
+}
+
+TEST(ExactFacing, no_side_is_wrong_in_any_family) {
+  const std::size_t wrong =
+      test::judge_cases(20260, [](const Segment& segment, std::size_t face, test::Random& random) {
+        const View view = some_view(segment, face, random);
+        return fault_of(find_facing(segment, face, view), facing_polynomial(segment, face, view), random);
+      });
+  EXPECT_EQ(wrong, 0U);
+}
+
+TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
+  const std::size_t wrong = test::judge_cases(
+      4711,
+      [](const Segment& segment, std::size_t face, test::Random& random) {
+        const View view = some_view(segment, face, random);
+        const double p = random.uniform(0, 1), q = random.below(4) == 0 ? 1 : random.uniform(0, 1);
+        const double t0 = random.below(4) == 0 ? 0 : std::min(p, q), t1 = std::max(p, q);
+        ControlNormals normals;
+        face_control_normals(segment, {face, 1}, {&normals, 1});
+        ShutterSide side{};
+        sides_over(segment, {face, 1}, {&normals, 1}, view, t0, t1, {&side, 1});
+        const WholePolynomial f = facing_polynomial(segment, face, view);
+        bool is_front = false, is_back = false;
+        for (std::size_t i = 0; i <= test::wanted_times() + 1; ++i) {
+          const double t = t0 + (t1 - t0) * (static_cast<double>(i) / static_cast<double>(test::wanted_times() + 1));
+          const int sign = f.sign_at(std::min(t, t1));
+          is_front |= sign > 0;
+          is_back |= sign < 0;
+        }
+        if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
+        if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
+        // The other way round it must be right too.
+        if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
+        return std::string();
+      },
+      5);
+  EXPECT_EQ(wrong, 0U);
+}
+
+// A triangle in the plane z = 0 of which the corner c moves as given.
+Motion moving_corner(const fixtures::Point& from, const fixtures::Point& to) {
+  return fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, from}, {{0, 0, 0}, {1, 0, 0}, to});
+}
+
+TEST(Facing, a_face_that_is_hidden_at_both_ends_may_be_seen_between) {
+  // n(t) . z = (1 - 4 t)(3 - 4 t): front, back, front for a viewer above.
+  const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
+                                              {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
+  const Facing below = find_facing(motion.segment(0), 0, View::of_direction({0, 0, -1}));
+  ASSERT_EQ(below.count, 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double root = i == 0 ? 0.25 : 0.75;
+    EXPECT_LE(below.at[i].lower, root);
+    EXPECT_GE(below.at[i].upper, root);
+    EXPECT_LT(below.at[i].upper - below.at[i].lower, 1e-13);
+  }
+  EXPECT_EQ(below.first(), Side::kBack);
+  EXPECT_EQ(below.at[0].after, Side::kFront);
+  EXPECT_EQ(below.last(), Side::kBack);
+  const View view = View::of_direction({0, 0, -1});
+  ControlNormals normals;
+  face_control_normals(motion.segment(0), {0, 1}, {&normals, 1});
+  const auto over = [&](double t0, double t1) {
+    ShutterSide side{};
+    sides_over(motion.segment(0), {0, 1}, {&normals, 1}, view, t0, t1, {&side, 1});
+    return side;
+  };
+  EXPECT_EQ(over(0, 1), ShutterSide::kBoth);
+  EXPECT_EQ(over(0, 0.249), ShutterSide::kBack);
+  EXPECT_EQ(over(0.251, 0.749), ShutterSide::kFront);
+  EXPECT_EQ(over(0.5, 0.76), ShutterSide::kBoth);
+  EXPECT_EQ(over(0.751, 1), ShutterSide::kBack);
+}
+
+TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
+  // n(t) . z = (1 - 2 t)^2.
+  const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                              {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}});
+  const Facing facing = find_facing(motion.segment(0), 0, View::of_direction({0, 0, 1}));
+  ASSERT_EQ(facing.count, 1U);
+  EXPECT_EQ(facing.at[0].lower, 0.5);
+  EXPECT_EQ(facing.at[0].upper, 0.5);
+  EXPECT_EQ(facing.at[0].before, Side::kFront);
+  EXPECT_EQ(facing.at[0].after, Side::kFront);
+}
+
+TEST(Facing, an_eye_may_pass_the_plane_of_a_face_three_times) {
+  // The face turns twice about the x axis seen from an eye that falls through its plane: f is a cubic of three roots.
+  const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
+                                              {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
+  const Facing facing = find_facing(motion.segment(0), 0, View::of_moving_eye({0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}));
+  ASSERT_EQ(facing.count, 3U);
+  EXPECT_NEAR(facing.at[0].lower, 0.25, 1e-13);
+  EXPECT_NEAR(facing.at[1].lower, 0.5, 1e-13);
+  EXPECT_NEAR(facing.at[2].upper, 0.75, 1e-13);
+  EXPECT_EQ(facing.first(), Side::kFront);
+  EXPECT_EQ(facing.at[0].after, Side::kBack);
+  EXPECT_EQ(facing.at[1].after, Side::kFront) << "the eye has passed the plane";
+  EXPECT_EQ(facing.last(), Side::kBack);
+}
+
+TEST(Facing, a_face_without_area_has_no_side) {
+  const Motion motion = moving_corner({2, 0, 0}, {3, 0, 0});
+  const Facing facing = find_facing(motion.segment(0), 0, View::of_eye({0, 0, 1}));
+  EXPECT_EQ(facing.count, 0U);
+  EXPECT_EQ(facing.side, Side::kNone);
+}
+
+TEST(Facing, time_that_runs_back_mirrors_the_changes) {
+  const Motion motion = fixtures::large_soup(2000, 5);
+  Motion back = motion;
+  std::swap(back.keyframes[0].positions, back.keyframes[1].positions);
+  std::size_t changes = 0;
+  for (std::size_t f = 0; f < 2000; ++f) {
+    const Facing there = find_facing(motion.segment(0), f, View::of_moving_eye({1, 2, 3}, {-1, 0, 2}));
+    const Facing here = find_facing(back.segment(0), f, View::of_moving_eye({-1, 0, 2}, {1, 2, 3}));
+    ASSERT_EQ(there.count, here.count);
+    for (std::size_t i = 0; i < there.count; ++i) {
+      const FacingChange &p = there.at[i], &q = here.at[there.count - 1 - i];
+      EXPECT_LE(p.lower, 1 - q.lower + 1e-16);
+      EXPECT_GE(p.upper, 1 - q.upper - 1e-16);
+      EXPECT_LT(p.upper - p.lower, 1e-9);
+      EXPECT_EQ(p.before, q.after);
+    }
+    changes += there.count;
+  }
+  EXPECT_GT(changes, 500U);
+}
+
+// The faces at every edge, at instants outside of all brackets.
+TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
+  const Motion motion = make_builtin_morph("bend").value();
+  const Segment segment = motion.segment(0);
+  const std::size_t faces = motion.topology.face_count();
+  std::vector<ControlNormals> normals(faces);
+  face_control_normals(segment, {0, faces}, normals);
+  const View view = View::of_moving_eye({4, -5, 2}, {5, -4, 1});
+  const std::vector<Silhouette> silhouettes = find_silhouettes(segment, normals, view);
+  EXPECT_GT(silhouettes.size(), 100U);
+  test::Random random(3);
+  std::size_t open = 0, differing = 0;
+  std::vector<WholePolynomial> polynomials;
+  for (std::size_t f = 0; f < faces; ++f) polynomials.push_back(facing_polynomial(segment, f, view));
+  for (int i = 0; i < 3; ++i) {
+    const double t = random.uniform(0, 1);
+    std::vector<int> signs;
+    for (const WholePolynomial& f : polynomials) signs.push_back(f.sign_at(t));
+    for (const Silhouette& one : silhouettes) {
+      if (!(one.from[1] < t && t < one.to[0])) continue;
+      ++open;
+      EXPECT_LT(signs[one.faces[0]] * signs[one.faces[1]], 0);
+    }
+    // As many edges differ, counted by the faces of each.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<int>> edges;
+    for (std::size_t f = 0; f < faces; ++f) {
+      const auto face = motion.topology.face(f);
+      for (std::size_t c = 0; c < face.size(); ++c) {
+        const std::uint32_t p = face[c], q = face[(c + 1) % face.size()];
+        edges[{std::min(p, q), std::max(p, q)}].push_back(signs[f]);
+      }
+    }
+    for (const auto& [edge, own] : edges) differing += own.size() == 2 && own[0] * own[1] < 0 ? 1U : 0U;
+  }
+  EXPECT_EQ(open, differing);
+  EXPECT_GT(open, 100U);
+}
+
+}  // namespace
+}  // namespace chronormal::facing_test

@@ -1,0 +1,228 @@
+/// Polynomials with whole coefficients of any size: the judge of roots and signs that the product claims to know exactly.
+///
+/// Positions in float32 are whole numbers times 2^-149, and a whole t needs no fractions, so values at t = -1, 0, 1 and 2
+/// are whole, and the polynomial is that through them. Roots are counted by Descartes' rule and halving, on the
+/// polynomial without its multiple roots.
+#ifndef CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
+#define CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
+
+#include <gmpxx.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::test {
+
+using Whole = mpz_class;
+using WholeVector = std::array<Whole, 3>;
+
+/// A vector of floats times 2^149.
+[[nodiscard]] inline WholeVector whole(const Vec3f& v) {
+  const auto one = [](float x) { return Whole(std::ldexp(static_cast<double>(x), 149)); };
+  return {one(v.x), one(v.y), one(v.z)};
+}
+
+/// p + t (q - p) for a whole t.
+[[nodiscard]] inline WholeVector on_line(const WholeVector& p, const WholeVector& q, long t) {
+  WholeVector result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = p[k] + t * (q[k] - p[k]);
+  return result;
+}
+
+[[nodiscard]] inline WholeVector minus(const WholeVector& p, const WholeVector& q) {
+  return {Whole(p[0] - q[0]), Whole(p[1] - q[1]), Whole(p[2] - q[2])};
+}
+
+[[nodiscard]] inline WholeVector cross_of(const WholeVector& p, const WholeVector& q) {
+  return {Whole(p[1] * q[2] - p[2] * q[1]), Whole(p[2] * q[0] - p[0] * q[2]), Whole(p[0] * q[1] - p[1] * q[0])};
+}
+
+[[nodiscard]] inline Whole dot_of(const WholeVector& p, const WholeVector& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/// The normal of a polygon at a whole t: the sum over its triangles, times 2^298.
+[[nodiscard]] inline WholeVector whole_normal(const Segment& segment, std::span<const std::uint32_t> vertices, long t) {
+  const auto corner = [&](std::size_t c) {
+    return on_line(whole(segment.from[vertices[c]]), whole(segment.to[vertices[c]]), t);
+  };
+  const WholeVector a = corner(0);
+  WholeVector sum;
+  for (std::size_t c = 2; c < vertices.size(); ++c) {
+    const WholeVector n = cross_of(minus(corner(c - 1), a), minus(corner(c), a));
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
+  }
+  return sum;
+}
+
+class WholePolynomial {
+ public:
+  /// The polynomial of degree up to 3 with these values at t = -1, 0, 1, 2, times 6.
+  [[nodiscard]] static WholePolynomial through(const Whole& at_minus_1, const Whole& at_0, const Whole& at_1,
+                                               const Whole& at_2) {
+    const Whole c3 = at_2 - 3 * at_1 + 3 * at_0 - at_minus_1, c2 = 3 * (at_1 - 2 * at_0 + at_minus_1);
+    return WholePolynomial({Whole(6 * at_0), Whole(6 * (at_1 - at_0) - c2 - c3), c2, c3});
+  }
+
+  [[nodiscard]] bool is_zero() const { return a_.empty(); }
+  [[nodiscard]] bool is_constant() const { return a_.size() < 2; }
+
+  [[nodiscard]] static WholePolynomial greatest_common_divisor(WholePolynomial p, WholePolynomial q);
+
+  /// The sign at a double, which may be anything finite.
+  [[nodiscard]] int sign_at(double t) const {
+    int exponent = 0;
+    const Whole mantissa(std::ldexp(std::frexp(t, &exponent), 53));
+    const auto shift = static_cast<mp_bitcnt_t>(exponent < 53 ? 53 - exponent : 0);  // t = mantissa 2^-shift, below 1
+    Whole value = 0, power = 1;
+    for (std::size_t k = a_.size(); k-- > 0;) {
+      value = value * mantissa + a_[k] * power;
+      power <<= shift;
+    }
+    return sgn(value);
+  }
+
+  /// How many different roots there are in [0, 1].
+  [[nodiscard]] std::size_t count_roots() const {
+    const std::size_t at_ends = (sign_at(0) == 0 ? 1U : 0U) + (sign_at(1) == 0 ? 1U : 0U);
+    const std::vector<Whole> b = bernstein();
+    return at_ends + (variations(b) < 2 ? variations(b) : count_in(without_multiple_roots().bernstein()));
+  }
+
+  /// How many different roots there are in [low, high], for 0 <= low < high <= 1.
+  [[nodiscard]] std::size_t count_roots(double low, double high) const {
+    // p(low + s (high - low)), with low and high whole numbers times 2^-shift.
+    constexpr int kShift = 1080;
+    const auto scaled = [](double t) {
+      int exponent = 0;
+      Whole value(std::ldexp(std::frexp(t, &exponent), 53));
+      value <<= static_cast<mp_bitcnt_t>(kShift - 53 + exponent);
+      return value;
+    };
+    const Whole from = scaled(low), step = scaled(high) - from;
+    std::vector<Whole> moved;
+    Whole power = 1;
+    for (std::size_t k = a_.size(); k-- > 0;) {
+      // moved = moved * (from + s step) + a_k power
+      std::vector<Whole> next(moved.size() + 1);
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        next[i] += moved[i] * from;
+        next[i + 1] += moved[i] * step;
+      }
+      next[0] += a_[k] * power;
+      moved = next;
+      power <<= kShift;
+    }
+    return WholePolynomial(moved).count_roots();
+  }
+
+ private:
+  explicit WholePolynomial(std::vector<Whole> a) : a_(std::move(a)) {
+    while (!a_.empty() && a_.back() == 0) a_.pop_back();
+  }
+
+  [[nodiscard]] WholePolynomial derivative() const {
+    std::vector<Whole> a;
+    for (std::size_t k = 1; k < a_.size(); ++k) a.emplace_back(static_cast<unsigned long>(k) * a_[k]);
+    return WholePolynomial(a);
+  }
+
+  [[nodiscard]] WholePolynomial without_content() const {
+    Whole content = 0;
+    for (const Whole& a : a_) content = gcd(content, a);
+    WholePolynomial result = *this;
+    if (content != 0)
+      for (Whole& a : result.a_) a /= content;
+    return result;
+  }
+
+  // Quotient and remainder of a multiple.
+  struct Division;
+  [[nodiscard]] Division divided_by(const WholePolynomial& q) const;
+  [[nodiscard]] WholePolynomial without_multiple_roots() const;
+
+  // Bernstein coefficients, times a positive number.
+  [[nodiscard]] std::vector<Whole> bernstein() const {
+    if (a_.empty()) return {};
+    const std::size_t n = a_.size() - 1;
+    std::vector<Whole> b(n + 1);
+    const auto choose = [](std::size_t from, std::size_t k) {
+      Whole result;
+      mpz_bin_uiui(result.get_mpz_t(), from, k);
+      return result;
+    };
+    Whole common = 1;
+    for (std::size_t k = 0; k <= n; ++k) common *= choose(n, k);
+    for (std::size_t k = 0; k <= n; ++k)
+      for (std::size_t i = 0; i <= k; ++i) b[k] += common * choose(k, i) * a_[i] / choose(n, i);
+    return b;
+  }
+
+  static std::size_t variations(const std::vector<Whole>& b) {
+    std::size_t count = 0;
+    int last = 0;
+    for (const Whole& one : b) {
+      if (sgn(one) != 0 && last != 0 && sgn(one) != last) ++count;
+      if (sgn(one) != 0) last = sgn(one);
+    }
+    return count;
+  }
+
+  // Roots in the open interval (0, 1), all of which are simple.
+  static std::size_t count_in(const std::vector<Whole>& b) {
+    if (variations(b) < 2) return variations(b);
+    // Halves, times 2^n.
+    std::vector<Whole> before = b, after = b, row = b;
+    const std::size_t n = b.size() - 1;
+    for (std::size_t level = 0; level <= n; ++level) {
+      before[level] = row[0] << static_cast<mp_bitcnt_t>(n - level);
+      after[n - level] = row[n - level] << static_cast<mp_bitcnt_t>(n - level);
+      for (std::size_t k = 0; k + level < n; ++k) row[k] += row[k + 1];
+    }
+    return count_in(before) + (sgn(after[0]) == 0 ? 1U : 0U) + count_in(after);
+  }
+
+  std::vector<Whole> a_;  // of rising powers; the last is not zero
+};
+
+struct WholePolynomial::Division {
+  WholePolynomial quotient, remainder;
+};
+
+inline WholePolynomial::Division WholePolynomial::divided_by(const WholePolynomial& q) const {
+  std::vector<Whole> rest = a_, quotient(a_.size() >= q.a_.size() ? a_.size() - q.a_.size() + 1 : 0);
+  for (std::size_t k = quotient.size(); k-- > 0;) {
+    const Whole factor = rest[k + q.a_.size() - 1];
+    for (Whole& one : rest) one *= q.a_.back();
+    for (Whole& one : quotient) one *= q.a_.back();
+    quotient[k] += factor;
+    for (std::size_t i = 0; i < q.a_.size(); ++i) rest[k + i] -= factor * q.a_[i];
+  }
+  return {WholePolynomial(quotient), WholePolynomial(rest)};
+}
+
+inline WholePolynomial WholePolynomial::greatest_common_divisor(WholePolynomial p, WholePolynomial q) {
+  while (!q.is_zero()) {
+    WholePolynomial rest = p.is_zero() ? p : p.divided_by(q).remainder.without_content();
+    p = std::move(q);
+    q = std::move(rest);
+  }
+  return p;
+}
+
+inline WholePolynomial WholePolynomial::without_multiple_roots() const {
+  const WholePolynomial p = greatest_common_divisor(*this, derivative());
+  return p.a_.size() < 2 ? *this : divided_by(p).quotient.without_content();
+}
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
