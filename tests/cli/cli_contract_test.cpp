@@ -224,6 +224,7 @@ const std::map<std::string, std::string> kUses = {
     {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},
     {"--from", "a.obj b.obj --from 0.25"},
+    {"query --meshlets", "cones a.obj b.obj --meshlets 8"},
     {"--to", "a.obj b.obj --to 0.75"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},

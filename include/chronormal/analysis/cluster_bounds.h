@@ -15,7 +15,7 @@
 /// A cluster that can always be seen has the axis 0 and the cutoff 1 (127), and one that has no normal at any time, and so
 /// nothing to be seen, the axis 0 and the cutoff 0.
 ///
-/// Proof      docs/theory.md, section 16. For vertices on straight lines, p(t) = (1-t) p0 + t p1, without rounding; a host
+/// Proof      docs/theory.md, section 20. For vertices on straight lines, p(t) = (1-t) p0 + t p1, without rounding; a host
 ///            that moves vertices in float32 shows faces that are edge on from either side, as it does anyhow.
 /// Threads    pure, on the thread that calls.
 /// Source     meshoptimizer 0.18, src/clusterizer.cpp; Shirman, Abi-Ezzi: The cone of normals technique (1993).

@@ -13,7 +13,7 @@
 ///
 /// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are taken to be within 2^-26
 ///            of their length, as face_control_normals() makes them, and all rounding of the cone itself is added. What
-///            this adds to the half-angle is about 3e-7 rad, and 1e-6 of its sine. (docs/theory.md, section 16)
+///            this adds to the half-angle is about 3e-7 rad, and 1e-6 of its sine. (docs/theory.md, section 20)
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Tong, Wang, Manocha: Fast continuous collision detection using deforming non-penetration filters

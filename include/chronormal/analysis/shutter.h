@@ -11,7 +11,7 @@
 /// length of mean_unit says how far normals spread: 1 where they are all the same, 0 where they cancel.
 ///
 /// Proof      Gauss's rule with 8 nodes on pieces in which |n(z)|^2 has no zero for complex z nearby, so that the unit normal
-///            is analytic there and the error is known (docs/theory.md, section 17). Around an instant at which n(t) = 0,
+///            is analytic there and the error is known (docs/theory.md, section 21). Around an instant at which n(t) = 0,
 ///            pieces are halved until they are 2^-28 of the interval, and count as error.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits everywhere.
 #ifndef CHRONORMAL_ANALYSIS_SHUTTER_H_
