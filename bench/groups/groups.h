@@ -18,6 +18,9 @@ void run_schemes(Suite& suite, const Size& size);
 /// Blend shapes, a few active at once.
 void run_blend(Suite& suite, const Size& size);
 
+/// What holds over a whole segment: collapse, facing.
+void run_uses(Suite& suite, const Size& size);
+
 /// How good a scheme is, to be held against what it costs.
 struct SchemeQuality {
   std::string scheme, mesh;

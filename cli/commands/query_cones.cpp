@@ -14,7 +14,7 @@ Question cones_question() {
             "also build meshlets of up to N triangles, with bounds as meshoptimizer has them"}},
           [meshlets] {
             return Result<Ask>([meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
-              return query_cones(motion, span, *meshlets, progress);
+              return query_cones(motion, *meshlets, span, progress);
             });
           }};
 }

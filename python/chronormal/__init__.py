@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "compare", "curves", "errors", "inspect",
-           "read"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "collapse", "compare", "cones", "curves",
+           "errors", "facing", "inspect", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -222,3 +222,87 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
                                         weld, False, True)
     return [ErrorTable(**table) for table in tables]
+
+
+def _keyframes(positions, faces, times):
+    """What the extension asks a question about: positions (T, V, 3), offsets and corners, times."""
+    positions = _vectors(positions, "positions")
+    if positions.ndim != 3 or positions.shape[2] != 3:
+        raise ValueError(f"positions: the shape is {positions.shape} and must be (T, V, 3)")
+    times = _np.arange(len(positions), dtype=_np.float64) if times is None else _np.asarray(times, dtype=_np.float64)
+    return positions, *_polygons(faces), _np.ascontiguousarray(times)
+
+
+def collapse(positions, faces, times=None, *, start=None, end=None):
+    """Return when faces have no area, decided exactly: a dict of arrays with a row for each collapse.
+
+    positions   (T, V, 3) keyframes; between two of them vertices move on straight lines
+    faces       as for curves()
+    times       (T,) of the keyframes; None: 0, 1, 2 ...
+    start, end  the span to look at, in these times; None: all
+
+    segment, face   where; lower, upper: t of the segment lies between them, in [0, 1]; time: that of the motion
+    turns_over      whether the direction after is opposed to that before
+    before, after   (rows, 3) the limits of the unit normal on both sides
+    always_segment, always_face   faces that have no area in a whole segment
+    """
+    return _chronormal.query_collapse(*_keyframes(positions, faces, times), start, end)
+
+
+def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=None, silhouettes=False, start=None, end=None):
+    """Return when faces show their front to a viewer: a dict of arrays with a row for each interval.
+
+    positions, faces, times, start, end   as for collapse()
+    direction    (3,) the viewer is infinitely far away in this direction; or
+    eye, eye_to  (3,) the viewer is at eye, and moves straight to eye_to over all times; None: stands still
+    silhouettes  whether to list edges between a front and a back, too
+
+    segment, face             where
+    from, from_upper          the interval begins between these t of the segment
+    to_lower, to              and ends between these
+    silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
+    """
+    if (direction is None) == (eye is None):
+        raise ValueError("direction: say who looks, by a direction or an eye")
+    if eye_to is not None and eye is None:
+        raise ValueError("eye_to: there must be an eye that moves there")
+    first = _vectors(eye if direction is None else direction, "direction" if eye is None else "eye")
+    last = first if eye_to is None else _vectors(eye_to, "eye_to")
+    if first.shape != (3,) or last.shape != (3,):
+        raise ValueError("direction: a place or a direction is an array of 3 numbers")
+    return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
+                                    silhouettes)
+
+
+def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):
+    """Return cones that contain every normal of a face: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+    meshlets   None, or build meshlets of up to so many triangles (a multiple of 4)
+
+    segment, face     where
+    axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
+                      length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
+                      axis 0 with the sine 1, and a face that never has an area the axis 0 with the sine 0
+    half_angle        degrees
+    meshlet_segment, meshlet_index, meshlet_center, meshlet_radius, meshlet_cone_apex, meshlet_cone_axis, ...
+                      bounds as meshoptimizer has them, right at every instant of the part of the segment
+    member_meshlet, member_face   which face is in which meshlet
+    """
+    return _chronormal.query_cones(*_keyframes(positions, faces, times), start, end, meshlets)
+
+
+def shutter(positions, faces, times=None, *, start=None, end=None):
+    """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+
+    segment, face   where
+    mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
+    mean_unit       (rows, 3) mean of the unit normal, and error: how far the exact one may be from it
+    length          of mean_unit: 1 where normals stay the same, 0 where they cancel
+    half_angle      degrees, of a cone that contains all normals
+    ends, ends_off  (rows, 3) the direction that interpolation between the ends has as its mean, and how many degrees it is off
+    span_face, span_mean ...   the same over all segments together, where there are several
+    """
+    return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end)

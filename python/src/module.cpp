@@ -6,4 +6,5 @@ PYBIND11_MODULE(_chronormal, module) {
   module.attr("__version__") = CHRONORMAL_VERSION;
   chronormal::python::add_curves(module);
   chronormal::python::add_files(module);
+  chronormal::python::add_queries(module);
 }

@@ -36,7 +36,7 @@ class CertainRoots {
   }
 
  private:
-  static constexpr int kMostHalvings = 10;
+  static constexpr int kMostHalvings = 10, kMostSteps = 20;
 
   explicit CertainRoots(double error) noexcept : error_(error) {}
 
@@ -69,12 +69,32 @@ class CertainRoots {
            settle(halves.after, t0 + width / 2, width / 2, halvings - 1);
   }
 
+  struct Guess {
+    double root = 0, slope = 0;  // slope: of p there, without its sign
+  };
+
+  // By Newton's method, kept between values of different signs by bisection; rounding decides how good it is.
+  static Guess only_root(const std::array<double, M>& p) noexcept {
+    const Power<double, M - 1> power = to_power(p);
+    double low = 0, high = 1, t = p[0] / (p[0] - p[M - 1]), slope = 0;
+    for (int i = 0; i < kMostSteps; ++i) {
+      double value = power.a[M - 1];
+      slope = 0;
+      for (std::size_t k = M - 1; k > 0; --k) {
+        slope = slope * t + value;
+        value = value * t + power.a[k - 1];
+      }
+      ((value < 0) == (p[0] < 0) ? low : high) = t;
+      double next = t - value / slope;
+      if (!(low <= next && next <= high)) next = low + (high - low) / 2;
+      if (std::fabs(next - t) <= 2 * kUnitRoundoff) break;
+      t = next;
+    }
+    return {t, std::fabs(slope)};
+  }
+
   bool add_root(const std::array<double, M>& p, double t0, double width, int before) noexcept {
-    const double root = detail::only_root(p);
-    double slope = 0;  // by the smallest difference where that has the right sign, else by the mean one
-    const Halves<double, M - 1> halves = split(p, root);
-    slope = std::fmax(std::fabs(halves.after[1] - halves.after[0]) / std::fmax(1 - root, 1e-3),
-                      std::fabs(halves.before[M - 1] - halves.before[M - 2]) / std::fmax(root, 1e-3));
+    const auto [root, slope] = only_root(p);
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
       // The sums may round; the fractions of the part that they stand for are exact again.

@@ -40,34 +40,71 @@ Ways ways_to_eye(const Segment& segment, std::size_t face, const View& view) noe
   return {to_double(view.from) - to_double(segment.from[corner]), to_double(view.to) - to_double(segment.to[corner])};
 }
 
-// 1 or -1 where all values are beyond their bounds on that side.
+// Bernstein coefficients, each times its binomial coefficient, and how far each may be off.
 template <std::size_t M>
-int common_sign(const std::array<double, M>& values, const std::array<double, M>& bounds) noexcept {
+struct Bounded {
+  std::array<double, M> values, bounds;
+};
+
+// 1 or -1 where all are beyond their bounds on that side.
+template <std::size_t M>
+int common_sign(const Bounded<M>& f) noexcept {
   bool is_front = true, is_back = true;
   for (std::size_t k = 0; k < M; ++k) {
-    is_front &= values[k] > bounds[k];
-    is_back &= values[k] < -bounds[k];
+    is_front &= f.values[k] > f.bounds[k];
+    is_back &= f.values[k] < -f.bounds[k];
   }
   return static_cast<int>(is_front) - static_cast<int>(is_back);
 }
 
-int glance_from_far(const ControlNormals& c, const Vec3d& w, double share) noexcept {
-  return common_sign<3>({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)},
-                        {share * length_1(c.n0), share * length_1(c.m), share * length_1(c.n1)});
+Bounded<3> from_far(const ControlNormals& c, const Vec3d& w) noexcept {
+  const double share = kShare * max_abs(w);
+  return {{dot(c.n0, w), 2 * dot(c.m, w), dot(c.n1, w)},
+          {share * length_1(c.n0), 2 * share * length_1(c.m), share * length_1(c.n1)}};
 }
 
-int glance_from_eye(const ControlNormals& c, const Ways& w) noexcept {
+Bounded<4> from_eye(const ControlNormals& c, const Ways& w) noexcept {
   const double share = kShare * std::fmax(max_abs(w.from), max_abs(w.to));
   const double n0 = share * length_1(c.n0), m = 2 * share * length_1(c.m), n1 = share * length_1(c.n1);
-  return common_sign<4>({dot(c.n0, w.from), dot(c.n0, w.to) + 2 * dot(c.m, w.from),
-                         2 * dot(c.m, w.to) + dot(c.n1, w.from), dot(c.n1, w.to)},
-                        {n0, n0 + m, m + n1, n1});
+  return {{dot(c.n0, w.from), dot(c.n0, w.to) + 2 * dot(c.m, w.from), 2 * dot(c.m, w.to) + dot(c.n1, w.from),
+           dot(c.n1, w.to)},
+          {n0, n0 + m, m + n1, n1}};
 }
 
-int glance(const Segment& segment, std::size_t face, const ControlNormals& normals, const View& view) noexcept {
-  if (view.is_eye) return glance_from_eye(normals, ways_to_eye(segment, face, view));
-  const Vec3d w = to_double(view.from);
-  return glance_from_far(normals, w, kShare * max_abs(w));
+// Calls body with the coefficients of f by the control normals.
+template <class Body>
+auto glance(const Segment& segment, std::size_t face, const ControlNormals& normals, const View& view,
+            const Body& body) noexcept {
+  if (view.is_eye) return body(from_eye(normals, ways_to_eye(segment, face, view)));
+  return body(from_far(normals, to_double(view.from)));
+}
+
+// What a shutter sees by the control normals alone, where they can tell.
+template <std::size_t M>
+std::optional<ShutterSide> side_by_glance(const Bounded<M>& f, double t0, double t1) noexcept {
+  if (const int sign = common_sign(f); sign != 0) return static_cast<ShutterSide>(sign);
+  if (!(t0 < t1)) return std::nullopt;
+  std::array<double, M> p;
+  double size = 0, bound = 0;
+  for (std::size_t k = 0; k < M; ++k) {
+    p[k] = f.values[k] / binomial(M - 1, k);
+    size = std::fmax(size, std::fabs(p[k]));
+    bound = std::fmax(bound, f.bounds[k]);
+  }
+  constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
+  bound += kRoundings * kUnitRoundoff * size;
+  // A front and a back that are seen for certain settle it.
+  bool shows_front = false, shows_back = false;
+  for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
+    const double value = evaluate(p, share == 1 ? t1 : t0 + share * (t1 - t0));
+    shows_front |= value > bound;
+    shows_back |= value < -bound;
+    if (shows_front && shows_back) return ShutterSide::kBoth;
+  }
+  Bounded<M> part{restrict_to(p, t0, t1), {}};
+  part.bounds.fill(bound);
+  const int sign = common_sign(part);
+  return sign != 0 ? std::optional(static_cast<ShutterSide>(sign)) : std::nullopt;
 }
 
 std::optional<ExactRoots> in_double(const Segment& segment, std::size_t face, const View& view) noexcept {
@@ -162,7 +199,8 @@ ShutterSide side_over(const Facing& facing, double t0, double t1) noexcept {
 }  // namespace
 
 Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals, const View& view) noexcept {
-  if (const int sign = glance(segment, face, normals, view); sign != 0) return {{}, 0, side_of(sign)};
+  const int sign = glance(segment, face, normals, view, [](const auto& f) { return common_sign(f); });
+  if (sign != 0) return {{}, 0, side_of(sign)};
   return behind_glance(segment, face, view);
 }
 
@@ -176,9 +214,10 @@ void sides_over(const Segment& segment, IndexRange faces, std::span<const Contro
                 double t0, double t1, std::span<ShutterSide> result) noexcept {
   assert(normals.size() == faces.count && result.size() == faces.count && 0 <= t0 && t0 <= t1 && t1 <= 1);
   for (std::size_t i = 0; i < faces.count; ++i) {
-    const int sign = glance(segment, faces.first + i, normals[i], view);
-    result[i] =
-        sign != 0 ? static_cast<ShutterSide>(sign) : side_over(behind_glance(segment, faces.first + i, view), t0, t1);
+    const std::size_t face = faces.first + i;
+    const auto quick =
+        glance(segment, face, normals[i], view, [&](const auto& f) { return side_by_glance(f, t0, t1); });
+    result[i] = quick ? *quick : side_over(behind_glance(segment, face, view), t0, t1);
   }
 }
 

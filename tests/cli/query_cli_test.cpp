@@ -77,6 +77,39 @@ TEST_F(QueryCli, arrays_are_those_of_json) {
   EXPECT_EQ(arrays.size(), json_of("collapse a.obj b.obj c.obj").at("arrays").size());
 }
 
+TEST_F(QueryCli, faces_show_their_front_in_intervals) {
+  // Face 1 is seen from above until t = 1/2, and in the second segment from then on.
+  const Json above = json_of("facing a.obj b.obj c.obj --direction 0,0,1").at("arrays");
+  EXPECT_EQ(above.at("segment"), Json({0, 0, 1, 1}));
+  EXPECT_EQ(above.at("face"), Json({0, 1, 0, 1}));
+  EXPECT_EQ(above.at("from"), Json({0.0, 0.0, 0.0, 0.5}));
+  EXPECT_EQ(above.at("to"), Json({1.0, 0.5, 1.0, 1.0}));
+  EXPECT_EQ(above.at("from_upper"), above.at("from"));
+  EXPECT_EQ(json_of("facing a.obj b.obj c.obj --eye 0,0,9").at("arrays"), above);
+  const Json below = json_of("facing a.obj b.obj c.obj --direction 0,0,-1 --from .25 --to 1.25").at("arrays");
+  EXPECT_EQ(below.at("face"), Json({1, 1}));
+  EXPECT_EQ(below.at("from"), Json({0.5, 0.0}));
+  EXPECT_EQ(below.at("to"), Json({1.0, 0.25}));
+}
+
+TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
+  // It passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 is seen from its front in the
+  // first quarter and the second.
+  const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
+  EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
+  EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));
+  EXPECT_EQ(arrays.at("from"), Json({0.0, 0.0, 0.0}));
+  EXPECT_EQ(arrays.at("to"), Json({1.0, 0.5, 0.5}));
+}
+
+TEST_F(QueryCli, silhouettes_are_edges_between_front_and_back) {
+  const Json json = json_of("facing a.obj b.obj c.obj --direction 0,0,1 --silhouettes");
+  EXPECT_EQ(json.at("summary").at("silhouettes"), 2);
+  EXPECT_EQ(json.at("arrays").at("silhouette_vertices"), Json::parse("[[1, 2], [1, 2]]"));
+  EXPECT_EQ(json.at("arrays").at("silhouette_from"), Json({0.5, 0.0}));
+  EXPECT_EQ(json.at("arrays").at("silhouette_to"), Json({1.0, 0.5}));
+}
+
 TEST_F(QueryCli, people_get_a_table) {
   const ProcessResult result = run("collapse a.obj b.obj c.obj");
   EXPECT_EQ(result.exit_code, 0);
@@ -89,6 +122,11 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("", "QUESTION: name one: ");
   expect_misuse("why a.obj b.obj", "there is no 'why'; there are ");
   expect_misuse("collapse a.obj b.obj -o table.txt", "arrays are written as .npz");
+  expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: it belongs to query facing");
+  expect_misuse("facing a.obj b.obj", "--direction: say who looks");
+  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: it must be X,Y,Z or");
+  expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
+  expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: it must not be 0,0,0");
   expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");
   expect_misuse("collapse a.obj b.obj --to 0", "--to: there is no motion before 0");
   expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: it must be later than --from");

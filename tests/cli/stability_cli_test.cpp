@@ -94,7 +94,8 @@ TEST_F(Stability, no_key_of_json_vanishes) {
         "bake a.obj b.obj -o ab.glb", "bake face.glb -o right.glb", "bake face.glb -o exact.glb --encode exact",
         "compare a.obj b.obj", "compare --each --base a.obj b.obj", "compare --base a.obj b.obj --blend 2",
         "compare face.glb --blend 2", "inspect a.obj b.obj", "inspect face.glb", "inspect a.obj",
-        "query collapse a.obj b.obj", "report face.glb -o face.bin"}) {
+        "query collapse a.obj b.obj", "query facing a.obj b.obj --eye 1,2,3 --silhouettes",
+        "report face.glb -o face.bin"}) {
     const ProcessResult result = run(arguments + " --json");
     const Json json = Json::parse(result.out, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << arguments << '\n' << result.err;

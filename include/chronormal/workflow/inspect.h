@@ -45,7 +45,8 @@ struct SegmentInspection {
   Largest motion;                   ///< how far a vertex goes
   Largest turn;                     ///< the angle between the normals of a face at both ends
   std::size_t turned_far = 0;       ///< faces of which that is more than 90 degrees
-  std::size_t collapses = 0;        ///< faces that have no area at an instant inside
+  std::size_t collapses = 0;        ///< faces that have no area at an instant inside, or nearly none
+  std::size_t vanishing = 0;        ///< those that lose it exactly, and not nearly
   std::size_t turned_over = 0;      ///< those that come out of it with the opposite normal
   std::size_t without_normals = 0;  ///< faces that have no area throughout
   std::size_t flagged = 0;          ///< faces that are evaluated in double (NormalCurves)
@@ -66,6 +67,7 @@ struct Inspection {
   Places no_area;           ///< keyframes: no area at all
   Places slivers;           ///< keyframes: see inspect()
   Places collapses;         ///< segments: the normal vanishes inside, or falls below 1e-6 of its control normals
+  Places vanishing;         ///< segments: the normal is zero inside, exactly (analysis/collapse.h)
   Places turned_over;       ///< segments: those of which the normal is opposed afterwards
   Places turned_far;        ///< segments: the normals at both ends are more than 90 degrees apart
   Places without_normals;   ///< segments: no area throughout, so there is no direction to give

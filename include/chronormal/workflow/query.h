@@ -21,6 +21,7 @@
 #include <variant>
 #include <vector>
 
+#include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
 
@@ -86,6 +87,16 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
 
+/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that moves
+/// does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
+/// float32; over targets it moves with the weight. Tables:
+///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
+///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
+///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
+/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
+[[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
+                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
+
 /// Cones that contain every normal of a face while a part of a segment lasts (analysis/cones.h). Tables:
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
 ///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
@@ -93,9 +104,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first keyframe.
 /// Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up to 512, and
 /// for a mesh of larger faces.
-[[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, const QuerySpan& span = {},
-                                              std::optional<std::size_t> meshlets = {},
-                                              const QueryProgress& progress = {});
+[[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
+                                              const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// The mean normals of faces while a shutter is open over the span (analysis/shutter.h). Tables:
 ///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends (the

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "analysis/near_collapse.h"
+#include "chronormal/analysis/collapse.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
@@ -28,6 +29,7 @@ enum Mark : std::uint8_t {
   kTurnsOver = 8,
   kTurnsFar = 16,
   kWithoutNormal = 32,
+  kVanishes = 64,
 };
 
 using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
@@ -53,7 +55,7 @@ struct KeyframeTally {
 
 struct SegmentTally {
   SegmentInspection inspection;
-  FaceTally collapses, turned_over, turned_far, without_normals;
+  FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
 };
 
 void add_tally(Places& places, const FaceTally& tally, std::size_t at) {
@@ -122,8 +124,13 @@ SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNorm
     if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value)
       result.turn = {angle, segment.index, f};
     if (dot(c.n0, c.n1) < 0) tally.turned_far.add(f, kTurnsFar, marks);
+    const Collapses exact = find_collapses(segment, f, c);
+    const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
+      return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
+    });
+    if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
+    if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
     const NearCollapses collapses = find_near_collapses(c);
-    if (collapses.everywhere) tally.without_normals.add(f, kWithoutNormal, marks);
     if (collapses.count == 0) continue;
     tally.collapses.add(f, kCollapses, marks, collapses.at[0].t);
     const auto end = collapses.at.begin() + static_cast<std::ptrdiff_t>(collapses.count);
@@ -132,6 +139,7 @@ SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNorm
   }
   result.turned_far = tally.turned_far.count;
   result.collapses = tally.collapses.count;
+  result.vanishing = tally.vanishing.count;
   result.turned_over = tally.turned_over.count;
   result.without_normals = tally.without_normals.count;
   const NormalCurves curves(normals);
@@ -225,6 +233,7 @@ Inspection inspect(const Motion& motion, const std::function<void(std::size_t do
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const SegmentTally& tally = segments[s];
     add_tally(result.collapses, tally.collapses, s);
+    add_tally(result.vanishing, tally.vanishing, s);
     add_tally(result.turned_over, tally.turned_over, s);
     add_tally(result.turned_far, tally.turned_far, s);
     add_tally(result.without_normals, tally.without_normals, s);
@@ -237,6 +246,7 @@ Inspection inspect(const Motion& motion, const std::function<void(std::size_t do
   result.no_area.faces = count_marked(marks, kNoArea);
   result.slivers.faces = count_marked(marks, kSliver);
   result.collapses.faces = count_marked(marks, kCollapses);
+  result.vanishing.faces = count_marked(marks, kVanishes);
   result.turned_over.faces = count_marked(marks, kTurnsOver);
   result.turned_far.faces = count_marked(marks, kTurnsFar);
   result.without_normals.faces = count_marked(marks, kWithoutNormal);

@@ -39,6 +39,7 @@ Json segments_json(const Inspected& input) {
                         {"largest_turn_degrees", found.turn.value * kDegreesPerRadian},
                         {"turns_far", found.turned_far},
                         {"collapses", found.collapses},
+                        {"vanishes", found.vanishing},
                         {"turns_over", found.turned_over},
                         {"without_normals", found.without_normals},
                         {"flagged", found.flagged},
@@ -75,6 +76,7 @@ void add_inspection(const Inspected& input, Json& json) {
                             {"slivers", places_json(found.slivers, "keyframe")}};
   json["segment_faces"] = {{"without_normals", places_json(found.without_normals, "segment")},
                            {"collapses", places_json(found.collapses, "segment", true)},
+                           {"vanishes", places_json(found.vanishing, "segment", true)},
                            {"turns_over", places_json(found.turned_over, "segment", true)},
                            {"turns_far", places_json(found.turned_far, "segment")},
                            {"flagged", found.flagged}};

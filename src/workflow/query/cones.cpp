@@ -128,7 +128,7 @@ Status check_meshlets(const Motion& motion, std::size_t most_triangles) {
 
 }  // namespace
 
-Result<QueryAnswer> query_cones(const Motion& motion, const QuerySpan& span, std::optional<std::size_t> meshlets,
+Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets, const QuerySpan& span,
                                 const QueryProgress& progress) {
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();

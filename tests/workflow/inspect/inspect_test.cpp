@@ -71,6 +71,7 @@ TEST(Inspect, face_that_turns_over_is_found_with_its_segment_and_instant) {
   motion.keyframes[3].positions[7] = 3;
   const Inspection found = inspect(motion);
   EXPECT_EQ(found.collapses.pairs, 2U);
+  EXPECT_EQ(found.vanishing.pairs, 2U);
   EXPECT_EQ(found.collapses.faces, 1U);
   EXPECT_EQ(found.turned_over.pairs, 2U);
   EXPECT_EQ(found.turned_over.first_at, 1U);
@@ -84,6 +85,7 @@ TEST(Inspect, face_that_turns_over_is_found_with_its_segment_and_instant) {
 TEST(Inspect, face_that_shrinks_and_comes_back_collapses_but_does_not_turn_over) {
   const Inspection found = inspect(fixtures::point_reflected_soup(50));
   EXPECT_EQ(found.collapses.faces, 50U);
+  EXPECT_LE(found.vanishing.faces, 50U) << "float32 has rounded some of them beside it";
   EXPECT_EQ(found.turned_over.faces, 0U);
   EXPECT_EQ(found.turned_far.faces, 0U);
 }

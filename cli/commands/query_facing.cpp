@@ -1,0 +1,72 @@
+// chronormal query facing: when faces show their front to a viewer, and silhouette edges.
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "cli/commands/query_question.h"
+#include "cli/options/command.h"
+#include "cli/terminal/format.h"
+#include "core/charconv.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct FacingOptions {
+  std::optional<std::string> direction, eye;
+  bool silhouettes = false;
+};
+
+// Numbers between commas, as float32 has them.
+Result<std::vector<float>> parse_floats(const std::string& option, std::string_view list) {
+  std::vector<float> values;
+  for (;;) {
+    const std::string_view word = list.substr(0, list.find(','));
+    double value = 0;
+    const auto [end, code] = from_chars(word.data(), word.data() + word.size(), value);
+    if (word.empty() || code != std::errc{} || end != word.data() + word.size() ||
+        !std::isfinite(static_cast<float>(value)))
+      return misuse(option, formatted("'{}' is not a number", word));
+    values.push_back(static_cast<float>(value));
+    if (word.size() == list.size()) return values;
+    list.remove_prefix(word.size() + 1);
+  }
+}
+
+Result<View> view_of(const FacingOptions& options) {
+  if (options.direction.has_value() == options.eye.has_value())
+    return misuse("--direction", "say who looks: --direction X,Y,Z or --eye X,Y,Z");
+  const std::string option = options.eye ? "--eye" : "--direction";
+  const Result<std::vector<float>> numbers = parse_floats(option, options.eye ? *options.eye : *options.direction);
+  if (!numbers) return numbers.error();
+  const std::vector<float>& n = numbers.value();
+  if (n.size() == 6 && options.eye) return View::of_moving_eye({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
+  if (n.size() != 3) return misuse(option, options.eye ? "it must be X,Y,Z or X,Y,Z,X,Y,Z" : "it must be X,Y,Z");
+  if (options.eye) return View::of_eye({n[0], n[1], n[2]});
+  return View::of_direction({n[0], n[1], n[2]});
+}
+
+}  // namespace
+
+Question facing_question() {
+  auto options = std::make_shared<FacingOptions>();
+  return {"facing",
+          "when faces show their front to a viewer; silhouette edges over time",
+          {{"--direction X,Y,Z", &options->direction, "the viewer is infinitely far away in this direction"},
+           {"--eye X,Y,Z", &options->eye,
+            "the viewer is here; X,Y,Z,X,Y,Z: and moves straight to the second place, from the\n"
+            "first to the last time of the motion"},
+           {"--silhouettes", &options->silhouettes, "list the edges between a front and a back, too"}},
+          [options]() -> Result<Ask> {
+            const Result<View> view = view_of(*options);
+            if (!view) return view.error();
+            return Ask([view = view.value(), with = options->silhouettes](const Motion& motion, const QuerySpan& span,
+                                                                          const QueryProgress& progress) {
+              return query_facing(motion, view, with, span, progress);
+            });
+          }};
+}
+
+}  // namespace chronormal::cli

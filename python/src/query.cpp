@@ -1,0 +1,98 @@
+// Questions about whole intervals of time: keyframes in, arrays out.
+#include <type_traits>
+#include <variant>
+
+#include "arrays.h"
+
+namespace chronormal::python {
+namespace {
+
+using Positions = Array<float>;
+using Indices = Array<std::uint32_t>;
+
+// The motion of keyframes (T, V, 3) at some times.
+Motion motion_of(const Positions& positions, const Indices& offsets, const Indices& corners,
+                 const Array<double>& times) {
+  const auto keyframes = static_cast<std::size_t>(positions.shape(0)),
+             vertices = static_cast<std::size_t>(positions.shape(1));
+  require(times.ndim() == 1 && static_cast<std::size_t>(times.size()) == keyframes, "times",
+          "there must be one for each keyframe");
+  Motion motion;
+  motion.topology = topology_of(vertices, offsets, corners);
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    const float* const first = positions.data() + 3 * vertices * k;
+    motion.keyframes.push_back({{first, first + 3 * vertices}, times.data()[k], ""});
+  }
+  motion.connect_as_sequence();
+  if (const Status status = validate(motion); !status) raise(status.error());
+  return motion;
+}
+
+py::array array_of_column(QueryColumn column) {
+  return std::visit(
+      [&](auto& values) -> py::array {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(values.size() / column.width)};
+        if (column.width != 1) shape.push_back(static_cast<py::ssize_t>(column.width));
+        if constexpr (std::is_same_v<T, std::uint8_t>)
+          return array_of(std::move(values), std::move(shape)).attr("view")("bool");
+        else
+          return array_of(std::move(values), std::move(shape));
+      },
+      column.values);
+}
+
+// The arrays of an answer by the names that they have in a file. Asks without the GIL.
+template <class Ask>
+py::dict answer_of(const Ask& ask) {
+  Result<QueryAnswer> answer = [&] {
+    const py::gil_scoped_release released;
+    return ask();
+  }();
+  py::dict arrays;
+  for (QueryTable& table : value_or_raise(std::move(answer)).tables) {
+    const std::string prefix = table.name.empty() ? "" : table.name + '_';
+    for (QueryColumn& column : table.columns)
+      arrays[py::str(prefix + column.name)] = array_of_column(std::move(column));
+  }
+  return arrays;
+}
+
+py::dict ask_collapse(const Positions& positions, const Indices& offsets, const Indices& corners,
+                      const Array<double>& times, std::optional<double> start, std::optional<double> end) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_collapse(motion, {start, end}); });
+}
+
+py::dict ask_facing(const Positions& positions, const Indices& offsets, const Indices& corners,
+                    const Array<double>& times, std::optional<double> start, std::optional<double> end, bool is_eye,
+                    const Array<float>& from, const Array<float>& to, bool silhouettes) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  const auto vector = [](const Array<float>& a) { return Vec3f{a.at(0), a.at(1), a.at(2)}; };
+  const View view{is_eye, vector(from), vector(to)};
+  return answer_of([&] { return query_facing(motion, view, silhouettes, {start, end}); });
+}
+
+py::dict ask_cones(const Positions& positions, const Indices& offsets, const Indices& corners,
+                   const Array<double>& times, std::optional<double> start, std::optional<double> end,
+                   std::optional<std::size_t> meshlets) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_cones(motion, meshlets, {start, end}); });
+}
+
+py::dict ask_shutter(const Positions& positions, const Indices& offsets, const Indices& corners,
+                     const Array<double>& times, std::optional<double> start, std::optional<double> end) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_shutter(motion, {start, end}); });
+}
+
+}  // namespace
+
+void add_queries(py::module_& module) {
+  module.def("query_collapse", &ask_collapse);
+  module.def("query_cones", &ask_cones);
+  module.def("query_facing", &ask_facing);
+  module.def("query_shutter", &ask_shutter);
+}
+
+}  // namespace chronormal::python

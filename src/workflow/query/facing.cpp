@@ -1,0 +1,159 @@
+#include "chronormal/analysis/facing.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "chronormal/workflow/query.h"
+#include "workflow/query/parts.h"
+
+namespace chronormal {
+namespace {
+
+// Where something begins and ends, each between two instants.
+struct Interval {
+  std::array<double, 2> from{}, to{};
+};
+
+struct FrontOfFace {
+  std::size_t face = 0;
+  Interval when;
+};
+
+struct Found {
+  std::vector<FrontOfFace> fronts;
+  std::vector<Silhouette> silhouettes;
+  std::size_t always_front = 0, always_back = 0;
+};
+
+// Cuts an interval off at the ends of a part; false where nothing is left.
+bool cut(Interval& when, const SegmentPart& part) {
+  if (when.from[0] >= part.t1 || when.to[1] <= part.t0) return false;
+  for (double& t : when.from) t = std::max(t, part.t0);
+  for (double& t : when.to) t = std::min(t, part.t1);
+  return true;
+}
+
+void add_fronts(const Facing& facing, std::size_t face, const SegmentPart& part, std::vector<FrontOfFace>& fronts) {
+  Interval when{{0, 0}, {1, 1}};
+  bool is_front = facing.first() == Side::kFront;
+  const auto close = [&] {
+    if (cut(when, part)) fronts.push_back({face, when});
+  };
+  for (const FacingChange& change : facing.changes()) {
+    // Where it only touches edge-on, one interval ends and the next begins.
+    if (is_front) {
+      when.to = {change.lower, change.upper};
+      close();
+    }
+    is_front = change.after == Side::kFront;
+    when = {{change.lower, change.upper}, {1, 1}};
+  }
+  if (is_front) close();
+}
+
+// The view of one segment: an eye moves evenly over the time of the motion.
+View view_in(const Segment& segment, const View& view, double first, double last) {
+  const auto eye_at = [&](double time) {
+    return to_float(lerp(to_double(view.from), to_double(view.to), (time - first) / (last - first)));
+  };
+  return {view.is_eye, eye_at(segment.start_time), eye_at(segment.end_time)};
+}
+
+Found facing_of(const Segment& segment, const View& view, bool with_silhouettes, const SegmentPart& part) {
+  std::vector<ControlNormals> normals(segment.topology->face_count());
+  face_control_normals(segment, {0, normals.size()}, normals);
+  Found found;
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const Facing facing = find_facing(segment, f, normals[f], view);
+    add_fronts(facing, f, part, found.fronts);
+    if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
+  }
+  if (!with_silhouettes) return found;
+  for (Silhouette& one : find_silhouettes(segment, normals, view)) {
+    Interval when{one.from, one.to};
+    if (!cut(when, part)) continue;
+    one.from = when.from;
+    one.to = when.to;
+    found.silhouettes.push_back(one);
+  }
+  return found;
+}
+
+// The columns that say when.
+struct WhenColumns {
+  std::vector<std::int64_t> segments;
+  std::array<std::vector<double>, 4> ends;
+
+  void add(std::size_t segment, const Interval& when) {
+    segments.push_back(static_cast<std::int64_t>(segment));
+    const std::array<double, 4> values{when.from[0], when.from[1], when.to[0], when.to[1]};
+    for (std::size_t k = 0; k < 4; ++k) ends[k].push_back(values[k]);
+  }
+  void move_to(std::vector<QueryColumn>& columns) {
+    columns.insert(columns.begin(), {"segment", std::move(segments)});
+    constexpr std::array<const char*, 4> kNames{"from", "from_upper", "to_lower", "to"};
+    for (std::size_t k = 0; k < 4; ++k) columns.push_back({kNames[k], std::move(ends[k])});
+  }
+};
+
+QueryTable table_of(const char* name, const char* meaning, std::vector<QueryColumn> columns, WhenColumns when) {
+  when.move_to(columns);
+  return {name, meaning, std::move(columns)};
+}
+
+}  // namespace
+
+Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes, const QuerySpan& span,
+                                 const QueryProgress& progress) {
+  if (!view.is_eye && view.from == Vec3f{}) return Error{ErrorCode::kUsage, "--direction", "it must not be 0,0,0"};
+  const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
+  if (!parts) return parts.error();
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    first = std::min(first, motion.segment(s).start_time);
+    last = std::max(last, motion.segment(s).end_time);
+  }
+  const std::vector<Found> found = for_parts<Found>(parts.value(), progress, [&](const SegmentPart& part) {
+    const Segment segment = motion.segment(part.segment);
+    return facing_of(segment, view_in(segment, view, first, last), silhouettes, part);
+  });
+
+  WhenColumns when, silhouette_when;
+  std::vector<std::int64_t> faces, edge_vertices, edge_faces;
+  std::size_t always_front = 0, always_back = 0;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    const std::size_t s = parts.value()[p].segment;
+    for (const FrontOfFace& front : found[p].fronts) {
+      when.add(s, front.when);
+      faces.push_back(static_cast<std::int64_t>(front.face));
+    }
+    for (const Silhouette& one : found[p].silhouettes) {
+      silhouette_when.add(s, {one.from, one.to});
+      edge_vertices.insert(edge_vertices.end(), one.vertices.begin(), one.vertices.end());
+      edge_faces.insert(edge_faces.end(), one.faces.begin(), one.faces.end());
+    }
+    always_front += found[p].always_front;
+    always_back += found[p].always_back;
+  }
+  const auto count = [](std::size_t value) { return static_cast<double>(value); };
+  const std::size_t pairs = motion.topology.face_count() * parts.value().size();
+  QueryAnswer answer{
+      "facing",
+      {{"segments", "segments looked at", count(parts.value().size())},
+       {"faces", "faces in each", count(motion.topology.face_count())},
+       {"always_front", "times a face shows its front throughout a segment", count(always_front)},
+       {"always_back", "times it never does", count(always_back)},
+       {"changing", "times it changes, or is edge-on at an instant", count(pairs - always_front - always_back)}},
+      {}};
+  answer.tables.push_back(table_of("", "intervals that show the front", {{"face", std::move(faces)}}, std::move(when)));
+  if (!silhouettes) return answer;
+  answer.facts.push_back({"silhouettes", "intervals in which an edge is a silhouette", count(edge_faces.size() / 2)});
+  answer.tables.push_back(table_of("silhouette", "silhouette edges",
+                                   {{"vertices", std::move(edge_vertices), 2}, {"faces", std::move(edge_faces), 2}},
+                                   std::move(silhouette_when)));
+  return answer;
+}
+
+}  // namespace chronormal
