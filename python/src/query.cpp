@@ -49,11 +49,14 @@ py::dict answer_of(const Ask& ask) {
     const py::gil_scoped_release released;
     return ask();
   }();
+  QueryAnswer found = value_or_raise(std::move(answer));
   py::dict arrays;
-  for (QueryTable& table : value_or_raise(std::move(answer)).tables) {
+  for (QueryTable& table : found.tables) {
     const std::string prefix = table.name.empty() ? "" : table.name + '_';
-    for (QueryColumn& column : table.columns)
-      arrays[py::str(prefix + column.name)] = array_of_column(std::move(column));
+    for (QueryColumn& column : table.columns) {
+      const py::str name(prefix + column.name);
+      arrays[name] = array_of_column(std::move(column));
+    }
   }
   return arrays;
 }

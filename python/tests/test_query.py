@@ -33,13 +33,13 @@ class QueryTest(unittest.TestCase):
     def test_fronts_are_intervals(self):
         found = cn.facing(KEYFRAMES, FACES, direction=[0, 0, 1], silhouettes=True)
         self.assertEqual(found["face"].tolist(), [0, 1, 0, 1])
-        self.assertEqual(found["from"].tolist(), [0, 0, 0, 0.5])
-        self.assertEqual(found["to"].tolist(), [1, 0.5, 1, 1])
+        np.testing.assert_allclose(found["from"], [0, 0, 0, 0.5], atol=1e-12)
+        np.testing.assert_allclose(found["to"], [1, 0.5, 1, 1], atol=1e-12)
         self.assertEqual(found["silhouette_vertices"].tolist(), [[1, 2], [1, 2]])
         still = cn.facing(KEYFRAMES, FACES, eye=[0, 0, 5])
-        np.testing.assert_array_equal(still["to"], found["to"])
+        np.testing.assert_allclose(still["to"], found["to"], atol=1e-12)
         moving = cn.facing(KEYFRAMES, FACES, eye=[0.2, 0.2, 1], eye_to=[0.2, 0.2, -1])
-        self.assertEqual(moving["to"].tolist(), [1, 0.5, 0.5])
+        np.testing.assert_allclose(moving["to"], [1, 0.5, 0.5], atol=1e-12)
 
     def test_random_faces_show_the_sides_that_samples_show(self):
         random = np.random.default_rng(7)

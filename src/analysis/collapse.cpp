@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -140,6 +141,18 @@ Collapses in_integers(const Vectors& c) noexcept {
 Collapses find_collapses(const Segment& segment, std::size_t face, const ControlNormals& normals) noexcept {
   if (is_in_half_space(normals) || spans_space(normals)) return {};
   return in_integers(ExactCurve::of_polygon(segment, segment.topology->face(face)).in_powers());
+}
+
+std::vector<FaceCollapses> find_collapses(const Segment& segment, IndexRange faces,
+                                          std::span<const ControlNormals> normals) {
+  assert(normals.size() == faces.count);
+  std::vector<FaceCollapses> result;
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    if (is_in_half_space(normals[i])) continue;
+    const Collapses found = find_collapses(segment, faces.first + i, normals[i]);
+    if (found.always || found.count > 0) result.push_back({faces.first + i, found});
+  }
+  return result;
 }
 
 Collapses find_collapses(const Segment& segment, std::size_t face) noexcept {

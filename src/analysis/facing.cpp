@@ -83,20 +83,25 @@ auto glance(const Segment& segment, std::size_t face, const ControlNormals& norm
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const Bounded<M>& f, double t0, double t1) noexcept {
   if (const int sign = common_sign(f); sign != 0) return static_cast<ShutterSide>(sign);
+  const auto is_clear = [&f](std::size_t k) { return std::fabs(f.values[k]) > f.bounds[k]; };
+  const bool differ = (f.values[0] < 0) != (f.values[M - 1] < 0);
+  if (t0 == 0 && t1 == 1 && differ && is_clear(0) && is_clear(M - 1)) return ShutterSide::kBoth;
   if (!(t0 < t1)) return std::nullopt;
   std::array<double, M> p;
   double size = 0, bound = 0;
   for (std::size_t k = 0; k < M; ++k) {
-    p[k] = f.values[k] / binomial(M - 1, k);
+    constexpr double kShareOfInner = 1.0 / (M - 1);
+    p[k] = k == 0 || k == M - 1 ? f.values[k] : kShareOfInner * f.values[k];
     size = std::fmax(size, std::fabs(p[k]));
     bound = std::fmax(bound, f.bounds[k]);
   }
   constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
-  // A front and a back that are seen for certain settle it.
+  // A front and a back that are seen for certain settle it: at the ends, or between them.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
-    const double value = evaluate(p, share == 1 ? t1 : t0 + share * (t1 - t0));
+    const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
+    const double value = t == 0 ? p[0] : t == 1 ? p[M - 1] : evaluate(p, t);
     shows_front |= value > bound;
     shows_back |= value < -bound;
     if (shows_front && shows_back) return ShutterSide::kBoth;

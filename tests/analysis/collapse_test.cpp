@@ -89,6 +89,28 @@ TEST(ExactCollapse, no_answer_is_wrong_in_any_family) {
   EXPECT_GT(turning, 5000U);
 }
 
+TEST(Collapse, a_range_of_faces_has_those_that_collapse) {
+  test::Random random(4);
+  std::vector<test::MovingTriangle> triangles(500);
+  for (auto& triangle : triangles)
+    triangle = random.below(2) == 0 ? test::on_a_lattice(random) : test::ordinary(random);
+  const Motion motion = test::soup_of(triangles);
+  std::vector<ControlNormals> normals(400);
+  face_control_normals(motion.segment(0), {50, 400}, normals);
+  const std::vector<FaceCollapses> found = find_collapses(motion.segment(0), {50, 400}, normals);
+  std::size_t next = 0;
+  for (std::size_t f = 50; f < 450; ++f) {
+    const Collapses alone = find_collapses(motion.segment(0), f);
+    if (!alone.always && alone.count == 0) continue;
+    ASSERT_LT(next, found.size());
+    EXPECT_EQ(found[next].face, f);
+    EXPECT_EQ(found[next].collapses.count, alone.count);
+    EXPECT_EQ(found[next++].collapses.always, alone.always);
+  }
+  EXPECT_EQ(next, found.size());
+  EXPECT_GT(next, 50U);
+}
+
 Collapses collapses_of(const std::vector<fixtures::Point>& from, const std::vector<fixtures::Point>& to) {
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);
   return find_collapses(motion.segment(0), 0);

@@ -64,7 +64,8 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   }
   if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
   // Exact signs at many instants, close to the brackets too.
-  for (std::size_t i = 0; i < test::wanted_times(); ++i) {
+  const std::size_t times = test::wanted_times(random);
+  for (std::size_t i = 0; i < times; ++i) {
     double t = random.uniform(0, 1);
     if (facing.count > 0 && i % 2 == 1) {
       const FacingChange& change = facing.at[random.below(facing.count)];
@@ -140,8 +141,9 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         sides_over(segment, {face, 1}, {&normals, 1}, view, t0, t1, {&side, 1});
         const WholePolynomial f = facing_polynomial(segment, face, view);
         bool is_front = false, is_back = false;
-        for (std::size_t i = 0; i <= test::wanted_times() + 1; ++i) {
-          const double t = t0 + (t1 - t0) * (static_cast<double>(i) / static_cast<double>(test::wanted_times() + 1));
+        const std::size_t steps = test::wanted_times(random) + 1;
+        for (std::size_t i = 0; i <= steps; ++i) {
+          const double t = t0 + (t1 - t0) * (static_cast<double>(i) / static_cast<double>(steps));
           const int sign = f.sign_at(std::min(t, t1));
           is_front |= sign > 0;
           is_back |= sign < 0;

@@ -49,7 +49,7 @@ struct ArrayFile {
   (void)after("'fortran_order': False");
   std::string shape = after("'shape': (");
   shape = shape.substr(0, shape.find(')'));
-  std::size_t size = file.type.back() == '8' ? 8 : 4;
+  std::size_t size = static_cast<std::size_t>(file.type.back() - '0');
   std::istringstream lengths(shape);
   for (std::string length; std::getline(lengths, length, ',');) {
     if (length.find_first_of("0123456789") == std::string::npos) continue;  // (5,)

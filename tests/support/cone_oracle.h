@@ -17,7 +17,7 @@
 
 namespace chronormal::test {
 
-[[nodiscard]] inline mpz_class dot_of(const IntegerVector& a, const IntegerVector& b) {
+[[nodiscard]] inline mpz_class exact_dot(const IntegerVector& a, const IntegerVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -33,9 +33,9 @@ namespace chronormal::test {
   const double sine = across / std::hypot(along, across);
   if (along > 0 && sine < double{cone.sine} - 1e-12) return true;
   const IntegerVector axis{integer_of(cone.axis.x), integer_of(cone.axis.y), integer_of(cone.axis.z)};
-  const mpz_class dot = dot_of(n, axis), s = integer_of(cone.sine), one = mpz_class(1) << 149;
+  const mpz_class dot = exact_dot(n, axis), s = integer_of(cone.sine), one = mpz_class(1) << 149;
   if (dot < 0) return false;
-  return mpz_class(dot * dot * one * one) >= mpz_class((one * one - s * s) * dot_of(n, n) * dot_of(axis, axis));
+  return mpz_class(dot * dot * one * one) >= mpz_class((one * one - s * s) * exact_dot(n, n) * exact_dot(axis, axis));
 }
 
 /// Sixty-four instants of [t0, t1]: its ends, what is next to them, some that many normals find hard, and any.

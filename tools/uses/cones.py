@@ -1,22 +1,10 @@
-"""Draws the pictures of the sections "Cones" and "The shutter" of docs/uses.md, into docs/pictures.
+"""A normal that leaves the cone of its two ends, in the cone of the interval; and how many random triangles do that."""
 
-    PYTHONPATH=build/release/python /usr/bin/python3 tools/uses/cones.py [FOLDER]
+import matplotlib.pyplot as plt
+import numpy as np
 
-Everything that is drawn is computed here, by the Python package.
-"""
+import chronormal as cn
 
-import sys
-from pathlib import Path
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-
-import chronormal as cn  # noqa: E402
-
-PICTURES = Path(__file__).resolve().parent.parent.parent / "docs" / "pictures"
 EXACT, RIVAL, PLAIN = "#1b7837", "#c2410c", "#555555"
 
 
@@ -62,7 +50,7 @@ class View:
         return self(rim)
 
 
-def draw_cones(path):
+def draw():
     figure, (sphere, bars) = plt.subplots(1, 2, figsize=(9, 4.2), width_ratios=(1.1, 1))
     keyframes, faces = soup(0.6, 400)
     t = np.linspace(0, 1, 201)
@@ -99,44 +87,4 @@ def draw_cones(path):
              ylabel="% of 4,000 random triangles", ylim=(-2, None))
     bars.legend(frameon=False, fontsize=8)
     figure.tight_layout()
-    figure.savefig(path, dpi=100)
-    return outside
-
-
-def draw_shutter(path):
-    figure, (sphere, histogram) = plt.subplots(1, 2, figsize=(9, 3.8))
-    keyframes, faces = soup(0.6, 4000)
-    found = cn.shutter(keyframes, faces)
-    t = np.linspace(0, 1, 201)
-    candidates = (found["half_angle"] < 50) & (found["ends_off"] > 8)
-    face = np.flatnonzero(candidates)[np.argmax(found["ends_off"][candidates])]
-    curve = np.stack([unit(normals_at(keyframes, x)[face]) for x in t])
-    view = View(found["mean_unit"][face])
-    sphere.plot(*view(curve).T, color="black", label="the normal while the shutter is open")
-    sphere.scatter(*view(curve[::20]).T, color="black", s=10)
-    sphere.plot(*view(found["mean_unit"][face][None]).T, "o", color=EXACT, label="mean of the unit normal")
-    sphere.plot(*view(found["mean"][face][None]).T, "s", color=PLAIN, label="mean of n(t): by area")
-    sphere.plot(*view(found["ends"][face][None]).T, "X", color=RIVAL, label="mean of lerp and nlerp of the ends")
-    sphere.set(title="One face", xlabel="degrees", ylabel="degrees", aspect="equal")
-    sphere.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), frameon=False, fontsize=8)
-
-    for motion, shade in ((0.1, 0.45), (0.2, 0.7), (0.4, 1)):
-        keyframes, faces = soup(motion, 4000)
-        off = np.sort(cn.shutter(keyframes, faces)["ends_off"])
-        histogram.plot(off, 100 * (1 - np.arange(len(off)) / len(off)), color=RIVAL, alpha=shade, label=f"motion of {motion}")
-    histogram.set(title="How far lerp of the ends is off in the mean", xlabel="degrees from the mean unit normal",
-                  ylabel="% of 4,000 triangles beyond", xscale="log", xlim=(0.01, 90))
-    histogram.legend(frameon=False, fontsize=8)
-    figure.tight_layout()
-    figure.savefig(path, dpi=100)
-
-
-def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PICTURES
-    plt.rcParams.update({"svg.hashsalt": "chronormal", "font.size": 9})
-    print("left cones of ends, %:", [round(x, 1) for x in draw_cones(folder / "uses_cones.png")])
-    draw_shutter(folder / "uses_shutter.png")
-
-
-if __name__ == "__main__":
-    main()
+    return figure

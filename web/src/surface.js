@@ -2,6 +2,9 @@
 // between the two (docs/hosts.md). All arrays are made once; a step fills them.
 import { NONE, copy, degreesBetween, normalsOf } from './geometry.js';
 
+// The largest float32: what is beyond cannot be lit.
+const MOST = 3.4028234663852886e38;
+
 // The deltas of all targets, vertex after vertex: those of v are from offsets[v] to offsets[v + 1], each with its target. A vertex
 // is added up in registers, which takes a quarter of the time that target after target takes.
 function byVertex(targets, member, vertices) {
@@ -130,7 +133,7 @@ export function makeSurface(part) {
         sz = base[at + 2] + half(sz);
       }
       const length = Math.sqrt(sx * sx + sy * sy + sz * sz);
-      const unlit = !(length > 1e-30) || length === Infinity;
+      const unlit = !(length > 1e-30) || !(Math.max(Math.abs(sx), Math.abs(sy), Math.abs(sz)) <= MOST);
       const scale = unlit ? 0 : 1 / length;
       sx = shown[at] = unlit ? 0 : sx * scale;
       sy = shown[at + 1] = unlit ? 0 : sy * scale;
@@ -155,7 +158,8 @@ export function makeSurface(part) {
       right[at + 2] = rz;
       const limit = least && e < least.length ? least[e] : 0;
       if (!judged[v]) degrees[v] = 0;
-      else if (unlit && sizes[e] > limit) degrees[v] = 180;
+      // Where weights are no numbers, sizes are none either, and what is shown cannot be lit.
+      else if (unlit && !(sizes[e] <= limit)) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
       else degrees[v] = degreesBetween(Math.fround(sx), Math.fround(sy), Math.fround(sz), rx, ry, rz);
     }
@@ -166,7 +170,7 @@ export function makeSurface(part) {
     addUp(part.positions, moved, weights, p);
     copy(p, surface.positions);
     computeNormals(p, n, sizes);
-    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) > entry.least_weight ? shownWeights[k] : 0;
+    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) <= entry.least_weight ? 0 : shownWeights[k];
     addUp(entry.halves ? null : entry.normals, entry.targets, kept, sums);
     judge(entry, least);
   };

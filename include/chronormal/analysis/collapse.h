@@ -11,10 +11,10 @@
 /// Certain    whether there is a collapse, how many, whether each turns the face over, and that its instant t lies in
 ///            [lower, upper]: equal where a double is t, else neighbours, but for t below 2^-200, which lie in [0,
 ///            2^-200]. The limit directions are within 1e-14 of their value.
-/// Nearly     A face may come so close to a collapse that its direction is as good as discontinuous, and not be there.
-///            Those that do on purpose are at zero: sampled data are not. `turns_fast` in inspect counts those.
+/// Nearly     A face may come so close to a collapse that its direction is as good as discontinuous: what was made to
+///            collapse, and then rounded. It does not count here; workflow/inspect.h counts both.
 /// Units      t: fraction of the segment, in [0, 1].
-/// Threads    pure: no allocation, no throw.
+/// Threads    pure; for one face without allocation or throw.
 /// Source     docs/theory.md, section 3.
 #ifndef CHRONORMAL_ANALYSIS_COLLAPSE_H_
 #define CHRONORMAL_ANALYSIS_COLLAPSE_H_
@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
@@ -53,6 +54,15 @@ struct Collapses {
 /// The same where the control normals of the face, as face_control_normals() makes them of this segment, are at hand.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face,
                                        const ControlNormals& normals) noexcept;
+
+struct FaceCollapses {
+  std::size_t face = 0;
+  Collapses collapses;
+};
+
+/// Finds those of a range of faces that collapse, ascending; normals are those of the range. Allocates the result alone.
+[[nodiscard]] std::vector<FaceCollapses> find_collapses(const Segment& segment, IndexRange faces,
+                                                        std::span<const ControlNormals> normals);
 
 }  // namespace chronormal
 

@@ -7,24 +7,18 @@
 namespace chronormal {
 namespace {
 
-struct Found {
-  std::size_t face = 0;
-  Collapses collapses;
-};
-
 // The faces of one part that collapse in it.
-std::vector<Found> collapses_of(const Motion& motion, const SegmentPart& part) {
+std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   std::vector<ControlNormals> normals(motion.topology.face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
-  std::vector<Found> found;
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    const Collapses all = find_collapses(segment, f, normals[f]);
-    Collapses inside{{}, 0, all.always};
-    for (const Collapse& one : all.instants()) {
-      if (one.upper >= part.t0 && one.lower <= part.t1) inside.at[inside.count++] = one;
+  std::vector<FaceCollapses> found = find_collapses(segment, {0, normals.size()}, normals);
+  for (auto& [face, collapses] : found) {
+    const auto all = collapses.at;
+    const std::size_t count = std::exchange(collapses.count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (all[i].upper >= part.t0 && all[i].lower <= part.t1) collapses.at[collapses.count++] = all[i];
     }
-    if (inside.always || inside.count > 0) found.push_back({f, inside});
   }
   return found;
 }
@@ -34,7 +28,7 @@ std::vector<Found> collapses_of(const Motion& motion, const SegmentPart& part) {
 Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
-  const std::vector<std::vector<Found>> found = for_parts<std::vector<Found>>(
+  const std::vector<std::vector<FaceCollapses>> found = for_parts<std::vector<FaceCollapses>>(
       parts.value(), progress, [&](const SegmentPart& part) { return collapses_of(motion, part); });
 
   std::vector<std::int64_t> segments, faces, always_segments, always_faces;

@@ -59,7 +59,7 @@ struct ModelMotion {
   std::vector<double> t;                ///< (S) the same
   std::vector<ModelWeights> weights;    ///< glTF; the first is the specification
   std::vector<float> worst, mean;       ///< (S) degrees
-  std::vector<float> least;             ///< (E) the length below which a normal has no direction
+  std::vector<double> least;            ///< (E) the length below which a normal has no direction
   /// The errors of a scheme that is not the one of the audit.
   struct Scheme {
     std::string name;

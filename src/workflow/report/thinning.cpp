@@ -41,7 +41,7 @@ std::size_t bytes_of_vertices(const ModelPart& part) {
     numbers += shown.normals.size();
     for (const ModelVectors& target : shown.targets) bytes += bytes_of(target);
   }
-  for (const ModelMotion& motion : part.motions) numbers += motion.least.size();
+  for (const ModelMotion& motion : part.motions) bytes += sizeof(double) * motion.least.size();
   return bytes + kNumber * numbers;
 }
 

@@ -54,9 +54,8 @@ void WatchedMotions::begin(const AuditSample& sample) {
   motion.subject_index = sample.subject_index;
   if (!sample.weights.empty()) motion.weights.push_back({{"specification"}, {}});
   const std::span<const std::uint32_t> elements = sample.part.elements();
-  motion.least.assign(elements.empty() ? 0 : std::size_t{elements.back()} + 1, 0.0F);
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    motion.least[elements[e]] = static_cast<float>(kVanished * sample.largest[e]);
+  motion.least.assign(elements.empty() ? 0 : std::size_t{elements.back()} + 1, 0.0);
+  for (std::size_t e = 0; e < elements.size(); ++e) motion.least[elements[e]] = kVanished * sample.largest[e];
 }
 
 // Sorts what hosts played in the motion that was told last: those that play alike stand together.

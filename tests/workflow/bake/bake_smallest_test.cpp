@@ -90,6 +90,23 @@ TEST(BakeSmallest, two_animations_share_the_deltas_of_extra_targets_and_each_has
   EXPECT_LT(test::track_error(baked, 1).worst, 0.6);
 }
 
+TEST(BakeSmallest, mends_normals_that_add_up_to_zero_at_the_end_of_a_target_alone) {
+  GltfBuilder builder;
+  const std::vector<float> up = {0, 0, 1, 0, 0, 1, 0, 0, 1}, down = {0, 0, -1, 0, 0, -1, 0, 0, -1};
+  const std::size_t positions = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}), normals = builder.add_positions(up);
+  const std::size_t raised = builder.add_positions(up), against = builder.add_positions(down);
+  GltfBuilder::Json primitive = GltfBuilder::primitive(positions, builder.add_indices<std::uint8_t>({0, 1, 2}),
+                                                       {{{"POSITION", raised}, {"NORMAL", against}}});
+  primitive["attributes"]["NORMAL"] = normals;
+  builder.add_mesh(primitive);
+  builder.json["nodes"] = {{{"mesh", 0}}};
+  const Baked baked = test::bake_document(builder, smallest(0.5));
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  EXPECT_NE(chosen(baked).form, "as it is");
+  const std::vector<float> deltas = baked.numbers(baked.mesh()["primitives"][0]["targets"][0]["NORMAL"]);
+  for (std::size_t v = 0; v < 3; ++v) EXPECT_GT(1 + deltas[3 * v + 2], 0.5F) << "at weight 1, vertex " << v;
+}
+
 TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   GltfBuilder builder = test::hills_document(2, 8);
   builder.add_track(0, 0, {0, 1}, std::vector<float>{0, 0, 1e-5F, 1e-5F});

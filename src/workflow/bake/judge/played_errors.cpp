@@ -78,7 +78,9 @@ PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, s
   if (weights.is_driven) return poses;
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < targets; ++i) all.push_back(i);
-  const PoseList alone = alone_poses(all, targets, drivers, kSteps, kPhase);
+  PoseList alone = alone_poses(all, targets, drivers, kSteps, kPhase);
+  const PoseList ends = alone_poses(all, targets, drivers, 1, 0);
+  alone.insert(alone.end(), ends.begin(), ends.end());
   for (std::size_t n = 0; n < std::min(most, alone.size()); ++n)
     poses.push_back(alone[n * alone.size() / std::min(most, alone.size())]);
   if (!weights.rig) return poses;

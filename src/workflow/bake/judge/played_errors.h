@@ -15,8 +15,8 @@
 namespace chronormal::inline internal {
 
 /// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
-/// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, and poses that the
-/// rig is made for. No more than `most` of each kind, evenly.
+/// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end too,
+/// where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind, evenly.
 [[nodiscard]] PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets,
                                     std::size_t most);
 
