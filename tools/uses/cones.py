@@ -9,7 +9,7 @@ EXACT, RIVAL, PLAIN = "#1b7837", "#c2410c", "#555555"
 
 
 def unit(vectors):
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
 
 
 def normals_at(keyframes, t):
