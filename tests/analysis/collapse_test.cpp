@@ -42,6 +42,11 @@ bool points_along(const Vec3d& direction, const std::array<WholePolynomial, 3>& 
   return true;
 }
 
+bool has_signs(const Vec3d& v, const std::array<int, 3>& signs) {
+  const auto sign = [](double x) { return static_cast<int>(x > 0) - static_cast<int>(x < 0); };
+  return sign(v.x) == signs[0] && sign(v.y) == signs[1] && sign(v.z) == signs[2];
+}
+
 std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3>& n) {
   const WholePolynomial common =
       WholePolynomial::greatest_common_divisor(n[0], WholePolynomial::greatest_common_divisor(n[1], n[2]));
@@ -69,6 +74,16 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
       if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
     if ((starts || ends) && one.turns_over) return "turns over at an end";
+    // Where all components are multiples of one, n has the same direction beside its zero; else its limit is its slope.
+    const std::array<int, 3> slopes =
+        common.is_linear()
+            ? std::array<int, 3>{common.slope_at_root(n[0]), common.slope_at_root(n[1]), common.slope_at_root(n[2])}
+            : std::array<int, 3>{};
+    if (slopes != std::array<int, 3>{}) {
+      if (!starts && !has_signs(one.before, {-slopes[0], -slopes[1], -slopes[2]})) return "direction before";
+      if (!ends && !has_signs(one.after, slopes)) return "direction after";
+      continue;
+    }
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }

@@ -90,6 +90,19 @@ class WholePolynomial {
     return sgn(value);
   }
 
+  /// Whether it has one root, and the sign of the derivative of p there.
+  [[nodiscard]] bool is_linear() const { return a_.size() == 2; }
+  [[nodiscard]] int slope_at_root(const WholePolynomial& p) const {
+    const Whole root = -a_[0], unit = a_[1];  // t = root / unit
+    Whole slope = 0, power = 1;
+    for (std::size_t k = p.a_.size(); k-- > 1;) {
+      slope = slope * root + static_cast<unsigned long>(k) * p.a_[k] * power;
+      power *= unit;
+    }
+    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // the power of unit that slope was multiplied by
+    return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
+  }
+
   /// How many different roots there are in [0, 1].
   [[nodiscard]] std::size_t count_roots() const {
     const std::size_t at_ends = (sign_at(0) == 0 ? 1U : 0U) + (sign_at(1) == 0 ? 1U : 0U);
