@@ -15,6 +15,12 @@ void run_vertices(Suite& suite, const Size& size);
 /// Every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
+/// Bounds of the largest errors of schemes, beside dense sampling.
+void run_certificates(Suite& suite, const Size& size);
+
+/// Cones, bounds of clusters and means over a segment, beside samples.
+void run_cones(Suite& suite, const Size& size);
+
 /// Blend shapes, a few active at once.
 void run_blend(Suite& suite, const Size& size);
 

@@ -25,7 +25,8 @@ struct Options {
   std::string question;
   QuerySpan span;
   bool json = false;
-  std::vector<Question> questions = {collapse_question(), facing_question(), contain_question()};
+  std::vector<Question> questions = {cones_question(), facing_question(), contain_question(), collapse_question(),
+                                     shutter_question()};
 };
 
 // Whether the command line gave an option a value.

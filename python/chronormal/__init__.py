@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "collapse", "compare", "contain",
-           "curves", "errors", "facing", "inspect", "read"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "cones",
+           "contain", "curves", "errors", "facing", "inspect", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -130,6 +130,19 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
+def certify(p0, p1, faces, scheme="linear", threads=0):
+    """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
+
+    p0, p1, faces, threads  as for curves()
+    scheme   a name that compare() knows
+    lower    degrees; the error is as large as that at the local time `at`
+    upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
+    from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
+    """
+    offsets, corners = _polygons(faces)
+    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
+
+
 def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Read a motion; return Motion, whose arrays curves() takes.
 
@@ -161,16 +174,18 @@ def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, t
 
 
 def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
-            times=False, sample=None, base=None, fps=1.0, animation=None, world=False):
+            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
-    schemes  names; empty: the usual ones
-    times    whether measured times are in it, which differ from run to run
+    schemes    names; empty: the usual ones
+    times      whether measured times are in it, which differ from run to run
+    certify    whether to bound the largest error of each scheme at any time
+    tolerance  degrees: certify, and find the cheapest scheme that is never off by more
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
     text, _ = _chronormal.compare(_source(source, sample, base, fps, animation, world), list(schemes), samples,
-                                  access == "sequential", elements, crease, weld, times, False)
+                                  access == "sequential", elements, crease, weld, times, False, certify, tolerance)
     return _json.loads(text)
 
 
@@ -220,7 +235,7 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
         _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
-                                        weld, False, True)
+                                        weld, False, True, False, None)
     return [ErrorTable(**table) for table in tables]
 
 
@@ -287,3 +302,37 @@ def contain(positions, faces, points, times=None, *, start=None, end=None):
     """
     return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end,
                                      _np.ascontiguousarray(points, dtype=_np.float64))
+
+
+def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):
+    """Return cones that contain every normal of a face: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+    meshlets   None, or build meshlets of up to so many triangles (a multiple of 4)
+
+    segment, face     where
+    axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
+                      length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
+                      axis 0 with the sine 1, and a face that never has an area the axis 0 with the sine 0
+    half_angle        degrees
+    meshlet_segment, meshlet_index, meshlet_center, meshlet_radius, meshlet_cone_apex, meshlet_cone_axis, ...
+                      bounds as meshoptimizer has them, right at every instant of the part of the segment
+    member_meshlet, member_face   which face is in which meshlet
+    """
+    return _chronormal.query_cones(*_keyframes(positions, faces, times), start, end, meshlets)
+
+
+def shutter(positions, faces, times=None, *, start=None, end=None):
+    """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+
+    segment, face   where
+    mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
+    mean_unit       (rows, 3) mean of the unit normal, and error: how far the exact one may be from it
+    length          of mean_unit: 1 where normals stay the same, 0 where they cancel
+    half_angle      degrees, of a cone that contains all normals
+    ends, ends_off  (rows, 3) the direction that interpolation between the ends has as its mean, and how many degrees it is off
+    span_face, span_mean ...   the same over all segments together, where there are several
+    """
+    return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end)

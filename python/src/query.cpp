@@ -104,12 +104,27 @@ py::dict ask_contain(const Positions& positions, const Indices& offsets, const I
   return answer_of([&] { return query_contain(motion, paths, {start, end}); });
 }
 
+py::dict ask_cones(const Positions& positions, const Indices& offsets, const Indices& corners,
+                   const Array<double>& times, std::optional<double> start, std::optional<double> end,
+                   std::optional<std::size_t> meshlets) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_cones(motion, meshlets, {start, end}); });
+}
+
+py::dict ask_shutter(const Positions& positions, const Indices& offsets, const Indices& corners,
+                     const Array<double>& times, std::optional<double> start, std::optional<double> end) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_shutter(motion, {start, end}); });
+}
+
 }  // namespace
 
 void add_queries(py::module_& module) {
   module.def("query_collapse", &ask_collapse);
+  module.def("query_cones", &ask_cones);
   module.def("query_facing", &ask_facing);
   module.def("query_contain", &ask_contain);
+  module.def("query_shutter", &ask_shutter);
 }
 
 }  // namespace chronormal::python

@@ -229,6 +229,7 @@ const std::map<std::string, std::string> kUses = {
     {"query --points", "contain closed.obj moved.obj --points points.npy"},
     {"query --silhouettes", "facing a.obj b.obj --direction 0,0,1 --silhouettes"},
     {"--from", "a.obj b.obj --from 0.25"},
+    {"query --meshlets", "cones a.obj b.obj --meshlets 8"},
     {"--to", "a.obj b.obj --to 0.75"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},

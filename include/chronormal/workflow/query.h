@@ -110,6 +110,25 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
                                                 const QuerySpan& span = {}, const QueryProgress& progress = {});
 
+/// Cones that contain every normal of a face while a part of a segment lasts (analysis/cones.h). Tables:
+///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
+///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
+///     member    meshlet, face
+/// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first keyframe.
+/// Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up to 512, and
+/// for a mesh of larger faces.
+[[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
+                                              const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// The mean normals of faces while a shutter is open over the span (analysis/shutter.h). Tables:
+///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends (the
+///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
+///               ends_off (degrees from mean_unit to it): one row for each segment and face
+///     span      the same without segment, over all parts together, weighed by their duration; not for targets
+/// Errors: of segment_parts().
+[[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
+                                                const QueryProgress& progress = {});
+
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
 /// the table has no name. Errors: kUsage for another extension; those of write_output().
 [[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);

@@ -1,0 +1,34 @@
+/// Control normals of a part [t0, t1] of a segment, and how well they are known.
+#ifndef CHRONORMAL_ANALYSIS_PART_NORMALS_H_
+#define CHRONORMAL_ANALYSIS_PART_NORMALS_H_
+
+#include <cstdint>
+#include <span>
+
+#include "analysis/kernels/cones.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+
+namespace chronormal::inline internal {
+
+/// Three control normals, each of which is exactly zero or within `unknown` of its largest component from the exact one.
+struct PartNormals {
+  ControlNormals normals;
+  double unknown = kNormalShare;
+
+  [[nodiscard]] bool is_known() const noexcept { return unknown <= kLargestUnknown; }
+};
+
+/// Those of an element whose control normals are within kNormalShare. Where they cancel, much of them is unknown.
+[[nodiscard]] PartNormals part_of(const ControlNormals& normals, const Restriction& part) noexcept;
+
+/// Those of a face, from integers.
+[[nodiscard]] PartNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0,
+                                        double t1) noexcept;
+
+/// The cone around those that are not zero.
+[[nodiscard]] NormalCone cone_around(PartNormals part) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_PART_NORMALS_H_
