@@ -33,10 +33,10 @@
 #include "chronormal/analysis/cluster_bounds.h"  // bounds of clusters over an interval, in the layout of meshoptimizer
 #include "chronormal/analysis/collapse.h"        // when a face has no area, and whether it turns over: decided exactly
 #include "chronormal/analysis/cones.h"           // cones that contain all normals of an interval
-#include "chronormal/analysis/facing.h"          // from which side a face is seen, at every instant; silhouettes over time
-#include "chronormal/analysis/quality.h"         // the exact reference, and angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/shutter.h"         // mean normals over an open shutter
-#include "chronormal/analysis/surface.h"         // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/facing.h"   // from which side a face is seen, at every instant; silhouettes over time
+#include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/shutter.h"  // mean normals over an open shutter
+#include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/bake_mark.h"       // what a bake leaves in a glTF file about itself
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
