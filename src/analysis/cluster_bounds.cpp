@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/part_normals.h"
+#include "analysis/interval_normals.h"
 #include "normals/control/local_time.h"
 
 namespace chronormal {
@@ -161,7 +161,7 @@ class Cluster {
   const Segment& segment_;
   std::span<const std::uint32_t> faces_;
   double t0_, t1_;
-  std::vector<PartNormals> normals_;
+  std::vector<IntervalNormals> normals_;
 };
 
 // The axis and the cutoff in 8 bits each: n.v >= 0 holds for all n of the cone where v.axis_s8 / 127 is no less than the

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "analysis/interval_normals.h"
 #include "analysis/kernels/cones.h"
-#include "analysis/part_normals.h"
 #include "core/portable_math.h"
 #include "normals/control/local_time.h"
 
@@ -38,7 +38,7 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
     for (std::size_t bit = 0; flags[b] >> bit != 0; ++bit) {
       if ((flags[b] >> bit & 1) == 0) continue;
       const std::size_t i = b * kConesPerFlags + bit;
-      const PartNormals part = is_whole(t0, t1) ? PartNormals{normals[i]} : part_of(normals[i], restriction);
+      const IntervalNormals part = is_whole(t0, t1) ? IntervalNormals{normals[i]} : part_of(normals[i], restriction);
       result[i] = part.is_known() ? cone_around(part) : settle(i);
     }
   }
