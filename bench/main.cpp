@@ -24,7 +24,7 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kShuffledFrom = 10000000, kSchemesUpTo = 1500000, kBlendUpTo = 100000, kUsesUpTo = 1500000,
-                      kMost = 50000000;
+                      kCertifiedUpTo = 100000, kMost = 50000000;
 
 // "15k" or "10M".
 Size parse_size(const std::string& text) {
@@ -72,8 +72,12 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
       run_vertices(suite, size);
       if (!shuffled && size.elements <= kSchemesUpTo) run_schemes(suite, size);
       if (!shuffled && size.elements <= kBlendUpTo) run_blend(suite, size);
-      if (!shuffled && size.elements <= kUsesUpTo) run_uses(suite, size);
-      if (!shuffled && size.elements <= kUsesUpTo) run_cones(suite, size);
+      if (!shuffled && size.elements <= kUsesUpTo) {
+        run_uses(suite, size);
+        run_cones(suite, size);
+        run_containment(suite, size);
+      }
+      if (!shuffled && size.elements <= kCertifiedUpTo) run_certificates(suite, size);
     }
   }
   report.accuracies = measure_accuracy(suite);

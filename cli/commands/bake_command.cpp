@@ -50,7 +50,8 @@ Result<BakeOptions> understand(const Options& options) {
   BakeOptions how;
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
-    if (!how.encoding) return misuse("--encode", "it must be harmless, exact, endpoint or smallest");
+    if (!how.encoding)
+      return misuse("--encode", "it must be harmless, exact, endpoint, smallest, or of sequences keys");
   }
   Result<std::vector<Host>> hosts = find_hosts(options.hosts);
   if (!hosts) return misuse("--for", hosts.error().message);
@@ -212,7 +213,9 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
                                    [](const Host& host) { return host.normals == NormalRule::kSum; });
   if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
-    return misuse("--encode", "a sequence is written harmless, exact or endpoint");
+    return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
+  if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
+    return misuse("--tolerance", "of --encode keys it must be 0.001 degrees or more");
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();
@@ -250,7 +253,11 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   }
   warn_if_worse(told);
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
-  return report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
+  const Result<int> reported =
+      report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
+  if (!reported) return reported.error();
+  const bool is_beyond_tolerance = options.tolerance && baked.value().keys && baked.value().keys->beyond > 0;
+  return is_beyond_tolerance ? kExitBeyond : kExitDone;
 }
 
 // Without -o the last of several files is where to write, where it can be: IN OUT.
@@ -321,7 +328,8 @@ Command bake_command() {
          "its animations drive; harmless: extra targets wherever they bring all of these\n"
          "nearer; exact: extra targets for all quadratic terms, right where a host adds up\n"
          "targets as stored; endpoint: the best single delta per target, by least squares\n"
-         "where several are active at once"},
+         "where several are active at once; keys: of sequences, the fewest keys between which\n"
+         "straight lines are within the tolerance at every instant"},
         {"--weighting NAME", &options->weighting,
          "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
          "base normals of each mesh, else area)"},

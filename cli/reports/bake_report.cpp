@@ -265,7 +265,13 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
                     counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
                     counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
-  if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
+  if (bake.keys) {
+    text += formatted("{}, {} of them between keyframes; {} left out; {} would do if all segments were cut alike\n",
+                      counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
+                      counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
+    text += formatted("keys: at most {} degrees from the right normals at every instant, certified\n",
+                      four_decimals(bake.largest_error));
+  } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
     text += "exact at every instant\n";
   else
     text +=

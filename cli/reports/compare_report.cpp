@@ -1,5 +1,7 @@
 #include "cli/reports/compare_report.h"
 
+#include <cmath>
+
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
@@ -30,6 +32,10 @@ std::string headline(const NamedComparison& input) {
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
 
+// Of a bound, so that what is shown is one as well.
+std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
+std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
+
 std::string sample_pairs(std::size_t count, const std::string& word) {
   return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
 }
@@ -56,11 +62,20 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     };
     add(row.flagged, share(row.flagged) + " evaluated in double");
     add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
+    if (row.certified)
+      add(row.certified->unbounded, share(row.certified->unbounded) + " without a bound: a normal vanishes on the way");
     add(row.quality.missing, sample_pairs(row.quality.missing, word) + " without a normal of the scheme left out");
   }
   if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
   if (degenerate > 0)
     text += formatted("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
+  if (comparison.tolerance && comparison.cheapest) {
+    const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
+    text += formatted("{}cheapest within {:g} degrees at every time: {}, at most {}\n", prefix, *comparison.tolerance,
+                      row.scheme, rounded_up(degrees(row.certified->upper)));
+  } else if (comparison.tolerance) {
+    text += formatted("{}none of them is within {:g} degrees at every time\n", prefix, *comparison.tolerance);
+  }
   return text;
 }
 
@@ -100,6 +115,11 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   const std::string element(one_element(input.comparison.kind));
   table.add_column(several_segments ? "" : "worst at", element, Align::kRight);
   table.add_column("", is_of_targets(input.comparison) ? "weight" : "t", Align::kRight);
+  const bool certified = input.comparison.schemes.front().certified.has_value();
+  if (certified) {
+    table.add_column("largest error", "at least", Align::kRight);
+    table.add_column("", "at most", Align::kRight);
+  }
   table.add_column("memory", "B/" + element, Align::kRight);
   if (with_times) {
     table.add_column("prepare", "ns/" + element, Align::kRight);
@@ -117,6 +137,10 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
     if (several_segments) cells.push_back(q.max > 0 ? segment_cell(input, q.max_at.segment) : "-");
     cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
     cells.push_back(q.max > 0 ? formatted("{:.2f}", q.max_at.t) : "-");
+    if (certified) {
+      cells.push_back(rounded_down(degrees(row.certified->lower)));
+      cells.push_back(rounded_up(degrees(row.certified->upper)));
+    }
     cells.push_back(formatted("{:.0f}", row.bytes));
     if (with_times) {
       cells.push_back(formatted("{:.0f}", row.prepare_ns));
@@ -136,6 +160,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   for (const NamedComparison& input : inputs) {
     table.add_column(printable(short_name(input.name)), "sum, degrees", Align::kRight);
     table.add_column("", "vs linear", Align::kRight);
+    if (input.comparison.schemes.front().certified) table.add_column("", "at most", Align::kRight);
   }
   const std::size_t rows = inputs.front().comparison.schemes.size();
   for (std::size_t r = 0; r < rows; ++r) {
@@ -144,6 +169,7 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
       const SchemeComparison& row = input.comparison.schemes[r];
       cells.push_back(grouped_sum(degrees(row.quality.sum)));
       cells.push_back(ratio_cell(row.relative_to_linear));
+      if (row.certified) cells.push_back(rounded_up(degrees(row.certified->upper)));
     }
     table.add_row(std::move(cells));
   }
@@ -158,7 +184,13 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
       "input,vertices,faces,segments,elements,samples,scheme,sum_degrees,relative_to_linear,mean_degrees,rms_degrees,"
       "max_degrees,max_segment,max_element,max_t,degenerate,missing,fallbacks,flagged,";
   if (with_times) text += "prepare_ns,evaluate_ns,";
-  text += "bytes,access,add,multiply,divide,sqrt,trigonometric\n";
+  text += "bytes,access,add,multiply,divide,sqrt,trigonometric";
+  const bool certified = inputs.front().comparison.schemes.front().certified.has_value();
+  if (certified)
+    text +=
+        ",certified_lower_degrees,certified_upper_degrees,certified_segment,certified_element,certified_from,"
+        "certified_to,unbounded";
+  text += '\n';
   for (const NamedComparison& input : inputs) {
     const Comparison& c = input.comparison;
     for (const SchemeComparison& row : c.schemes) {
@@ -170,8 +202,14 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
                         q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
       if (with_times) text += formatted("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
-      text += formatted("{},{},{},{},{},{},{}\n", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
+      text += formatted("{},{},{},{},{},{},{}", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
                         o.trigonometric);
+      if (row.certified) {
+        const CertifiedError& e = *row.certified;
+        text += formatted(",{},{},{},{},{},{},{}", degrees(e.lower), degrees(e.upper), e.segment, e.element, e.from,
+                          e.to, e.unbounded);
+      }
+      text += '\n';
     }
   }
   return text;

@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "collapse", "compare", "cones", "curves",
-           "errors", "facing", "inspect", "read", "shutter"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "cones",
+           "contain", "curves", "errors", "facing", "inspect", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -130,6 +130,19 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
+def certify(p0, p1, faces, scheme="linear", threads=0):
+    """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
+
+    p0, p1, faces, threads  as for curves()
+    scheme   a name that compare() knows
+    lower    degrees; the error is as large as that at the local time `at`
+    upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
+    from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
+    """
+    offsets, corners = _polygons(faces)
+    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
+
+
 def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Read a motion; return Motion, whose arrays curves() takes.
 
@@ -161,16 +174,18 @@ def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, t
 
 
 def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
-            times=False, sample=None, base=None, fps=1.0, animation=None, world=False):
+            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False):
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
-    schemes  names; empty: the usual ones
-    times    whether measured times are in it, which differ from run to run
+    schemes    names; empty: the usual ones
+    times      whether measured times are in it, which differ from run to run
+    certify    whether to bound the largest error of each scheme at any time
+    tolerance  degrees: certify, and find the cheapest scheme that is never off by more
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
     text, _ = _chronormal.compare(_source(source, sample, base, fps, animation, world), list(schemes), samples,
-                                  access == "sequential", elements, crease, weld, times, False)
+                                  access == "sequential", elements, crease, weld, times, False, certify, tolerance)
     return _json.loads(text)
 
 
@@ -220,7 +235,7 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
         _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
-                                        weld, False, True)
+                                        weld, False, True, False, None)
     return [ErrorTable(**table) for table in tables]
 
 
@@ -272,6 +287,21 @@ def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=Non
         raise ValueError("direction: a place or a direction is an array of 3 numbers")
     return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
                                     silhouettes)
+
+
+def contain(positions, faces, points, times=None, *, start=None, end=None):
+    """Return which points are inside a closed mesh that deforms, and when each crosses its surface: a dict of arrays.
+
+    positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
+    points   (P, 3) points that rest, or (P, 2, 3): each moves straight from the first of all times to the last
+
+    inside           (P,) at the first instant
+    crossing_point   the index of the point; crossings are ordered by point and time
+    crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   when, and through which face
+    crossing_inward  whether the winding number rises; otherwise it falls
+    """
+    return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end,
+                                     _np.ascontiguousarray(points, dtype=_np.float64))
 
 
 def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):

@@ -113,6 +113,7 @@ struct ZeroedObject {
 
 inline void require_made(bool is_made) { require(is_made, "self", "it was never made: its __init__() has not run"); }
 
+void add_certificates(py::module_& module);
 void add_curves(py::module_& module);
 void add_files(py::module_& module);
 void add_queries(py::module_& module);

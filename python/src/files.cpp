@@ -105,7 +105,7 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
 
 py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
                          bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
-                         bool keep_errors) {
+                         bool keep_errors, bool certified, std::optional<double> tolerance) {
   CompareOptions options;
   options.schemes = schemes;
   options.samples = samples;
@@ -114,6 +114,8 @@ py::tuple compare_source(const py::dict& source, const std::vector<std::string>&
   options.elements.crease_angle = crease;
   options.elements.weld = weld;
   options.keep_errors = keep_errors;
+  options.certify = certified;
+  options.tolerance = tolerance;
   Opened opened = open(source, false, KeepShading::kNone);
   NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
     const Result<const Motion*> motion = opened.input.motion();
@@ -169,7 +171,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   BakeOptions options;
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
-    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact or endpoint");
+    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
   }
   options.hosts = value_or_raise(find_hosts(hosts));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
@@ -181,7 +183,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   const bool is_document = opened.input.document() != nullptr;
   if (!is_document) {
     require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
-            "a sequence is written exact or endpoint");
+            "a sequence is written exact, endpoint or keys");
     require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
   }
   std::string json;

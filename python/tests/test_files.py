@@ -124,6 +124,8 @@ class ProgramTest(unittest.TestCase):
         sample = ("--sample", "twist", "--json")
         self.assertEqual(cn.audit(sample="twist", tolerance=50), json.loads(run("audit", *sample, "--tolerance", 50)))
         self.assertEqual(cn.inspect(sample="twist"), json.loads(run("inspect", *sample)))
+        self.assertEqual(cn.compare(sample="twist", schemes=["linear", "circle"], tolerance=15),
+                         json.loads(run("compare", *sample, "--no-times", "--schemes", "linear,circle", "--tolerance", 15)))
         self.assertEqual(cn.compare(sample="twist", schemes=["linear", "slerp"], elements="vertices"),
                          json.loads(run("compare", *sample, "--no-times", "--schemes", "linear,slerp", "--elements", "vertices")))
 

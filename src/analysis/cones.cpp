@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "analysis/interval_normals.h"
-#include "analysis/kernels/cones.h"
+#include "analysis/kernels/cones_of_three.h"
 #include "core/portable_math.h"
 #include "normals/control/local_time.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "analysis/kernels/cones.h"
+#include "analysis/kernels/cones_of_three.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 

@@ -28,7 +28,7 @@
 
 #include "chronormal/schemes/scheme.h"
 #include "core/memory.h"
-#include "schemes/kernels/curve_kernels.h"
+#include "schemes/fitted_curves.h"
 
 namespace chronormal::inline internal {
 
@@ -72,15 +72,6 @@ class ElementMotion {
   bool used_fallback_ = false;
 };
 
-/// The coefficients of one element, which lies in a block.
-struct ElementCoefficients {
-  const float* first;
-
-  float operator[](std::size_t plane) const { return first[plane * kBlock]; }
-  /// The vector in the planes 3k, 3k + 1, 3k + 2.
-  [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
-};
-
 /// Writes a vector into the planes 3k, 3k + 1, 3k + 2 of one element that is being fitted.
 inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k] = v.x;
@@ -108,7 +99,7 @@ class BlockedValues {
     for (std::size_t k = 0; k < values.size(); ++k) to[k * kBlock] = static_cast<float>(values[k]);
   }
 
-  [[nodiscard]] ElementCoefficients of(std::size_t i) const noexcept { return {values_.data() + offset(i)}; }
+  [[nodiscard]] ElementCoefficients of(std::size_t i) const noexcept { return coefficients_of(view(), i); }
 
   [[nodiscard]] CoefficientBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
   [[nodiscard]] float* data() noexcept { return values_.data(); }
@@ -199,7 +190,10 @@ class CurveScheme final : public Scheme {
       if (element.used_fallback()) ++fallbacks_;
       values_.put(i, c);
     }
+    fitted_ = {policy_.formula(), values_.view()};
   }
+
+  [[nodiscard]] const FittedCurves* fitted_curves() const noexcept override { return &fitted_; }
 
   std::size_t evaluate(double t, VectorView<float> result) const noexcept override {
     evaluate_curves(policy_.formula(), values_.view(), shared(t), result);
@@ -277,6 +271,7 @@ class CurveScheme final : public Scheme {
   std::size_t fallbacks_ = 0;
   std::size_t without_direction_ = 0;
   BlockedValues values_;
+  FittedCurves fitted_;
 };
 
 }  // namespace chronormal::inline internal

@@ -90,5 +90,61 @@ TEST_F(CompareFigures, table_counts_shares_in_pairs_of_all_segments) {
   EXPECT_EQ(text.find("without a normal of the scheme"), std::string::npos) << text;
 }
 
+TEST_F(CompareFigures, certificates_stand_beside_what_was_sampled) {
+  const Json rows = Json::parse(output("--json --certify"))["schemes"];
+  EXPECT_FALSE(Json::parse(output("--json"))["schemes"][0].contains("certified"));
+  for (const Json& row : rows) {
+    const Json& certified = row["certified"];
+    // A face that turns over has no bound, and there are two segments of three faces.
+    EXPECT_EQ(certified["upper_degrees"], 180) << row;
+    EXPECT_GE(certified["upper_degrees"], row["max_degrees"]);
+    EXPECT_EQ(certified["upper_at"]["segment"], 0);
+    EXPECT_EQ(certified["upper_at"]["element"], 1);
+    EXPECT_EQ(certified["unbounded"], 1);
+  }
+  const std::string csv = output("--csv --certify");
+  EXPECT_NE(csv.find(",trigonometric,certified_lower_degrees,certified_upper_degrees,"), std::string::npos) << csv;
+  const std::string table = output("--certify");
+  EXPECT_NE(table.find("at most"), std::string::npos) << table;
+  EXPECT_NE(
+      table.find("\nlinear: 1 of 6 (face, segment) pairs (16.67 %) without a bound: a normal vanishes on the way\n"),
+      std::string::npos)
+      << table;
+}
+
+class CompareTolerance : public testing::Test {
+ protected:
+  [[nodiscard]] static ProcessResult run(const std::string& arguments) {
+    return run_shell(std::string(kProgram) + " compare --sample bend --no-times " + arguments, ".");
+  }
+};
+
+TEST_F(CompareTolerance, the_cheapest_scheme_within_it_is_named) {
+  const auto cheapest = [](const std::string& tolerance) {
+    const ProcessResult result = run("--schemes linear,circle:timed,polynomial,slerp --json --tolerance " + tolerance);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out)["cheapest"];
+  };
+  EXPECT_EQ(cheapest("20"), "linear");
+  EXPECT_EQ(cheapest("10"), "polynomial") << "which costs less than circle:timed";
+  EXPECT_EQ(cheapest("0.001"), "polynomial");
+  EXPECT_NE(run("--tolerance 20 --schemes linear")
+                .out.find("\ncheapest within 20 degrees at every time: linear, at most 19.7"),
+            std::string::npos);
+}
+
+TEST_F(CompareTolerance, where_none_is_within_it_the_exit_code_is_4) {
+  const ProcessResult result = run("--schemes linear,slerp --json --tolerance 1");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(result.err, "chronormal compare: bend: no scheme is within the tolerance of 1 degrees at every time\n");
+  EXPECT_TRUE(Json::parse(result.out)["cheapest"].is_null());
+}
+
+TEST_F(CompareTolerance, what_has_no_meaning_is_refused) {
+  EXPECT_EQ(run("--tolerance -1").exit_code, 2);
+  EXPECT_EQ(run("--certify --access sequential").exit_code, 2);
+  EXPECT_EQ(run("--certify --blend 5").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace chronormal::compare_cli_test

@@ -43,17 +43,19 @@ struct GltfExtraTarget {
 };
 
 /// How a bake encodes the normals of targets (workflow/bake.h).
-enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest };
+/// kKeys is for sequences; what it writes is marked as harmless.
+enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
 struct BakeEncodingName {
   BakeEncoding encoding;
   std::string_view name;
 };
-inline constexpr std::array<BakeEncodingName, 4> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
+inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncoding::kHarmless, "harmless"},
                                                                     {BakeEncoding::kExact, "exact"},
                                                                     {BakeEncoding::kEndpoint, "endpoint"},
-                                                                    {BakeEncoding::kSmallest, "smallest"}}};
+                                                                    {BakeEncoding::kSmallest, "smallest"},
+                                                                    {BakeEncoding::kKeys, "keys"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;

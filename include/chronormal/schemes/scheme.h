@@ -33,6 +33,10 @@
 
 namespace chronormal {
 
+inline namespace internal {
+struct FittedCurves;
+}
+
 /// What a scheme is prepared from: some elements of one segment, and their control normals.
 struct ElementBlock {
   const Segment* segment = nullptr;
@@ -106,6 +110,10 @@ class Scheme {
   [[nodiscard]] virtual OperationCounts operations() const = 0;
   /// Operations per element and step of a playback, counted likewise; nothing where there is no incremental form.
   [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
+
+  /// What the block was fitted with, for certify() in analysis/certify.h; nothing where a scheme follows the exact
+  /// normals to kExactTolerance.
+  [[nodiscard]] virtual const FittedCurves* fitted_curves() const noexcept { return nullptr; }
 };
 
 /// Makes a scheme from its name. Errors: kUsage with the names that there are, or the range of a parameter.

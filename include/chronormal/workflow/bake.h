@@ -13,6 +13,9 @@
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
 ///
+///     keys       of sequences: nothing but unit normals at keys, as few keys as hosts need that draw straight lines between them,
+///                certified at every instant (docs/uses.md)
+///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_H_
@@ -37,6 +40,7 @@
 namespace chronormal {
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
+inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees: float32 in hosts takes some
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< nothing: smallest; of sequences exact
@@ -56,7 +60,8 @@ struct BakeOptions {
   Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
   /// Degrees: what the worst error of smallest may be. Of harmless and exact, extra targets whose lack, all together,
   /// turns no normal by more are left out. Tracks are cut to this.
-  /// Nothing: kHarmlessTolerance, and kExactBakeTolerance of exact.
+  /// Of keys, what no normal may be off by at any instant; kLeastKeyTolerance or more. Nothing: kHarmlessTolerance, and
+  /// kExactBakeTolerance of exact.
   std::optional<double> tolerance = {};
   /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the hosts bear.
   std::optional<std::size_t> most_targets = {};
@@ -160,7 +165,7 @@ struct GltfBake {
 /// Fits       by weightings other than area, n(w) is no polynomial: exact stands for the quadratic form that is right
 ///            where one target has the weight 0, 1/2 or 1, and where two have the weight 1.
 ///
-/// Errors: of GltfDocument; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
+/// Errors: of GltfDocument; kUsage of keys; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
 /// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
 /// compressed by Draco, or of exact an extension drives a weight alone.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
@@ -171,14 +176,25 @@ struct SequenceBake {
   double largest_error = 0;         ///< degrees, of endpoint and harmless; of a weighting that is fitted
   std::size_t without_normals = 0;  ///< elements that have no area in the whole motion
   std::vector<std::string> warnings;
+  /// Of keys.
+  struct Keys {
+    std::size_t count = 0;       ///< the first and the last among them
+    std::size_t in_between = 0;  ///< those that lie between two keyframes
+    std::size_t left_out = 0;    ///< keyframes that are no keys: their positions lie on the lines between keys
+    std::size_t even = 0;        ///< how many it would take if all keyframes stayed, and all segments were cut alike
+    std::size_t beyond = 0;      ///< (normal, segment) pairs that no keys bring within the tolerance: they collapse
+  };
+  std::optional<Keys> keys = {};
 };
 
 /// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
 /// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals in
 /// all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard edges
-/// (crease angle) are doubled. glb gets the bytes of the file.
+/// (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
+/// glb gets the bytes of the file.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
-/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB. Precondition: the motion is valid and a
+/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area or a
+/// tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a
 /// sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 

@@ -54,6 +54,20 @@ struct CompareOptions {
   ElementOptions elements = {};  ///< of which normals
   bool keep_errors = false;      ///< every single one, in Comparison::errors
   bool keep_samples = false;     ///< those of each sample together, in SchemeComparison::samples
+  bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
+  /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
+  std::optional<double> tolerance = {};
+};
+
+/// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
+/// the upper one.
+struct CertifiedError {
+  double lower = 0;  ///< radians
+  double upper = 0;  ///< radians; pi where no better one could be shown
+  /// The first piece of a segment, from local t to local t, on which the error may be as large as the upper bound.
+  std::size_t segment = 0, element = 0;
+  double from = 0, to = 1;
+  std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -62,15 +76,16 @@ struct CompareOptions {
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
-  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing where linear errs by rounding only
-  std::size_t fallbacks = 0;                 ///< (element, segment) pairs prepared with a stated fallback
-  std::size_t flagged = 0;                   ///< (element, segment) pairs evaluated in double
-  bool sequential = false;                   ///< whether the scheme was played step by step
-  double prepare_ns = 0;                     ///< control normals included, where the scheme uses them
-  double evaluate_ns = 0;                    ///< per sample
-  double bytes = 0;                          ///< read by an evaluation
-  OperationCounts operations;                ///< of the access that was measured
-  std::vector<Quality> samples = {};         ///< with keep_samples: of each sample, segment after segment
+  std::optional<double> relative_to_linear;      ///< sum / sum of linear; nothing where linear errs by rounding only
+  std::size_t fallbacks = 0;                     ///< (element, segment) pairs prepared with a stated fallback
+  std::size_t flagged = 0;                       ///< (element, segment) pairs evaluated in double
+  bool sequential = false;                       ///< whether the scheme was played step by step
+  double prepare_ns = 0;                         ///< control normals included, where the scheme uses them
+  double evaluate_ns = 0;                        ///< per sample
+  double bytes = 0;                              ///< read by an evaluation
+  OperationCounts operations;                    ///< of the access that was measured
+  std::vector<Quality> samples = {};             ///< with keep_samples: of each sample, segment after segment
+  std::optional<CertifiedError> certified = {};  ///< where it was asked for
 };
 
 struct Comparison {
@@ -83,18 +98,33 @@ struct Comparison {
   std::vector<SchemeComparison> schemes;
   MotionKind motion = MotionKind::kSequence;  ///< what the segments are
   std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
+  std::optional<double> tolerance = {};       ///< degrees, where it was given
+  std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
-/// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, or a wrong crease angle,
-///            and errors to keep that take more than kMostErrorBytes.
+/// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
+///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
+
+/// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
+/// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.
+[[nodiscard]] double evaluation_cost(const SchemeComparison& scheme) noexcept;
+
+/// The cheapest scheme for a motion that is at no time off by more than a tolerance, for certain: that of the least
+/// evaluation_cost(). Of options.schemes, or all those that have no parameter and fit the elements.
+struct Choice {
+  std::optional<std::string> scheme;  ///< nothing: none is within the tolerance
+  Comparison comparison;              ///< of all that were looked at, at two samples of each segment
+};
+/// tolerance: degrees, 0 or more. Errors: those of compare().
+[[nodiscard]] Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options = {});
 
 inline constexpr std::size_t kMostBlendRows = 10000;
 

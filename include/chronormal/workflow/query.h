@@ -23,6 +23,7 @@
 
 #include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
+#include "chronormal/io/points_file.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
@@ -96,6 +97,18 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
+/// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
+/// motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them it moves
+/// straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
+///     ""         inside: one row for each point
+///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
+///                segment and weight
+/// Where the weights of an animation jump, a point may be elsewhere without a crossing.
+/// Errors: of segment_parts() and of Containment::make().
+[[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
+                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Cones that contain every normal of a face while a part of a segment lasts (analysis/cones.h). Tables:
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face

@@ -302,6 +302,8 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
 
 Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit) {
   assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
+  if (options.encoding == BakeEncoding::kKeys)
+    return Error{ErrorCode::kUsage, "", "keys are for sequences: the weights of a glTF file may go anywhere"};
   if (const Status poses = check_poses(options.poses, document); !poses) return poses.error();
   const std::vector<std::size_t> candidates = candidate_meshes(document);
   Course course(document, candidates, options.progress);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
@@ -29,6 +32,18 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
+// Puts the bounds of the elements of a block together, or those of blocks; of equals the first counts.
+void add(CertifiedError& all, const CertifiedError& other) {
+  all.lower = std::max(all.lower, other.lower);
+  all.unbounded += other.unbounded;
+  if (!(other.upper > all.upper)) return;
+  all.upper = other.upper;
+  all.segment = other.segment;
+  all.element = other.element;
+  all.from = other.from;
+  all.to = other.to;
+}
+
 // What one scheme did on one block, or on all blocks so far.
 struct Tally {
   Quality quality;
@@ -36,9 +51,11 @@ struct Tally {
   std::size_t fallbacks = 0, flagged = 0;
   double bytes = 0;
   std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
+  CertifiedError certified;                    // where it is asked for
 
   void add(const Tally& other) {
     quality.add(other.quality);
+    chronormal::add(certified, other.certified);
     fallbacks += other.fallbacks;
     flagged += other.flagged;
     bytes += other.bytes;
@@ -99,6 +116,23 @@ class Elements {
     else
       face_control_normals(segment, range, result);
   }
+  // How far they may be off: each face within 2^-26 of its length, and a sum by a few roundings of double more.
+  [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
+    std::vector<ControlErrors> errors;
+    if (!groups_) return errors;
+    constexpr double kShare = 0x1p-26 + 0x1p-40;
+    const std::vector<ControlNormals>& of_faces = of_faces_.find(segment.index)->second;
+    for (std::size_t i = 0; i < range.count; ++i) {
+      ControlErrors sum{};
+      for (const std::uint32_t f : groups_->faces(range.first + i)) {
+        const ControlNormals& face = of_faces[f];
+        sum = {sum[0] + kShare * max_abs(face.n0), sum[1] + kShare * max_abs(face.m),
+               sum[2] + kShare * max_abs(face.n1)};
+      }
+      errors.push_back(sum);
+    }
+    return errors;
+  }
   void exact_normals(const Segment& segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept {
     if (!groups_) return reference_normals(segment, range, t, result);
     for (std::size_t i = 0; i < range.count; ++i)
@@ -137,6 +171,21 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   return table;
 }
 
+// Bounds the largest error of a scheme that is prepared on a block.
+CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, std::span<const ControlErrors> errors) {
+  CertifyOptions options;
+  options.only_worst = true;
+  std::vector<ErrorBounds> bounds(block.elements.count);
+  certify(scheme, block, bounds, options, errors);
+  CertifiedError all;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const auto& [lower, upper, at, from, to] = bounds[i];
+    add(all,
+        {lower, upper, block.segment->index, block.elements.first + i, from, to, upper < std::numbers::pi ? 0U : 1U});
+  }
+  return all;
+}
+
 // Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
 // Each scheme that `each` has an array for gets its errors there.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
@@ -161,6 +210,11 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
     tallies[s].fallbacks = scheme.fallback_count();
     tallies[s].flagged = scheme.flagged_count();
     tallies[s].bytes = static_cast<double>(scheme.bytes());
+  }
+  if (options.certify || options.tolerance) {
+    const std::vector<ControlErrors> errors = all.control_errors(segment, range);
+    for (std::size_t s = 0; s < names.size(); ++s)
+      tallies[s].certified = certified_error(*schemes[s], {&segment, range, control_normals, all.are_faces()}, errors);
   }
 
   std::vector<Vec3d> exact(range.count);
@@ -196,6 +250,15 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
+std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
+  std::optional<std::size_t> cheapest;
+  for (std::size_t s = 0; s < schemes.size(); ++s) {
+    if (schemes[s].certified->upper * kDegreesPerRadian > degrees) continue;
+    if (!cheapest || evaluation_cost(schemes[s]) < evaluation_cost(schemes[*cheapest])) cheapest = s;
+  }
+  return cheapest;
+}
+
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -216,6 +279,11 @@ std::vector<std::string> default_schemes(ElementKind kind) {
 Result<Comparison> compare(const Motion& motion, const CompareOptions& options) {
   if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
   const ElementKind kind = options.elements.kind;
+  const bool certified = options.certify || options.tolerance;
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, 0 or more"};
+  if (certified && options.access == Access::kSequential)
+    return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
 
   // Linear is the measure of the others, so it takes part even where it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
@@ -302,13 +370,43 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     row.prepare_ns = median(total.prepare_ns);
     row.evaluate_ns = median(total.evaluate_ns);
     row.bytes = total.bytes / elements;
+    if (certified) {
+      row.certified = total.certified;
+      row.certified->element = all->first_output(row.certified->element);
+    }
     if (s < each.size()) {
       comparison.errors.push_back(table_of(motion, *all, options, rows.size() > 1 ? row.scheme : "", each[s]));
       each[s] = {};
     }
     comparison.schemes.push_back(std::move(row));
   }
+  if (options.tolerance) {
+    comparison.tolerance = options.tolerance;
+    comparison.cheapest = cheapest_within(comparison.schemes, *options.tolerance);
+  }
   return comparison;
+}
+
+double evaluation_cost(const SchemeComparison& scheme) noexcept {
+  const OperationCounts& o = scheme.operations;
+  return scheme.bytes + o.add + o.multiply + 4 * (o.divide + o.sqrt) + 20 * o.trigonometric;
+}
+
+Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options) {
+  const bool are_faces = options.elements.kind == ElementKind::kFaces;
+  if (options.schemes.empty()) {
+    for (const SchemeDescription& description : scheme_descriptions()) {
+      const auto scheme = make_scheme(description.name);
+      if (scheme && (are_faces || !scheme.value()->needs_faces())) options.schemes.emplace_back(description.name);
+    }
+  }
+  options.tolerance = tolerance;
+  options.samples = 2;
+  Result<Comparison> comparison = compare(motion, options);
+  if (!comparison) return comparison.error();
+  Choice choice{std::nullopt, std::move(comparison).value()};
+  if (choice.comparison.cheapest) choice.scheme = choice.comparison.schemes[*choice.comparison.cheapest].scheme;
+  return choice;
 }
 
 }  // namespace chronormal

@@ -141,6 +141,12 @@ std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const Bak
   json["bytes"] = bake.bytes;
   json["bound_degrees"] = bake.largest_error;
   json["without_normals"] = bake.without_normals;
+  if (bake.keys)
+    json["keys"] = {{"count", bake.keys->count},
+                    {"in_between", bake.keys->in_between},
+                    {"keyframes_left_out", bake.keys->left_out},
+                    {"even", bake.keys->even},
+                    {"beyond", bake.keys->beyond}};
   json["warnings"] = bake.warnings;
   add_audit(report, json);
   return json_text(json);

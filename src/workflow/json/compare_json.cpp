@@ -27,6 +27,13 @@ Json scheme_json(const SchemeComparison& row, bool with_times) {
                {"missing", q.missing},
                {"fallbacks", row.fallbacks},
                {"flagged", row.flagged}};
+  if (row.certified) {
+    const CertifiedError& c = *row.certified;
+    json["certified"] = {{"lower_degrees", degrees(c.lower)},
+                         {"upper_degrees", degrees(c.upper)},
+                         {"upper_at", {{"segment", c.segment}, {"element", c.element}, {"from", c.from}, {"to", c.to}}},
+                         {"unbounded", c.unbounded}};
+  }
   if (with_times) {
     json["prepare_ns"] = row.prepare_ns;
     json["evaluate_ns"] = row.evaluate_ns;
@@ -45,6 +52,13 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   Json schemes = Json::array();
   for (const SchemeComparison& row : input.comparison.schemes) schemes.push_back(scheme_json(row, with_times));
   return schemes;
+}
+
+// The key is there where there was a tolerance, and null where no scheme is within it.
+void put_cheapest(Json& json, const Comparison& c) {
+  if (!c.tolerance) return;
+  json["tolerance_degrees"] = *c.tolerance;
+  json["cheapest"] = c.cheapest ? Json(c.schemes[*c.cheapest].scheme) : Json();
 }
 
 Json error_json(const BlendSubject& subject, const BlendError& error) {
@@ -75,10 +89,14 @@ std::string compare_json(const std::vector<NamedComparison>& inputs, bool severa
   json["samples"] = inputs.front().comparison.samples;
   if (several) {
     json["inputs"] = Json::array();
-    for (const NamedComparison& input : inputs)
-      json["inputs"].push_back({{"input", input_json(input)}, {"schemes", schemes_json(input, with_times)}});
+    for (const NamedComparison& input : inputs) {
+      Json one = {{"input", input_json(input)}, {"schemes", schemes_json(input, with_times)}};
+      put_cheapest(one, input.comparison);
+      json["inputs"].push_back(std::move(one));
+    }
   } else {
     json["schemes"] = schemes_json(inputs.front(), with_times);
+    put_cheapest(json, inputs.front().comparison);
   }
   return json_text(json);
 }

@@ -311,6 +311,71 @@ TEST(Compare, schemes_that_need_faces_are_refused_for_others) {
             ErrorCode::kUsage);
 }
 
+TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
+  const std::vector<std::string> schemes = {
+      "recompute",        "linear",        "quadratic",    "cubic",  "polynomial",
+      "rational",         "linear:scaled", "slerp",        "circle", "quaternion:optimal",
+      "quaternion:polar", "circle:timed",  "decasteljau:3"};
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices, ElementKind::kCorners}) {
+    CompareOptions options{schemes, 41, Access::kRandom, {}, {kind, true, 40}};
+    if (kind != ElementKind::kFaces)
+      std::erase_if(options.schemes, [](const auto& name) { return make_scheme(name).value()->needs_faces(); });
+    options.certify = true;
+    for (const Motion& motion : {fixtures::smooth_morph(12), fixtures::shaken(fixtures::icosphere(3), 0.1, 3)}) {
+      const Comparison compared = compare(motion, options).value();
+      for (const SchemeComparison& row : compared.schemes) {
+        ASSERT_TRUE(row.certified);
+        EXPECT_LE(row.quality.max, row.certified->upper) << row.scheme;
+        EXPECT_LE(row.certified->lower, row.certified->upper) << row.scheme;
+        EXPECT_LE(row.certified->upper - row.certified->lower, 2e-3 * row.certified->upper + 1e-5) << row.scheme;
+        EXPECT_EQ(row.certified->unbounded, 0U) << row.scheme;
+      }
+    }
+  }
+}
+
+TEST(CompareCertified, bounds_are_the_same_on_any_number_of_threads) {
+  CompareOptions options{{"linear", "slerp"}, 2};
+  options.certify = true;
+  const Motion motion = fixtures::large_soup(5000);
+  const auto certified = [&](std::size_t threads) {
+    const ThreadLimit limit(threads);
+    std::vector<double> values;
+    for (const SchemeComparison& row : compare(motion, options).value().schemes)
+      values.insert(values.end(),
+                    {row.certified->lower, row.certified->upper, static_cast<double>(row.certified->element)});
+    return values;
+  };
+  EXPECT_EQ(certified(1), certified(3));
+}
+
+TEST(CompareCertified, the_choice_is_the_cheapest_that_is_within_the_tolerance) {
+  const Motion motion = fixtures::smooth_morph(8);
+  for (const double tolerance : {60.0, 5.0, 1.0, 0.01}) {
+    const Choice choice = choose(motion, tolerance).value();
+    ASSERT_TRUE(choice.scheme) << tolerance;
+    double cost = 0;
+    for (const SchemeComparison& row : choice.comparison.schemes)
+      if (row.scheme == *choice.scheme) cost = evaluation_cost(row);
+    for (const SchemeComparison& row : choice.comparison.schemes) {
+      const bool is_within = row.certified->upper * kDegreesPerRadian <= tolerance;
+      EXPECT_EQ(row.scheme == *choice.scheme && !is_within, false) << tolerance;
+      if (is_within) EXPECT_LE(cost, evaluation_cost(row)) << row.scheme << ", " << tolerance;
+    }
+  }
+  EXPECT_FALSE(choose(motion, 0).value().scheme);
+  EXPECT_EQ(choose(motion, -1).error().code, ErrorCode::kUsage);
+  CompareOptions vertices;
+  vertices.elements.kind = ElementKind::kVertices;
+  EXPECT_TRUE(choose(motion, 0.01, vertices).value().scheme);
+}
+
+TEST(CompareCertified, is_refused_for_what_is_played) {
+  CompareOptions options{{"linear"}, 5, Access::kSequential};
+  options.certify = true;
+  EXPECT_EQ(compare(fixtures::smooth_morph(4), options).error().code, ErrorCode::kUsage);
+}
+
 TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const auto motion = make_builtin_morph(morph.name);

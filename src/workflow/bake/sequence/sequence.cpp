@@ -5,6 +5,7 @@
 //     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
 //     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
+//     fewest_keys         at which instants there have to be keys                             fewest_keys
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "workflow/bake/sequence/fewest_keys.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
 #include "workflow/bake/sequence/sequence_deltas.h"
 #include "workflow/bake/sequence/sequence_file.h"
@@ -193,6 +195,38 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
   return kDegreesPerRadian * largest;
 }
 
+// Chooses keys, and adds a target for each but the first. Returns the times of all of them.
+Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormals& normals,
+                                      const std::vector<SequenceElement>& elements, const std::vector<float>& keyframes,
+                                      double tolerance, const Step& step, SequenceFile& file, SequenceBake& report) {
+  const std::size_t segments = motion.segments.size();
+  const SequenceKeys keys =
+      fewest_keys(motion, normals, tolerance / kDegreesPerRadian, [&](std::size_t s) { step(s, 2 * segments); });
+  report.largest_error = kDegreesPerRadian * keys.largest_error;
+  report.keys = {keys.at.size(), 0, 0, keys.even, keys.beyond};
+  std::vector<float> times;
+  for (std::size_t k = 0; k < keys.at.size(); ++k) {
+    const std::size_t at = keys.at[k], s = std::min(at / kKeySteps, segments - 1);
+    const double t = static_cast<double>(at - s * kKeySteps) / kKeySteps;
+    times.push_back(static_cast<float>((1 - t) * double{keyframes[s]} + t * double{keyframes[s + 1]}));
+    if (k > 0 && !(times[k] > times[k - 1]))
+      return invalid_input("keyframe " + std::to_string(s),
+                           "float32 has no time for a key between it and the next one");
+    if (at % kKeySteps != 0) ++report.keys->in_between;
+    if (k == 0) continue;
+    const KeyPose pose = key_pose(normals, at);
+    file.add_key(k, pose.deltas, unit_key_deltas(elements, pose.directions));
+    step(segments + s, 2 * segments);
+    if (Status status = file.check_size(); !status) return status.error();
+  }
+  report.keys->left_out = segments + 1 + report.keys->in_between - report.keys->count;
+  if (keys.beyond > 0)
+    report.warnings.push_back(std::to_string(keys.beyond) +
+                              " pairs of a normal and a segment are beyond the tolerance whatever the keys: the normal "
+                              "vanishes on the way, or turns too fast");
+  return times;
+}
+
 std::string titles_of_others(std::span<const Host> hosts) {
   std::string titles;
   for (const Host& host : hosts)
@@ -221,6 +255,13 @@ void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, const Seq
 Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
   const BakeEncoding encoding = options.encoding.value_or(BakeEncoding::kExact);
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
+  const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
+  if (encoding == BakeEncoding::kKeys) {
+    if (options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
+      return Error{ErrorCode::kUsage, "", "keys are certified for normals weighted by area, and for no others"};
+    if (!(tolerance >= kLeastKeyTolerance))
+      return Error{ErrorCode::kUsage, "", "the tolerance of keys must be 0.001 degrees or more"};
+  }
   const Result<NormalGroups> groups = groups_of(motion, options);
   if (!groups) return groups.error();
   const Result<SequenceNormals> made =
@@ -228,11 +269,12 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (!made) return made.error();
   const SequenceNormals& normals = made.value();
   SequenceBake report;
-  const Result<std::vector<float>> times = file_times(motion, report.warnings);
+  Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 
   HarmlessElements made_elements;
-  if (encoding == BakeEncoding::kHarmless)
+  const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
+  if (are_units)
     made_elements = harmless_elements(normals);
   else
     made_elements.elements = sequence_elements(normals);
@@ -241,13 +283,20 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   report.largest_error = largest_bound(normals);
   const bool any_freed =
       std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
-  SequenceTargets targets{encoding, encoding == BakeEncoding::kExact && any_freed, normals.keys(), {}};
+  SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding,
+                          encoding == BakeEncoding::kExact && any_freed,
+                          normals.keys(),
+                          {}};
   if (const std::size_t bent = count_not_convex(motion.topology, motion.keyframes[0].positions); bent > 0)
     report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
 
   SequenceFile file(motion, groups.value(), elements, options);
   if (encoding == BakeEncoding::kExact) {
     if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
+  } else if (encoding == BakeEncoding::kKeys) {
+    times = write_keys(motion, normals, elements, times.value(), tolerance, step, file, report);
+    if (!times) return times.error();
+    targets.keys = times.value().size();
   } else {
     const Result<double> error = encoding == BakeEncoding::kEndpoint
                                      ? write_endpoint(normals, elements, step, file)
@@ -255,7 +304,7 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(encoding, options.hosts, targets, made_elements.without_room, report.warnings);
+  warn_of_hosts(targets.encoding, options.hosts, targets, made_elements.without_room, report.warnings);
   Result<std::string> bytes = file.finish(targets, times.value());
   if (!bytes) return bytes.error();
   glb = std::move(bytes).value();

@@ -1,0 +1,34 @@
+/// What a scheme keeps of a block, as it evaluates it: for those who must know a scheme as a curve and not by samples.
+#ifndef CHRONORMAL_SCHEMES_FITTED_CURVES_H_
+#define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
+
+#include <cstddef>
+
+#include "chronormal/core/vec3.h"
+#include "schemes/kernels/curve_kernels.h"
+
+namespace chronormal::inline internal {
+
+/// The coefficients of one element, which lies in a block.
+struct ElementCoefficients {
+  const float* first;
+
+  float operator[](std::size_t plane) const { return first[plane * kBlock]; }
+  /// The vector in the planes 3k, 3k + 1, 3k + 2.
+  [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
+};
+
+/// The coefficients of element i.
+[[nodiscard]] inline ElementCoefficients coefficients_of(const CoefficientBlocks& blocks, std::size_t i) noexcept {
+  return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
+}
+
+/// A formula, and the coefficients of a block. They are valid until the scheme is prepared anew.
+struct FittedCurves {
+  Formula formula = Formula::kSum;
+  CoefficientBlocks coefficients;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_SCHEMES_FITTED_CURVES_H_

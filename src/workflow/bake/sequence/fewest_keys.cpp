@@ -1,0 +1,237 @@
+#include "workflow/bake/sequence/fewest_keys.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "analysis/line_bound.h"
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 128;
+
+// An instant: the segment it lies in, or at the end of which, and local t.
+struct Instant {
+  std::size_t segment = 0;
+  double t = 0;
+};
+
+std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std::size_t segment) {
+  const SegmentForm form{normals.at_key(segment), normals.at_key(segment + 1), normals.bends(segment)};
+  std::vector<ControlNormals> result(normals.elements());
+  parallel_each(result.size(), kBlock, [&](std::size_t e) { result[e] = form.control_normals(e); });
+  return result;
+}
+
+// An instant of the sequence, whose keyframe k is k: the last one lies at the end of a segment, all others at a start or
+// within.
+Instant instant_of(double time, std::size_t segments) {
+  const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
+  return {segment, time - static_cast<double>(segment)};
+}
+
+// The directions that a key has, one for both sides; of the segment before where an element has none in its own.
+template <class OfSegment>
+std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
+  const std::vector<ControlNormals>& normals = of_segment(at.segment);
+  std::vector<Vec3d> result(normals.size());
+  parallel_each(result.size(), kBlock, [&](std::size_t e) { result[e] = unit_normal_at(normals[e], at.t).vector; });
+  if (at.t > 0 || at.segment == 0 || std::find(result.begin(), result.end(), Vec3d{}) == result.end()) return result;
+  const std::vector<ControlNormals>& before = of_segment(at.segment - 1);
+  for (std::size_t e = 0; e < result.size(); ++e)
+    if (result[e] == Vec3d{}) result[e] = unit_normal_at(before[e], 1).vector;
+  return result;
+}
+
+// Judges lines between two instants. Times are those of the sequence: keyframe k is k.
+class LineJudge {
+ public:
+  LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
+      : motion_(motion), normals_(normals), tolerance_(tolerance), left_out_(motion.segments.size()) {
+    Vec3d low = to_double(position(0, 0)), high = low;
+    for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+      for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) {
+        const Vec3d p = to_double(position(k, v));
+        low = {std::fmin(low.x, p.x), std::fmin(low.y, p.y), std::fmin(low.z, p.z)};
+        high = {std::fmax(high.x, p.x), std::fmax(high.y, p.y), std::fmax(high.z, p.z)};
+      }
+    }
+    most_off_ = kKeyPositionShare * length(high - low);
+  }
+
+  // Whether a host may draw one line from a to b.
+  [[nodiscard]] bool holds(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
+  // The bound of the largest error, radians; above the tolerance it is not followed further.
+  [[nodiscard]] double error(double a, double b) {
+    const std::vector<Vec3d> from = directions(a), to = directions(b);
+    double largest = 0;
+    for (std::size_t s = at(a).segment; static_cast<double>(s) < b; ++s) {
+      const auto part = part_of(s, a, b);
+      const std::vector<ControlNormals>& normals = of_segment(s);
+      const std::vector<char>& left_out = left_out_[s];
+      std::atomic<bool> is_over = false;
+      const double most = parallel_fold<double>(
+          normals.size(), kBlock,
+          [&](std::size_t e, double& worst) {
+            if (is_over.load(std::memory_order_relaxed) || (!left_out.empty() && left_out[e] != 0)) return;
+            const double off = error_of(normals[e], part, from[e], to[e]);
+            worst = std::fmax(worst, off);
+            if (off > tolerance_) is_over.store(true, std::memory_order_relaxed);
+          },
+          [](double& worst, const double& other) { worst = std::fmax(worst, other); });
+      largest = std::fmax(largest, most);
+      if (largest > tolerance_) return largest;
+    }
+    return largest;
+  }
+  // Leaves out those of one segment for which no line from a to b is within the tolerance.
+  void leave_out(double a, double b) {
+    const Instant start = at(a);
+    const std::vector<Vec3d> from = directions(a), to = directions(b);
+    const std::vector<ControlNormals>& normals = of_segment(start.segment);
+    std::vector<char>& left_out = left_out_[start.segment];
+    left_out.resize(normals.size());
+    const auto part = part_of(start.segment, a, b);
+    parallel_each(normals.size(), kBlock, [&](std::size_t e) {
+      if (!(error_of(normals[e], part, from[e], to[e]) <= tolerance_)) left_out[e] = 1;
+    });
+  }
+  [[nodiscard]] std::size_t left_out_count() const {
+    std::size_t count = 0;
+    for (const auto& flags : left_out_) count += static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+    return count;
+  }
+  // Frees what is known of segments before one.
+  void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
+
+ private:
+  // What of a line from a to b lies in a segment: local t, and shares of the line.
+  struct Part {
+    double from_t, to_t, from_share, to_share;
+  };
+  [[nodiscard]] static Part part_of(std::size_t s, double a, double b) {
+    const double start = static_cast<double>(s), low = std::fmax(a, start), high = std::fmin(b, start + 1);
+    return {low - start, high - start, (low - a) / (b - a), (high - a) / (b - a)};
+  }
+  [[nodiscard]] double error_of(const ControlNormals& n, const Part& part, const Vec3d& from, const Vec3d& to) const {
+    return line_error(n, part.from_t, part.to_t, lerp(from, to, part.from_share), lerp(from, to, part.to_share),
+                      tolerance_);
+  }
+  [[nodiscard]] Instant at(double time) const { return instant_of(time, motion_.segments.size()); }
+  [[nodiscard]] const std::vector<ControlNormals>& of_segment(std::size_t s) {
+    const auto found = segments_.find(s);
+    return found != segments_.end() ? found->second : segments_.emplace(s, control_normals(normals_, s)).first->second;
+  }
+  [[nodiscard]] std::vector<Vec3d> directions(double time) {
+    return key_directions(at(time), [this](std::size_t s) -> decltype(auto) { return of_segment(s); });
+  }
+
+  [[nodiscard]] Vec3f position(std::size_t keyframe, std::size_t v) const {
+    return VectorView<const float>::packed(motion_.keyframes[keyframe].positions.data(),
+                                           motion_.topology.vertex_count())[v];
+  }
+  [[nodiscard]] Vec3d position(const Instant& at, std::size_t v) const {
+    return lerp(to_double(position(at.segment, v)), to_double(position(at.segment + 1, v)), at.t);
+  }
+  // Whether all keyframes between lie on the line.
+  [[nodiscard]] bool is_straight(double a, double b) const {
+    const Instant start = at(a), end = at(b);
+    for (std::size_t k = start.segment + 1; static_cast<double>(k) < b; ++k) {
+      const double share = (static_cast<double>(k) - a) / (b - a);
+      for (std::size_t v = 0; v < motion_.topology.vertex_count(); ++v) {
+        const Vec3d off = lerp(position(start, v), position(end, v), share) - to_double(position(k, v));
+        if (length(off) > most_off_) return false;
+      }
+    }
+    return true;
+  }
+
+  const Motion& motion_;
+  const SequenceNormals& normals_;
+  double tolerance_;
+  double most_off_ = 0;
+  std::vector<std::vector<char>> left_out_;
+  std::map<std::size_t, std::vector<ControlNormals>> segments_;
+};
+
+double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
+
+// The last step in (from, to] that a line from `from` may reach, where it may reach `reached`, or `from` itself.
+std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
+  std::size_t beyond = to + 1;
+  while (beyond - reached > 1) {
+    const std::size_t middle = reached + (beyond - reached) / 2;
+    (judge.holds(time_of(from), time_of(middle)) ? reached : beyond) = middle;
+  }
+  return reached;
+}
+
+std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
+  const auto keyframe_after = [last](std::size_t step) { return std::min(last, (step / kKeySteps + 1) * kKeySteps); };
+  for (;;) {
+    std::size_t reached = from, next = keyframe_after(from);
+    while (reached < last && judge.holds(time_of(from), time_of(next))) {
+      reached = next;
+      next = keyframe_after(next);
+    }
+    if (reached < last) reached = farthest(judge, from, reached, next - 1);
+    if (reached > from) return reached;
+    judge.leave_out(time_of(from), time_of(from + 1));
+  }
+}
+
+// Into how many pieces each segment has to be cut where all are cut alike: as many as the one that needs most.
+std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
+  std::size_t pieces = 1;
+  const auto suffices = [&](double start) {
+    const double count = static_cast<double>(pieces);
+    for (std::size_t j = 0; j < pieces; ++j) {
+      const double i = static_cast<double>(j);
+      if (judge.error(start + i / count, start + (i + 1) / count) > tolerance) return false;
+    }
+    return true;
+  };
+  for (std::size_t s = 0; s < segments; ++s) {
+    while (pieces < kKeySteps && !suffices(static_cast<double>(s))) ++pieces;
+    judge.forget_before(s);
+  }
+  return pieces;
+}
+
+}  // namespace
+
+SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
+                         const std::function<void(std::size_t segment)>& progress) {
+  LineJudge judge(motion, normals, tolerance);
+  const std::size_t segments = motion.segments.size(), last = segments * kKeySteps;
+  SequenceKeys keys{{0}, 0, 0, 0};
+  while (keys.at.back() < last) {
+    const std::size_t from = keys.at.back(), next = next_key(judge, from, last);
+    keys.largest_error = std::fmax(keys.largest_error, judge.error(time_of(from), time_of(next)));
+    keys.at.push_back(next);
+    judge.forget_before(next / kKeySteps);
+    progress(next / kKeySteps);
+  }
+  keys.beyond = judge.left_out_count();
+  keys.even = even_pieces(judge, segments, tolerance) * segments + 1;
+  return keys;
+}
+
+KeyPose key_pose(const SequenceNormals& normals, std::size_t step) {
+  const Instant at = instant_of(time_of(step), normals.keys() - 1);
+  std::map<std::size_t, std::vector<ControlNormals>> segments;
+  const auto of_segment = [&](std::size_t s) -> const std::vector<ControlNormals>& {
+    return segments.emplace(s, control_normals(normals, s)).first->second;
+  };
+  KeyPose pose{normals.deltas(at.segment), key_directions(at, of_segment)};
+  const std::vector<float> end = normals.deltas(at.segment + 1);
+  for (std::size_t i = 0; i < end.size(); ++i)
+    pose.deltas[i] = static_cast<float>((1 - at.t) * double{pose.deltas[i]} + at.t * double{end[i]});
+  return pose;
+}
+
+}  // namespace chronormal::inline internal

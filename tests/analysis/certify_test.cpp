@@ -1,0 +1,334 @@
+// Certificates of every scheme against whole numbers of any size: at 64 exact times each, nothing is above the upper
+// bound, and at the time that is named the error is not below the lower one. 1,000 elements from fixed seeds, and as many
+// as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
+
+#include "chronormal/analysis/certify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/normals/normal_groups.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
+
+namespace chronormal::certify_test {
+namespace {
+
+using test::IntegerNormals;
+using test::IntegerTime;
+using test::IntegerVector;
+
+constexpr std::uint64_t kSeed = 8200;
+constexpr std::size_t kTimes = 64;
+constexpr double kOracle = 1e-12;  // radians
+
+const std::vector<std::string>& all_schemes() {
+  static const std::vector<std::string> names = {
+      "recompute",          "polynomial",      "rational",         "linear",
+      "quadratic",          "cubic",           "lagrange:5",       "lagrange:12",
+      "linear:scaled",      "slerp",           "decasteljau:4",    "decasteljau:9",
+      "quaternion:matrix",  "quaternion:edge", "quaternion:polar", "quaternion:random:3",
+      "quaternion:optimal", "circle",          "circle:timed"};
+  return names;
+}
+
+std::size_t wanted_elements() {
+  const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
+  const std::size_t cases = full == nullptr ? 1000 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
+  return std::clamp<std::size_t>(cases, 1000, 200000);
+}
+
+// A scheme on the faces of a segment.
+struct Prepared {
+  std::unique_ptr<Scheme> scheme;
+  std::vector<ControlNormals> normals;
+  std::vector<ErrorBounds> bounds;
+
+  Prepared(const std::string& name, const Segment& segment, IndexRange faces, const CertifyOptions& options = {})
+      : scheme(make_scheme(name).value()), normals(faces.count), bounds(faces.count) {
+    face_control_normals(segment, faces, normals);
+    const ElementBlock block{&segment, faces, normals};
+    scheme->prepare(block);
+    certify(*scheme, block, bounds, options);
+  }
+  [[nodiscard]] std::vector<Vec3f> shown(double t) const {
+    std::vector<float> values(3 * normals.size());
+    const auto view = VectorView<float>::packed(values.data(), normals.size());
+    scheme->evaluate(t, view);
+    std::vector<Vec3f> result(normals.size());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = view[i];
+    return result;
+  }
+};
+
+double error_of(const Vec3f& shown, const IntegerVector& exact) {
+  return test::angle_between(shown, test::direction_of(exact));
+}
+
+// What was found of one scheme.
+struct Tally {
+  std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
+  double largest_share = 0;  // of an upper bound that a sample came to
+  double gap = 0;            // summed, of those that are known
+  std::string first;
+};
+
+void judge(const Segment& segment, const std::vector<double>& times, std::vector<Tally>& tallies) {
+  const IndexRange faces{0, segment.topology->face_count()};
+  std::vector<Prepared> prepared;
+  for (const std::string& name : all_schemes()) prepared.emplace_back(name, segment, faces);
+  const IntegerNormals oracle(segment);
+  for (const double t : times) {
+    const std::vector<IntegerVector> exact = oracle.at(IntegerTime::of(t < 0x1p-200 ? 0 : t));
+    for (std::size_t s = 0; s < prepared.size(); ++s) {
+      const std::vector<Vec3f> shown = prepared[s].shown(t);
+      for (std::size_t f = 0; f < faces.count; ++f) {
+        if (test::is_zero(exact[f])) continue;
+        const double error = error_of(shown[f], exact[f]);
+        const double upper = prepared[s].bounds[f].upper;
+        if (upper > 0) tallies[s].largest_share = std::max(tallies[s].largest_share, error / upper);
+        if (error <= upper + kOracle) continue;
+        if (tallies[s].over++ == 0)
+          tallies[s].first = std::to_string(error) + " rad at t = " + std::to_string(t) + ", face " +
+                             std::to_string(f) + ", above " + std::to_string(upper);
+      }
+    }
+  }
+  for (std::size_t s = 0; s < prepared.size(); ++s) {
+    Tally& tally = tallies[s];
+    for (std::size_t f = 0; f < faces.count; ++f) {
+      const ErrorBounds& bounds = prepared[s].bounds[f];
+      ++tally.elements;
+      if (!(0 <= bounds.lower && bounds.lower <= bounds.upper && bounds.from <= bounds.to)) ++tally.crossed;
+      if (bounds.upper >= std::numbers::pi)
+        ++tally.unknown;
+      else
+        tally.gap += bounds.upper - bounds.lower;
+      if (bounds.lower == 0 || f % 16 != 0) continue;
+      const Prepared alone(all_schemes()[s], segment, {f, 1});
+      const IntegerVector exact = oracle.at(IntegerTime::of(bounds.at))[f];
+      if (!(error_of(alone.shown(bounds.at)[0], exact) >= bounds.lower - kOracle)) ++tally.under;
+    }
+  }
+}
+
+std::vector<double> some_times(fixtures::Random& random) {
+  std::vector<double> times = {0, 1, 0.5, 0x1p-30, 1 - 0x1p-30, 1e-3, 1 - 1e-3, 0x1p-60};
+  while (times.size() < kTimes / 2) times.push_back(static_cast<double>(times.size()) / (kTimes / 2));
+  while (times.size() < kTimes) times.push_back(random.uniform(0, 1));
+  return times;
+}
+
+void expect_none_wrong(const std::vector<Tally>& tallies, const std::string& family) {
+  for (std::size_t s = 0; s < tallies.size(); ++s) {
+    const Tally& tally = tallies[s];
+    EXPECT_EQ(tally.over, 0u) << family << ", " << all_schemes()[s] << ": " << tally.first;
+    EXPECT_EQ(tally.under, 0u) << family << ", " << all_schemes()[s];
+    EXPECT_EQ(tally.crossed, 0u) << family << ", " << all_schemes()[s];
+  }
+}
+
+TEST(ExactCertificates, are_never_violated_by_hard_motions) {
+  const std::size_t wanted = wanted_elements() / 2;
+  const auto& families = test::hard_motions();
+  for (std::size_t k = 0; k < families.size(); ++k) {
+    fixtures::Random random(kSeed + k);
+    std::vector<Tally> tallies(all_schemes().size());
+    while (tallies[0].elements < wanted / families.size() + 1) {
+      const Motion motion = families[k].make(random);
+      judge(motion.segment(0), some_times(random), tallies);
+    }
+    expect_none_wrong(tallies, families[k].name);
+  }
+}
+
+TEST(ExactCertificates, are_never_violated_by_soups) {
+  const std::size_t each = std::max<std::size_t>(wanted_elements() / 10, 1);
+  fixtures::Random random(kSeed);
+  std::vector<Tally> tallies(all_schemes().size());
+  for (const Motion& motion :
+       {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
+        fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
+    for (std::size_t first = 0; first < each; first += 400) {
+      // In parts, so that the times differ.
+      Motion part = motion;
+      part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
+      for (Motion::Keyframe& keyframe : part.keyframes) {
+        keyframe.positions.erase(keyframe.positions.begin(),
+                                 keyframe.positions.begin() + static_cast<std::ptrdiff_t>(9 * first));
+        keyframe.positions.resize(9 * part.topology.face_count());
+      }
+      judge(part.segment(0), some_times(random), tallies);
+    }
+  }
+  expect_none_wrong(tallies, "soups");
+  for (std::size_t s = 0; s < tallies.size(); ++s)
+    std::cout << "  " << all_schemes()[s] << ": " << tallies[s].elements << " elements, " << tallies[s].unknown
+              << " unknown, largest share of a bound " << tallies[s].largest_share << ", mean gap "
+              << tallies[s].gap / static_cast<double>(tallies[s].elements - tallies[s].unknown) << " rad\n";
+}
+
+// Where hardly anything moves, what is shown is off by rounding alone, and that adds up from slerp to slerp.
+TEST(ExactCertificates, include_the_rounding_of_many_slerps) {
+  const Motion motion = fixtures::soup({.face_count = 150, .seed = 9, .motion = 1e-6});
+  const Segment segment = motion.segment(0);
+  const Prepared prepared("decasteljau:9", segment, {0, 150});
+  const IntegerNormals oracle(segment);
+  fixtures::Random random(kSeed);
+  double largest = 0;
+  for (const double t : some_times(random)) {
+    const std::vector<Vec3f> shown = prepared.shown(t);
+    const std::vector<IntegerVector> exact = oracle.at(IntegerTime::of(t));
+    for (std::size_t f = 0; f < shown.size(); ++f) {
+      const double error = error_of(shown[f], exact[f]);
+      largest = std::max(largest, error);
+      EXPECT_LE(error, prepared.bounds[f].upper) << f << ", t = " << t;
+    }
+  }
+  EXPECT_GT(largest, 2e-7);
+}
+
+ErrorBounds bounds_of(const std::string& scheme, const Motion& motion, std::size_t face = 0) {
+  return certify(scheme, motion.segment(0)).value()[face];
+}
+
+Motion moving(const std::array<fixtures::Point, 3>& from, const std::array<fixtures::Point, 3>& to) {
+  return test::soup_of({{from, to}});
+}
+
+constexpr std::array<fixtures::Point, 3> kFlat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+constexpr std::array<fixtures::Point, 3> kUpright{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+
+TEST(Certificates, meet_an_error_that_is_known_by_hand) {
+  // n(t) = (0, -3t, 1-t), and linear shows (0, -t, 1-t): tan of the difference is 2 t (1-t) / ((1-t)^2 + 3 t^2), which is
+  // largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
+  std::array<fixtures::Point, 3> long_upright = kUpright;
+  long_upright[2][2] = 3;
+  const ErrorBounds linear = bounds_of("linear", moving(kFlat, long_upright));
+  const double right = std::numbers::pi / 6;
+  EXPECT_LE(linear.lower, right + 1e-15);
+  EXPECT_GE(linear.upper, right - 1e-15);
+  EXPECT_LT(linear.upper - linear.lower, 1e-3 * right);
+  EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
+  EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
+  EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
+  // With the best length of one end nothing is left but rounding.
+  EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
+}
+
+TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
+  std::array<fixtures::Point, 3> turned = kFlat;
+  turned[2][1] = -3;  // the face turns over at t = 1/4
+  for (const std::string& scheme : all_schemes()) {
+    if (scheme != "recompute") EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
+  }
+  // Opposite ends are passed at t = 1/2 by sums of them, which is another such place.
+  for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
+    const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
+    EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
+    EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
+  }
+  // Made anew from positions the direction is known up to that instant.
+  EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
+}
+
+TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
+  // c goes around the edge from a to b: the normal turns from +z to -z by way of -y and has an area throughout, but the
+  // straight line between the ends passes zero at t = 1/2.
+  const std::vector<Vec3d> at{{0, 0, 1}, {0, -1, 0}, {0, 0, -1}};
+  const ControlNormals turning{at[0], at[1], at[2]};
+  const Motion still = moving(kFlat, kFlat);
+  const Segment segment = still.segment(0);
+  for (const char* const name : {"linear", "slerp"}) {
+    const auto scheme = make_scheme(name).value();
+    const ElementBlock block{&segment, {0, 1}, {&turning, 1}};
+    scheme->prepare(block);
+    std::vector<ErrorBounds> bounds(1);
+    certify(*scheme, block, bounds);
+    if (std::string(name) == "linear") {
+      EXPECT_EQ(bounds[0].upper, std::numbers::pi);
+      EXPECT_NEAR(bounds[0].from, 0.5, 1e-6);
+      EXPECT_NEAR(bounds[0].to, 0.5, 1e-6);
+    } else {
+      // Slerp turns about a fixed perpendicular of the start instead.
+      EXPECT_LT(bounds[0].upper, std::numbers::pi);
+    }
+  }
+}
+
+TEST(Certificates, follow_the_limit_where_a_face_has_no_area_at_an_end) {
+  std::array<fixtures::Point, 3> point{};  // the face grows out of a point, and turns no more
+  for (const char* const scheme : {"linear", "slerp", "polynomial", "rational", "circle:timed"}) {
+    EXPECT_LT(bounds_of(scheme, moving(point, kFlat)).upper, 1e-5) << scheme;
+    EXPECT_LT(bounds_of(scheme, moving(kFlat, point)).upper, 1e-5) << scheme;
+    EXPECT_EQ(bounds_of(scheme, moving(point, point)).upper, 0) << scheme;
+  }
+}
+
+TEST(Certificates, are_close_on_ordinary_meshes) {
+  const Motion twist = make_builtin_morph("twist").value();
+  for (const char* const scheme : {"linear", "quadratic", "cubic", "slerp", "quaternion:matrix", "circle:timed"}) {
+    const std::vector<ErrorBounds> all = certify(scheme, twist.segment(0), {}, Threads::kAll).value();
+    for (const ErrorBounds& bounds : all)
+      ASSERT_LE(bounds.upper - bounds.lower, 1e-3 * bounds.upper + 4e-6) << scheme << ", at " << bounds.at;
+  }
+}
+
+TEST(Certificates, of_the_worst_alone_are_as_close_for_the_worst) {
+  const Motion motion = fixtures::moderate_soup(100);
+  const Segment segment = motion.segment(0);
+  CertifyOptions options;
+  options.only_worst = true;
+  for (const std::string& scheme : all_schemes()) {
+    const IndexRange faces{0, 100};
+    const Prepared every(scheme, segment, faces), worst(scheme, segment, faces, options);
+    const auto largest = [](const Prepared& p, double ErrorBounds::*member) {
+      double value = 0;
+      for (const ErrorBounds& bounds : p.bounds) value = std::max(value, bounds.*member);
+      return value;
+    };
+    EXPECT_EQ(largest(every, &ErrorBounds::lower), largest(worst, &ErrorBounds::lower)) << scheme;
+    EXPECT_LE(largest(worst, &ErrorBounds::upper), largest(every, &ErrorBounds::upper) * (1 + 1e-3) + 1e-5) << scheme;
+    EXPECT_GE(largest(worst, &ErrorBounds::upper), largest(every, &ErrorBounds::lower)) << scheme;
+  }
+}
+
+TEST(Certificates, take_errors_of_the_normals_that_are_given) {
+  const Motion motion = fixtures::moderate_soup(50);
+  const Segment segment = motion.segment(0);
+  const Prepared prepared("slerp", segment, {0, 50});
+  std::vector<ControlErrors> errors;
+  for (const ControlNormals& c : prepared.normals)
+    errors.push_back({1e-3 * max_abs(c.n0), 1e-3 * max_abs(c.m), 1e-3 * max_abs(c.n1)});
+  std::vector<ErrorBounds> wider(50);
+  certify(*prepared.scheme, {&segment, {0, 50}, prepared.normals}, wider, {}, errors);
+  for (std::size_t f = 0; f < 50; ++f) {
+    EXPECT_GE(wider[f].upper, prepared.bounds[f].lower + 5e-4) << f;
+    EXPECT_LE(wider[f].lower, prepared.bounds[f].upper) << f;
+  }
+}
+
+TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
+  const Motion motion = fixtures::smooth_morph(40);
+  const auto one = certify("circle:timed", motion.segment(0)).value();
+  const auto all = certify("circle:timed", motion.segment(0), {}, Threads::kAll).value();
+  ASSERT_EQ(one.size(), all.size());
+  for (std::size_t f = 0; f < one.size(); ++f) {
+    EXPECT_EQ(one[f].lower, all[f].lower);
+    EXPECT_EQ(one[f].upper, all[f].upper);
+  }
+  EXPECT_EQ(certify("no such scheme", motion.segment(0)).error().code, ErrorCode::kUsage);
+}
+
+}  // namespace
+}  // namespace chronormal::certify_test

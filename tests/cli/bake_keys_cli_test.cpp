@@ -1,0 +1,64 @@
+// `bake --encode keys` on the command line: its report, its exit codes, and what it refuses.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::bake_keys_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+class BakeKeysCommand : public testing::Test {
+ protected:
+  [[nodiscard]] ProcessResult run(const std::string& arguments) const {
+    return run_shell(std::string(kProgram) + " bake " + arguments, folder_.path());
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
+  const ProcessResult made = run("--sample bend --encode keys --tolerance 2 --json -o bend.glb");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Json report = Json::parse(made.out);
+  EXPECT_EQ(report["encoding"], "keys");
+  EXPECT_GT(report["keys"]["count"], 2);
+  EXPECT_EQ(report["keys"]["in_between"].get<int>() + 2, report["keys"]["count"].get<int>());
+  EXPECT_EQ(report["keys"]["keyframes_left_out"], 0);
+  EXPECT_GE(report["keys"]["even"], report["keys"]["count"]);
+  EXPECT_EQ(report["keys"]["beyond"], 0);
+  EXPECT_LE(report["bound_degrees"], 2);
+  const std::string text = run("--sample bend --encode keys --tolerance 2 --force -o bend.glb").out;
+  EXPECT_NE(text.find(" between keyframes; 0 keyframes left out; "), std::string::npos) << text;
+  EXPECT_NE(text.find("\nkeys: at most "), std::string::npos) << text;
+  // The mark is that of harmless, so that everything that reads it knows what it is.
+  const Json audited = Json::parse(
+      run_shell(std::string(kProgram) + " audit bend.glb --json --host three --tolerance 2.01", folder_.path()).out);
+  EXPECT_LE(audited["hosts"][0]["worst_degrees"], 2.01) << audited;
+}
+
+TEST_F(BakeKeysCommand, a_collapse_is_beyond_what_was_asked_for) {
+  folder_.write("0.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder_.write("1.obj", "v 0 0 0\nv 1 0 0\nv 0 -3 0\nf 1 2 3\n");
+  const ProcessResult asked = run("0.obj 1.obj --encode keys --tolerance 1 -o out.glb");
+  EXPECT_EQ(asked.exit_code, 4) << asked.err;
+  EXPECT_NE(asked.err.find("3 pairs of a normal and a segment are beyond the tolerance"), std::string::npos);
+  EXPECT_EQ(run("0.obj 1.obj --encode keys -o other.glb").exit_code, 0);
+}
+
+TEST_F(BakeKeysCommand, what_has_no_meaning_is_refused) {
+  EXPECT_EQ(run("--sample bend --encode keys --tolerance 0 -o a.glb").exit_code, 2);
+  EXPECT_EQ(run("--sample bend --encode keys --weighting angle -o a.glb").exit_code, 2);
+  ASSERT_EQ(run("--sample bend --encode keys --tolerance 20 -o bend.glb").exit_code, 0);
+  const ProcessResult document = run("bend.glb --encode keys -o b.glb");
+  EXPECT_EQ(document.exit_code, 2);
+  EXPECT_NE(document.err.find("keys are for sequences: the weights of a glTF file may go anywhere"), std::string::npos)
+      << document.err;
+}
+
+}  // namespace
+}  // namespace chronormal::bake_keys_cli_test
