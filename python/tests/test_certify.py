@@ -31,7 +31,7 @@ class CertifyTest(unittest.TestCase):
         p0, p1, faces = sheet()
         for call, words in ((lambda: cn.certify(p0, p1[1:], faces), "p1"),
                             (lambda: cn.certify(p0, p1, faces, "none"), "none"),
-                            (lambda: cn.certify(p0, np.full_like(p1, np.nan), faces), "keyframe 1"),
+                            (lambda: cn.certify(p0, np.full_like(p1, np.nan), faces), "frame 1, vertex 0"),
                             (lambda: cn.certify(p0, p1, faces, threads=-1), "threads")):
             with self.assertRaisesRegex(ValueError, words):
                 call()

@@ -8,14 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/part_normals.h"
-#include "chronormal/core/polynomial.h"
+#include "analysis/interval_normals.h"
 #include "normals/control/local_time.h"
 
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kRefinements = 16;
+constexpr std::size_t kRefinements = 10;
 constexpr double kWidest = 0.995;         // the sine of 84 degrees: beyond it the test would hardly ever reject
 constexpr double kTestSlack = 0x1p-20;    // for the test in float32: some ten roundings of 2^-24
 constexpr double kRoundUp = 1 + 0x1p-22;  // to float, and what was rounded before that
@@ -38,19 +37,36 @@ class Cluster {
   // The smallest sphere around all vertices, nearly (Badoiu, Clarkson 2003). Points move on lines, so their ends do.
   void set_sphere(ClusterBounds& bounds) const {
     if (faces_.empty()) return;
-    Vec3d center = corner(segment_.topology->face(faces_[0])[0]).from;
+    std::vector<std::uint32_t> vertices;
+    for (const std::uint32_t f : faces_) {
+      const std::span<const std::uint32_t> face = segment_.topology->face(f);
+      vertices.insert(vertices.end(), face.begin(), face.end());
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<Vec3d> points;
+    double error = 0;
+    for (const std::uint32_t vertex : vertices) {
+      const Ends p = corner(vertex);
+      points.push_back(p.from);
+      points.push_back(p.to);
+      error = std::fmax(error, p.error);
+    }
+    Vec3d center = points.front();
     for (std::size_t i = 0; i < kRefinements; ++i)
-      center = center + (1 / static_cast<double>(i + 2)) * (farthest_from(center).point - center);
+      center = center + (1 / static_cast<double>(i + 2)) * (farthest_from(center, points) - center);
     const Vec3f rounded = to_float(center);
     set(bounds.center, rounded);
-    const Farthest farthest = farthest_from(to_double(rounded));
-    bounds.radius = static_cast<float>(kRoundUp * (length(farthest.point - to_double(rounded)) + farthest.error));
+    const Vec3d off = farthest_from(to_double(rounded), points) - to_double(rounded);
+    bounds.radius = static_cast<float>(kRoundUp * (length(off) + error));
   }
 
   // Around the cones of all faces.
   [[nodiscard]] NormalCone cone() const {
-    std::vector<NormalCone> cones(normals_.size());
-    for (std::size_t i = 0; i < cones.size(); ++i) cones[i] = cone_around(normals_[i]);
+    std::vector<NormalCone> cones(faces_.size());
+    for_runs([&](IndexRange run, std::size_t at) {
+      face_normal_cones(segment_, run, t0_, t1_, std::span(cones).subspan(at, run.count));
+    });
     return enclosing_cone(cones);
   }
 
@@ -63,13 +79,13 @@ class Cluster {
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const auto& [c, unknown] = normals_[i];
       const Ends p = corner(segment_.topology->face(faces_[i])[0]);
-      const Bernstein<Vec3d, 2> n{c.n0, c.m, c.n1};
-      const Bernstein<Vec3d, 1> to_center{center - p.from, center - p.to};
-      const Bernstein<double, 1> one{1, 1};
-      const double distance = std::fmax(length(to_center[0]), length(to_center[1]));
-      const auto height = multiply(n, to_center, dot<double>);
-      const auto along = multiply(Bernstein<double, 2>{dot(n[0], axis), dot(n[1], axis), dot(n[2], axis)}, one);
-      const auto size = multiply(Bernstein<double, 2>{length(n[0]), length(n[1]), length(n[2])}, one);
+      const Vec3d from = center - p.from, to = center - p.to;
+      const double distance = std::fmax(length(from), length(to));
+      const std::array<double, 4> height = cubic(dot(c.n0, from), dot(c.m, from), dot(c.n1, from),  //
+                                                 dot(c.n0, to), dot(c.m, to), dot(c.n1, to));
+      const double a0 = dot(c.n0, axis), a1 = dot(c.m, axis), a2 = dot(c.n1, axis);
+      const double s0 = length(c.n0), s1 = length(c.m), s2 = length(c.n1);
+      const std::array<double, 4> along = cubic(a0, a1, a2, a0, a1, a2), size = cubic(s0, s1, s2, s0, s1, s2);
       for (std::size_t k = 0; k < size.size(); ++k) {
         if (size[k] == 0) continue;
         const double error = 2 * (unknown + kRounding) * size[k];
@@ -93,16 +109,29 @@ class Cluster {
   }
 
  private:
-  // Runs of faces that follow each other at once.
-  void load_normals() {
-    const Restriction restriction = Restriction::to(t0_, t1_);
-    std::vector<ControlNormals> whole(faces_.size());
+  // The Bernstein coefficients of n(t).l(t), a quadratic and a line: dot products of n0, m, n1 with both ends of l.
+  [[nodiscard]] static std::array<double, 4> cubic(double n0_from, double m_from, double n1_from, double n0_to,
+                                                   double m_to, double n1_to) {
+    return {n0_from, (n0_to + 2 * m_from) / 3, (2 * m_to + n1_from) / 3, n1_to};
+  }
+
+  // Calls body(run, at) for faces that follow each other, from faces_[at] on.
+  template <class Body>
+  void for_runs(const Body& body) const {
     for (std::size_t first = 0; first < faces_.size();) {
       std::size_t last = first + 1;
       while (last < faces_.size() && faces_[last] == faces_[last - 1] + 1) ++last;
-      face_control_normals(segment_, {faces_[first], last - first}, std::span(whole).subspan(first, last - first));
+      body(IndexRange{faces_[first], last - first}, first);
       first = last;
     }
+  }
+
+  void load_normals() {
+    const Restriction restriction = Restriction::to(t0_, t1_);
+    std::vector<ControlNormals> whole(faces_.size());
+    for_runs([&](IndexRange run, std::size_t at) {
+      face_control_normals(segment_, run, std::span(whole).subspan(at, run.count));
+    });
     normals_.reserve(whole.size());
     for (std::size_t i = 0; i < whole.size(); ++i) {
       normals_.push_back(part_of(whole[i], restriction));
@@ -115,25 +144,15 @@ class Cluster {
     return {lerp(a, b, t0_), lerp(a, b, t1_), 0x1p-50 * (max_abs(a) + max_abs(b))};
   }
 
-  struct Farthest {
-    Vec3d point;
-    double error = 0;  // of any point
-  };
-  [[nodiscard]] Farthest farthest_from(const Vec3d& center) const {
-    Farthest farthest{center};
+  [[nodiscard]] static Vec3d farthest_from(const Vec3d& center, std::span<const Vec3d> points) {
+    Vec3d farthest = center;
     double largest = -1;
-    for (const std::uint32_t f : faces_) {
-      for (const std::uint32_t vertex : segment_.topology->face(f)) {
-        const Ends p = corner(vertex);
-        farthest.error = std::fmax(farthest.error, p.error);
-        for (const Vec3d& point : {p.from, p.to}) {
-          const Vec3d off = point - center;
-          const double distance = dot(off, off);
-          if (distance > largest) {
-            largest = distance;
-            farthest.point = point;
-          }
-        }
+    for (const Vec3d& point : points) {
+      const Vec3d off = point - center;
+      const double distance = dot(off, off);
+      if (distance > largest) {
+        largest = distance;
+        farthest = point;
       }
     }
     return farthest;
@@ -142,7 +161,7 @@ class Cluster {
   const Segment& segment_;
   std::span<const std::uint32_t> faces_;
   double t0_, t1_;
-  std::vector<PartNormals> normals_;
+  std::vector<IntervalNormals> normals_;
 };
 
 // The axis and the cutoff in 8 bits each: n.v >= 0 holds for all n of the cone where v.axis_s8 / 127 is no less than the

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "analysis/kernels/cones.h"
-#include "analysis/part_normals.h"
+#include "analysis/interval_normals.h"
+#include "analysis/kernels/cones_of_three.h"
 #include "core/portable_math.h"
 #include "normals/control/local_time.h"
 
@@ -15,7 +15,7 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 256;  // control normals of a block are 18 KiB
-constexpr std::size_t kRefinements = 16;
+constexpr std::size_t kRefinements = 10;
 constexpr double kRounding = 0x1p-46;  // of the sine of a sum of angles
 
 bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
@@ -38,50 +38,50 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
     for (std::size_t bit = 0; flags[b] >> bit != 0; ++bit) {
       if ((flags[b] >> bit & 1) == 0) continue;
       const std::size_t i = b * kConesPerFlags + bit;
-      const PartNormals part = is_whole(t0, t1) ? PartNormals{normals[i]} : part_of(normals[i], restriction);
+      const IntervalNormals part = is_whole(t0, t1) ? IntervalNormals{normals[i]} : part_of(normals[i], restriction);
       result[i] = part.is_known() ? cone_around(part) : settle(i);
     }
   }
 }
 
-// A cone as its unit axis and its half-angle.
-struct Cap {
-  Vec3d axis;
-  double sine = 0, cosine = 1;
-
-  [[nodiscard]] static Cap of(const NormalCone& cone) noexcept {
-    const double sine = double{cone.sine};
-    return {unit(to_double(cone.axis)), sine, std::sqrt((1 - sine) * (1 + sine))};
-  }
-};
-
-// The direction of a cone that is farthest from an axis: its angle, and the point of the sphere.
+// The direction of a cone that is farthest from a unit axis, as the sine and the cosine of its angle.
 struct Farthest {
-  double sine = 0, cosine = 1;
-  Vec3d point;
-
-  [[nodiscard]] static Farthest of(const Cap& cap, const Vec3d& axis) noexcept {
-    const double along = dot(cap.axis, axis);
-    const Vec3d off = cap.axis - along * axis;
-    const double across = length(off);
-    const Vec3d away = across > 0 ? (1 / across) * off : any_perpendicular(axis);
-    Farthest far{across * cap.cosine + along * cap.sine, along * cap.cosine - across * cap.sine, {}};
-    far.point = far.cosine * axis + far.sine * away;
-    return far;
-  }
+  double sine = 0, cosine = 2;
+  Vec3d axis;  // of the cone
 
   // Falls as the angle grows from 0 to 270 degrees.
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }
 };
 
-Farthest farthest_of(std::span<const NormalCone> cones, const Vec3d& axis) noexcept {
-  Farthest farthest{0, 2, {}};
+// across_of(v, along) is the length of the part of v that is perpendicular to the axis.
+template <class AcrossOf>
+Farthest farthest_of(std::span<const NormalCone> cones, const Vec3d& axis, const AcrossOf& across_of) noexcept {
+  Farthest farthest;
   for (const NormalCone& cone : cones) {
     if (cone.is_empty()) continue;
-    const Farthest far = Farthest::of(Cap::of(cone), axis);
+    const double sine = double{cone.sine}, cosine = std::sqrt((1 - sine) * (1 + sine));
+    const auto [v, along, across] = across_of(to_double(cone.axis), axis);
+    const Farthest far{across * cosine + along * sine, along * cosine - across * sine, v};
     if (far.nearness() < farthest.nearness()) farthest = far;
   }
   return farthest;
+}
+
+struct Split {
+  Vec3d v;
+  double along = 0, across = 0;
+};
+
+// Of a unit vector as float32 has it; near enough to look for an axis.
+Split rough_split(const Vec3d& v, const Vec3d& axis) noexcept {
+  const double along = dot(v, axis);
+  return {v, along, std::sqrt(std::fmax(0, (1 - along) * (1 + along)))};
+}
+
+Split exact_split(const Vec3d& direction, const Vec3d& axis) noexcept {
+  const Vec3d v = unit(direction);
+  const double along = dot(v, axis);
+  return {v, along, length(v - along * axis)};
 }
 
 }  // namespace
@@ -134,17 +134,18 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
   Vec3d axis = unit(sum), best = axis;
   double best_nearness = -3;
   for (std::size_t i = 0; i < kRefinements && !is_zero(axis); ++i) {
-    const Farthest far = farthest_of(cones, axis);
+    const Farthest far = farthest_of(cones, axis, rough_split);
     if (far.nearness() > best_nearness) {
       best_nearness = far.nearness();
       best = axis;
     }
-    axis = unit(axis + (1 / static_cast<double>(i + 2)) * (far.point - axis));
+    const Vec3d away = unit(far.axis - dot(far.axis, axis) * axis), point = far.cosine * axis + far.sine * away;
+    axis = unit(axis + (1 / static_cast<double>(i + 2)) * (point - axis));
   }
 
   // The cone must hold around the axis as it is rounded.
   const Vec3f rounded = to_float(best);
-  const Farthest far = farthest_of(cones, unit(to_double(rounded)));
+  const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
   const double sine = far.sine + kRounding;
   if (is_zero(best) || far.nearness() <= 0 || !(sine <= 1)) return NormalCone::whole_sphere();
   return {rounded, static_cast<float>(std::fmin(sine * (1 + 0x1p-23), 1.0))};

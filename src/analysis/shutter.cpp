@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "analysis/part_normals.h"
+#include "analysis/interval_normals.h"
 #include "chronormal/core/polynomial.h"
 #include "normals/control/local_time.h"
 
@@ -113,7 +113,8 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
 Bernstein<double, 2> lengths_of(const ControlNormals& c) { return {length(c.n0), length(c.m), length(c.n1)}; }
 
 // From the normals of the whole segment.
-ShutterNormal means_of_part(const ControlNormals& c, const PartNormals& part, const Restriction& restriction) noexcept {
+ShutterNormal means_of_part(const ControlNormals& c, const IntervalNormals& part,
+                            const Restriction& restriction) noexcept {
   const Bernstein<double, 2> whole = lengths_of(c);
   Bernstein<double, 2> lengths{};
   for (std::size_t k = 0; k < lengths.size(); ++k) {
@@ -142,7 +143,7 @@ void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, d
     const std::span<ControlNormals> normals(memory.data(), std::min(kBlock, faces.count - first));
     face_control_normals(segment, {faces.first + first, normals.size()}, normals);
     for (std::size_t i = 0; i < normals.size(); ++i) {
-      const PartNormals part = part_of(normals[i], restriction);
+      const IntervalNormals part = part_of(normals[i], restriction);
       if (part.is_known()) {
         result[first + i] = means_of_part(normals[i], part, restriction);
       } else {

@@ -137,7 +137,8 @@ struct Instant {
     return sum > 0;
   }
   [[nodiscard]] bool is_front_facing_along(std::size_t f, const Vec3f& view) const {
-    return test::exact_dot(normals[f], {test::integer_of(view.x), test::integer_of(view.y), test::integer_of(view.z)}) < 0;
+    return test::exact_dot(normals[f], {test::integer_of(view.x), test::integer_of(view.y), test::integer_of(view.z)}) <
+           0;
   }
 };
 

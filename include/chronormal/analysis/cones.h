@@ -58,8 +58,8 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
                        std::span<NormalCone> result) noexcept;
 
 /// Returns a cone that contains all of these: that of a cluster from its faces, of a node from its children, of a face
-/// from several segments. Empty ones do not count; the cone of none is empty. It is near the smallest one (within 3 % of
-/// its half-angle, mostly), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 16 passes over the cones.
+/// from several segments. Empty ones do not count; the cone of none is empty. It is near the smallest one (a few
+/// percent wider), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
 }  // namespace chronormal

@@ -19,8 +19,8 @@
 ///            everywhere. Surfaces may go through themselves, and have several pieces. Edges are between points of the
 ///            surface (normals/normal_groups.h), so that seams of a file do not open it. A face of more than three
 ///            corners is the fan of triangles around its first one.
-/// Moments    Times within a segment are multiples of 2^-48. What happens within one such moment is reported by its sum:
-///            a point that touches an edge from outside has no crossing, and one that goes through it has one.
+/// Moments    What happens within a moment of 2^-47 of a segment is reported by its sum where it cannot be told apart: a
+///            point that touches an edge from outside has no crossing, and one that goes through it has one.
 /// Shapes     P = points, as (P, 3) float32.
 /// Threads    const functions may run at the same time, and use all cores. Results are the same on any number.
 /// Source     docs/theory.md, section 2; Edelsbrunner, Muecke, Simulation of Simplicity (1990).

@@ -15,7 +15,7 @@
 #include "tests/support/fixtures.h"
 #include "tests/support/read_input.h"
 
-namespace chronormal::query_contain_test {
+namespace chronormal::contain_test {
 namespace {
 
 template <class T>
@@ -125,4 +125,4 @@ TEST(QueryContain, a_cache_by_other_people_keeps_the_sum_over_all_of_its_segment
 }
 
 }  // namespace
-}  // namespace chronormal::query_contain_test
+}  // namespace chronormal::contain_test

@@ -1,6 +1,6 @@
 /// The kernel of normal cones: the smallest circular cone around three vectors, many elements at a time.
-#ifndef CHRONORMAL_ANALYSIS_KERNELS_CONES_H_
-#define CHRONORMAL_ANALYSIS_KERNELS_CONES_H_
+#ifndef CHRONORMAL_ANALYSIS_KERNELS_CONES_OF_THREE_H_
+#define CHRONORMAL_ANALYSIS_KERNELS_CONES_OF_THREE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -48,4 +48,4 @@ void cones_of_parts(const ControlNormals* normals, std::size_t count, const Rest
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_ANALYSIS_KERNELS_CONES_H_
+#endif  // CHRONORMAL_ANALYSIS_KERNELS_CONES_OF_THREE_H_

@@ -7,12 +7,12 @@
 //     the share of its length by which a vector may be off: the sine of the angle that it may be off by
 // With sin(a + b) <= sin a + sin b this sum is no less than the sine of the angle to any vector as it is, and where it is
 // at most 1 that angle is at most 90 degrees.
-#include "analysis/kernels/cones.h"
+#include "analysis/kernels/cones_of_three.h"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "analysis/kernels/cones.cpp"
+#define HWY_TARGET_INCLUDE "analysis/kernels/cones_of_three.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/part_normals.h"
+#include "analysis/interval_normals.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-PartNormals part_of(const ControlNormals& c, const Restriction& restriction) noexcept {
-  PartNormals part;
+IntervalNormals part_of(const ControlNormals& c, const Restriction& restriction) noexcept {
+  IntervalNormals part;
   const std::array<const Vec3d*, 3> from{&c.n0, &c.m, &c.n1};
   const std::array<Vec3d*, 3> to{&part.normals.n0, &part.normals.m, &part.normals.n1};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -29,12 +29,13 @@ PartNormals part_of(const ControlNormals& c, const Restriction& restriction) noe
   return part;
 }
 
-PartNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0, double t1) noexcept {
+IntervalNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0,
+                              double t1) noexcept {
   const ExactCurve exact = ExactCurve::of_polygon(segment, face);
   return {{exact.normal_at(t0), exact.blossom_at(t0, t1), exact.normal_at(t1)}};
 }
 
-NormalCone cone_around(PartNormals part) noexcept {
+NormalCone cone_around(IntervalNormals part) noexcept {
   ControlNormals& c = part.normals;
   const std::array<Vec3d*, 3> vectors{&c.n0, &c.m, &c.n1};
   const auto first = std::find_if_not(vectors.begin(), vectors.end(), [](const Vec3d* v) { return *v == Vec3d{}; });

@@ -1,6 +1,6 @@
 // The kernel of cones, on vectors that are known exactly: then nothing but the rounding of the cone itself is left to
 // cover, and integers see whether it is.
-#include "analysis/kernels/cones.h"
+#include "analysis/kernels/cones_of_three.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@
 #include "tests/support/cone_oracle.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal::cone_kernel_test {
+namespace chronormal::cones_of_three_test {
 namespace {
 
-TEST(ConeKernel, rounds_outwards) {
+TEST(ConesOfThree, rounds_outwards) {
   constexpr std::size_t kCount = 4096;
   fixtures::Random random(77);
   std::vector<ControlNormals> normals;
@@ -45,7 +45,7 @@ TEST(ConeKernel, rounds_outwards) {
   EXPECT_EQ(whole, 0u);
 }
 
-TEST(ConeKernel, flags_what_has_no_direction) {
+TEST(ConesOfThree, flags_what_has_no_direction) {
   const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
   const Vec3d x{1, 0, 0}, y{0, 1, 0};
   const std::vector<ControlNormals> normals{{x, y, x},
@@ -69,4 +69,4 @@ TEST(ConeKernel, flags_what_has_no_direction) {
 }
 
 }  // namespace
-}  // namespace chronormal::cone_kernel_test
+}  // namespace chronormal::cones_of_three_test
