@@ -1,5 +1,5 @@
 // Certificates of every scheme against whole numbers of any size: at 64 exact times each, nothing is above the upper
-// bound, and at the time that is named the error is not below the lower one. 1,000 elements from fixed seeds, and as many
+// bound, and at the time that is named the error is not below the lower one. 600 elements from fixed seeds, and as many
 // as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
@@ -44,8 +44,8 @@ const std::vector<std::string>& all_schemes() {
 
 std::size_t wanted_elements() {
   const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
-  const std::size_t cases = full == nullptr ? 1000 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
-  return std::clamp<std::size_t>(cases, 1000, 200000);
+  const std::size_t cases = full == nullptr ? 600 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
+  return std::clamp<std::size_t>(cases, 600, 200000);
 }
 
 // A scheme on the faces of a segment.
