@@ -72,7 +72,11 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
       run_vertices(suite, size);
       if (!shuffled && size.elements <= kSchemesUpTo) run_schemes(suite, size);
       if (!shuffled && size.elements <= kBlendUpTo) run_blend(suite, size);
-      if (!shuffled && size.elements <= kUsesUpTo) run_uses(suite, size);
+      if (!shuffled && size.elements <= kUsesUpTo) {
+        run_uses(suite, size);
+        run_cones(suite, size);
+        run_containment(suite, size);
+      }
       if (!shuffled && size.elements <= kCertifiedUpTo) run_certificates(suite, size);
     }
   }

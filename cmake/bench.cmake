@@ -12,7 +12,8 @@ target_include_directories(chronormal_bench PRIVATE bench src)
 target_compile_definitions(chronormal_bench PRIVATE CHRONORMAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                     "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL)")
 target_link_libraries(chronormal_bench PRIVATE chronormal_io chronormal_product_flags benchmark::benchmark hwy::hwy
-                                               CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json)
+                                               CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json
+                                               meshoptimizer::meshoptimizer)
 find_package(Eigen3 QUIET NO_MODULE)
 if(TARGET Eigen3::Eigen)
   target_link_libraries(chronormal_bench PRIVATE Eigen3::Eigen)

@@ -1,6 +1,6 @@
 # Other libraries that compute normals, to compare with (tools/make_weightings and ./run bench install and use them).
 find_package(OpenMesh QUIET)
-find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore)
+find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
 # CGAL would complain about build types that are not Release.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL QUIET)
@@ -14,4 +14,5 @@ file(GLOB peer_sources CONFIGURE_DEPENDS bench/peers/*.cpp)
 add_library(chronormal_peers STATIC ${peer_sources})
 target_include_directories(chronormal_peers PUBLIC ${PROJECT_SOURCE_DIR}/bench)
 target_link_libraries(chronormal_peers PUBLIC chronormal PRIVATE chronormal_flags OpenMeshCore VTK::CommonCore
-                                                                 VTK::CommonDataModel VTK::FiltersCore CGAL::CGAL)
+                                                                 VTK::CommonDataModel VTK::FiltersCore VTK::FiltersModeling
+                                                                 CGAL::CGAL)

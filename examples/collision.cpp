@@ -1,15 +1,17 @@
 // Collision response with the normal at the contact time: balls thrown at a sheet that waves.
 //
-// A ball (a point here) moves on a straight line, and so does every vertex of the sheet. The ball is in the plane of a
-// face where the volume n(t).(p(t) - a(t)) is zero: a quadratic times a line, so a cubic in t, whose coefficients
-// follow from the control normals. The first root at which the ball is inside the face is the contact. There the
-// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. A normal that is off by an
-// angle sends it off by up to twice that.
+// A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
+// where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes alone, so
+// that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the velocity
+// relative to the sheet is mirrored, and the normal decides where the ball goes. A normal that is off by an angle sends
+// it off by up to twice that.
 
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
+#include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/chronormal.h"
@@ -24,12 +26,6 @@ struct Ball {
   Vec3d position, velocity;  // at t = 0; lengths, lengths per segment
 };
 
-struct Contact {
-  double t = 2;
-  std::size_t face = 0;
-  Vec3d surface_velocity;  // of the sheet, where the ball meets it
-};
-
 /// A vertex as it moves: a line from one end of the segment to the other.
 struct Line {
   Vec3d from, to;
@@ -40,56 +36,38 @@ std::array<Line, 3> corners(const Segment& segment, std::size_t face) {
   return {line(v[0]), line(v[1]), line(v[2])};
 }
 
-/// Whether the ball may be inside a face at some t. Seen from a corner, it moves on a straight line: if it is on the
-/// same side of all three corners at both ends, along x or y or z, then it is so at every t between.
-bool may_touch(const Ball& ball, const std::array<Line, 3>& moving) {
-  for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-    int above = 0, below = 0;
-    for (const Line& corner : moving) {
-      for (const double distance :
-           {(ball.position - corner.from).*axis, (ball.position + ball.velocity - corner.to).*axis}) {
-        above += distance > 0;
-        below += distance < 0;
-      }
-    }
-    if (above == 6 || below == 6) return false;
+/// The motion of a closed mesh: the faces of the sheet, and one from every edge of its border to a vertex below.
+Motion cushion(Motion sheet) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;  // from a to b, minus from b to a
+  const std::span<const std::uint32_t> corners = sheet.topology.corners();
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::uint32_t a = corners[c], b = corners[c % 3 == 2 ? c - 2 : c + 1];
+    ++passed[{a, b}];
+    --passed[{b, a}];
   }
-  return true;
+  std::vector<std::uint32_t> closed(corners.begin(), corners.end());
+  const auto below = static_cast<std::uint32_t>(sheet.topology.vertex_count());
+  for (const auto& [edge, count] : passed) {
+    if (count == 1) closed.insert(closed.end(), {edge.second, edge.first, below});
+  }
+  for (Motion::Keyframe& keyframe : sheet.keyframes) keyframe.positions.insert(keyframe.positions.end(), {0, 0, -1});
+  sheet.topology = Topology::triangles(below + 1, std::move(closed)).value();
+  return sheet;
 }
 
-/// Where the ball first meets the sheet.
-std::optional<Contact> find_contact(const Segment& segment, const std::vector<ControlNormals>& normals,
-                                    const Ball& ball) {
-  Contact first;
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    const std::array<Line, 3> moving = corners(segment, f);
-    if (!may_touch(ball, moving)) continue;
-    // The volume in Bernstein form: n (degree 2) times the ball seen from the first corner (degree 1).
-    const Vec3d start = ball.position - moving[0].from, end = ball.position + ball.velocity - moving[0].to;
-    const ControlNormals& n = normals[f];
-    const Roots<3> roots = roots_in_unit_interval(
-        multiply(Bernstein<Vec3d, 2>{n.n0, n.m, n.n1}, Bernstein<Vec3d, 1>{start, end}, dot<double>));
-    for (std::size_t i = 0; i < roots.count && roots.t[i] < first.t; ++i) {
-      // Inside test: the three areas between the ball and the edges, as shares of the face, are its weights.
-      const double t = roots.t[i];
-      const Vec3d p = ball.position + t * ball.velocity, normal = normal_at(n, t);
-      std::array<Vec3d, 3> at;
-      for (std::size_t k = 0; k < 3; ++k) at[k] = lerp(moving[k].from, moving[k].to, t);
-      std::array<double, 3> weights;
-      bool inside = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d &b = at[(k + 1) % 3], &c = at[(k + 2) % 3];
-        weights[k] = dot(normal, cross(b - p, c - p)) / dot(normal, normal);
-        inside = inside && weights[k] >= -1e-12;  // a ball on an edge may hit either face, but never none
-      }
-      if (!inside) continue;
-      first = {t, f, {}};
-      for (std::size_t k = 0; k < 3; ++k)
-        first.surface_velocity = first.surface_velocity + weights[k] * (moving[k].to - moving[k].from);
-    }
-  }
-  if (first.t > 1) return std::nullopt;
-  return first;
+/// The velocity of the sheet where a ball meets it: the three areas between the ball and the edges, as shares of the
+/// face, weigh the corners.
+Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing& contact) {
+  const std::array<Line, 3> moving = corners(segment, contact.face);
+  const Vec3d p = ball.position + contact.t * ball.velocity;
+  std::array<Vec3d, 3> to;
+  for (std::size_t k = 0; k < 3; ++k) to[k] = lerp(moving[k].from, moving[k].to, contact.t) - p;
+  std::array<double, 3> areas;
+  for (std::size_t k = 0; k < 3; ++k) areas[k] = dot(contact.normal, cross(to[(k + 1) % 3], to[(k + 2) % 3]));
+  Vec3d velocity;
+  for (std::size_t k = 0; k < 3; ++k)
+    velocity = velocity + (areas[k] / (areas[0] + areas[1] + areas[2])) * (moving[k].to - moving[k].from);
+  return velocity;
 }
 
 /// Mirrors a velocity about a unit normal, elastically.
@@ -97,7 +75,7 @@ Vec3d reflect(const Vec3d& velocity, const Vec3d& normal) { return velocity - (2
 
 /// The same response by other means, from positions alone: the contact time by bisection of the volume, recomputed from
 /// the corners at each step, and the normal by their cross product.
-Vec3d independent_response(const Segment& segment, const Ball& ball, const Contact& contact) {
+Vec3d independent_response(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const auto normal = [&moving](double t) {
     const Vec3d a = lerp(moving[0].from, moving[0].to, t);
@@ -111,12 +89,12 @@ Vec3d independent_response(const Segment& segment, const Ball& ball, const Conta
     const double middle = (before + after) / 2;
     ((volume(middle) < 0) == (volume(before) < 0) ? before : after) = middle;
   }
-  return reflect(ball.velocity - contact.surface_velocity, unit(normal(before)));
+  return reflect(ball.velocity - surface_velocity(segment, ball, contact), unit(normal(before)));
 }
 
 /// By how much the ball is outside the face that it is said to meet, as a share of the face: the areas of the three
 /// triangles between the ball and the edges add up to more than the face has.
-double area_outside(const Segment& segment, const Ball& ball, const Contact& contact) {
+double area_outside(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const Vec3d p = ball.position + contact.t * ball.velocity;
   std::array<Vec3d, 3> to;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -131,10 +109,22 @@ double area_outside(const Segment& segment, const Ball& ball, const Contact& con
 
 int main() {
   // A wave runs through the sheet, by a fifth of a wavelength within the segment.
-  const Motion motion = make_builtin_morph("cloth").value();
+  const Motion motion = cushion(make_builtin_morph("cloth").value());
   const Segment segment = motion.segment(1);
-  std::vector<ControlNormals> normals(motion.topology.face_count());
-  face_control_normals(segment, {0, normals.size()}, normals);
+  const Containment containment =
+      Containment::make(motion.topology, separate_points(motion.topology.vertex_count()), segment.from).value();
+
+  std::vector<Ball> balls;
+  std::vector<float> from, to;
+  for (int i = 0; i < kBalls; ++i) {
+    const Vec3f start{-0.6F + 0.08F * static_cast<float>(i % 10), -0.4F + 0.08F * static_cast<float>(i / 10), 0.4F};
+    const Vec3f end = start + Vec3f{0.4F, 0, -0.72F};
+    balls.push_back({to_double(start), to_double(end) - to_double(start)});
+    from.insert(from.end(), {start.x, start.y, start.z});
+    to.insert(to.end(), {end.x, end.y, end.z});
+  }
+  const std::vector<Crossing> crossings =
+      containment.crossings(segment, VectorView<const float>::packed(from), VectorView<const float>::packed(to));
 
   // The normals that the response could use, and how far they send the balls off their way.
   struct Choice {
@@ -145,24 +135,26 @@ int main() {
   std::array<Choice, 5> choices{{{"start"}, {"end"}, {"linear"}, {"slerp"}, {"exact"}}};
 
   int hits = 0;
+  std::uint32_t last = kBalls;
   double energy_error = 0, difference = 0, outside = 0;
-  for (int i = 0; i < kBalls; ++i) {
-    const int row = i / 10, column = i % 10;
-    const Ball ball{{-0.6 + 0.08 * column, -0.4 + 0.08 * row, 0.4}, {0.4, 0, -0.72}};
-    const std::optional<Contact> contact = find_contact(segment, normals, ball);
-    if (!contact) continue;
+  for (const Crossing& contact : crossings) {
+    if (contact.point == last) continue;  // the first of each ball is the contact
+    last = contact.point;
+    const Ball& ball = balls[contact.point];
     ++hits;
-    outside = std::fmax(outside, area_outside(segment, ball, *contact));
+    outside = std::fmax(outside, area_outside(segment, ball, contact));
 
-    // In the frame of the surface the collision is a mirror; adding surface_velocity leads back to the world.
-    const double t = contact->t;
-    const ControlNormals& n = normals[contact->face];
-    const Vec3d start = unit(n.n0), end = unit(n.n1), exact = unit_normal_at(n, t).vector;
+    // In the frame of the surface the collision is a mirror; adding the velocity of the surface leads back to the world.
+    const double t = contact.t;
+    ControlNormals n;
+    face_control_normals(segment, {contact.face, 1}, {&n, 1});
+    const Vec3d start = unit(n.n0), end = unit(n.n1), exact = contact.normal;
     const double turn = angle_between(start, end);
     const Vec3d slerp = unit(std::sin((1 - t) * turn) * start + std::sin(t * turn) * end);
-    const Vec3d incoming = ball.velocity - contact->surface_velocity, outgoing = reflect(incoming, exact);
+    const Vec3d incoming = ball.velocity - surface_velocity(segment, ball, contact),
+                outgoing = reflect(incoming, exact);
     energy_error = std::fmax(energy_error, std::fabs(dot(outgoing, outgoing) / dot(incoming, incoming) - 1));
-    const Vec3d other = independent_response(segment, ball, *contact);
+    const Vec3d other = independent_response(segment, ball, contact);
     difference = std::fmax(difference, length(outgoing - other) / length(other));
 
     const std::array<Vec3d, 5> used{start, end, unit(lerp(start, end, t)), slerp, exact};

@@ -18,11 +18,16 @@ void run_schemes(Suite& suite, const Size& size);
 /// Bounds of the largest errors of schemes, beside dense sampling.
 void run_certificates(Suite& suite, const Size& size);
 
+/// Cones, bounds of clusters and means over a segment, beside samples.
+void run_cones(Suite& suite, const Size& size);
+
 /// Blend shapes, a few active at once.
 void run_blend(Suite& suite, const Size& size);
 
 /// What holds over a whole segment: collapse, facing.
 void run_uses(Suite& suite, const Size& size);
+/// Points that go through the surface.
+void run_containment(Suite& suite, const Size& size);
 
 /// How good a scheme is, to be held against what it costs.
 struct SchemeQuality {

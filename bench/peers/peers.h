@@ -67,6 +67,9 @@ struct Library {
   std::unique_ptr<LibraryMesh> (*make_mesh)(const TriangleMesh&) = nullptr;
 };
 
+/// Which points, (P, 3), are inside a closed mesh, by vtkSelectEnclosedPoints.
+[[nodiscard]] std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points);
+
 [[nodiscard]] Library openmesh_library();
 [[nodiscard]] Library vtk_library();
 [[nodiscard]] Library cgal_library();

@@ -7,6 +7,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataNormals.h>
+#include <vtkSelectEnclosedPoints.h>
 #include <vtkTriangleMeshPointNormals.h>
 #include <vtkVersion.h>
 
@@ -103,6 +104,22 @@ std::vector<Method> vtk_methods() {
   const std::string library = "VTK " + version();
   return {{library, "vtkPolyDataNormals", poly_data_normals},
           {library, "vtkTriangleMeshPointNormals", triangle_mesh_point_normals}};
+}
+
+std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points) {
+  vtkNew<vtkPoints> places;
+  for (std::size_t p = 0; p < points.size(); p += 3) places->InsertNextPoint(points.data() + p);
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(places);
+  vtkNew<vtkSelectEnclosedPoints> filter;
+  filter->SetInputData(cloud);
+  filter->SetSurfaceData(make_mesh(mesh));
+  filter->SetTolerance(0);
+  filter->Update();
+  std::vector<bool> result;
+  for (std::size_t p = 0; 3 * p < points.size(); ++p)
+    result.push_back(filter->IsInside(static_cast<vtkIdType>(p)) != 0);
+  return result;
 }
 
 Library vtk_library() {

@@ -6,8 +6,10 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
 #include "cli/commands/compare_blend.h"
+#include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
 #include "cli/reports/compare_report.h"
+#include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
@@ -32,6 +34,7 @@ struct Options {
   std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
   BlendArguments blend;
+  TruthArguments truth;
 
   [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
 };
@@ -77,6 +80,7 @@ std::string footer() {
          "  chronormal compare face.glb --elements vertices\n"
          "  chronormal compare walk/ --tolerance 0.5\n"
          "  chronormal compare face.glb --blend 100\n"
+         "  chronormal compare walk/ --truth 2\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
@@ -154,7 +158,35 @@ Result<int> run_blend(const Options& options) {
   return kExitDone;
 }
 
+// An option that was given, and has no meaning with --truth.
+std::string option_of_samples(const Options& options) {
+  if (!options.access.empty()) return "--access";
+  if (options.samples) return "--samples";
+  if (options.certify) return "--certify";
+  if (options.tolerance) return "--tolerance";
+  if (options.errors) return "--errors";
+  return options.each ? "--each" : "";
+}
+
+Result<int> run_truth(const Options& options) {
+  if (const std::string option = option_of_samples(options); !option.empty())
+    return misuse(option, "it does not go with --truth, which compares at the keyframes that are left out");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  Progress progress(options.common.quiet);
+  const auto comparison =
+      compare_input_with_truth(options.input, options.elements, options.truth, scheme_names(options), progress);
+  if (!comparison) return comparison.error();
+  const std::string text = options.json  ? truth_json(comparison.value())
+                           : options.csv ? truth_csv(comparison.value())
+                                         : truth_table(comparison.value());
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return kExitDone;
+}
+
 Result<int> run(const Options& options) {
+  if (options.blend.rows && options.truth.every)
+    return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
   for (const std::string& name : scheme_names(options)) {
@@ -162,6 +194,7 @@ Result<int> run(const Options& options) {
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (options.access == "sequential" && (options.certify || options.tolerance))
@@ -235,6 +268,7 @@ Command compare_command() {
             {"--tolerance DEG", &options->tolerance,
              "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
            options->blend.table(),
+           options->truth.table(),
            {{"--errors FILE", &options->errors,
              "write the error of every element at every sample: .npz for programs, or .ply of one\n"
              "scheme with the worst of each as its quality, for MeshLab and Blender"},

@@ -25,7 +25,8 @@ struct Options {
   std::string question;
   QuerySpan span;
   bool json = false;
-  std::vector<Question> questions = {collapse_question(), facing_question()};
+  std::vector<Question> questions = {cones_question(), facing_question(), contain_question(), collapse_question(),
+                                     shutter_question()};
 };
 
 // Whether the command line gave an option a value.
@@ -104,6 +105,7 @@ std::string footer(const std::vector<Question>& questions) {
          "  chronormal query facing walk/ --eye 4,-5,2,5,-4,1 --silhouettes -o sides.npz\n"
          "  chronormal query collapse walk/ --from 1 --to 2.5 --json\n"
          "  chronormal query collapse body.obj walk.pc2 -o collapses.npz\n"
+         "  chronormal query contain balloon.glb --points dust.npy -o crossings.npz\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 

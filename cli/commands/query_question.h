@@ -23,7 +23,10 @@ struct Question {
 };
 
 [[nodiscard]] Question collapse_question();
+[[nodiscard]] Question cones_question();
+[[nodiscard]] Question contain_question();
 [[nodiscard]] Question facing_question();
+[[nodiscard]] Question shutter_question();
 
 }  // namespace chronormal::cli
 

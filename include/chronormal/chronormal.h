@@ -30,11 +30,15 @@
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 
-#include "chronormal/analysis/certify.h"   // bounds of the largest error of a scheme, that no sample exceeds
-#include "chronormal/analysis/collapse.h"  // when a face has no area, and whether it turns over: decided exactly
-#include "chronormal/analysis/facing.h"    // from which side a face is seen, at every instant; silhouettes over time
-#include "chronormal/analysis/quality.h"   // the exact reference, and angular errors: sum, mean, rms, max and where
-#include "chronormal/analysis/surface.h"   // doubled vertices, edges, pieces, faces on each other
+#include "chronormal/analysis/certify.h"         // bounds of the largest error of a scheme, that no sample exceeds
+#include "chronormal/analysis/cluster_bounds.h"  // bounds of clusters over an interval, in the layout of meshoptimizer
+#include "chronormal/analysis/collapse.h"        // when a face has no area, and whether it turns over: decided exactly
+#include "chronormal/analysis/cones.h"           // cones that contain all normals of an interval
+#include "chronormal/analysis/containment.h"  // which points are inside a closed mesh, and when they cross its surface
+#include "chronormal/analysis/facing.h"       // from which side a face is seen, at every instant; silhouettes over time
+#include "chronormal/analysis/quality.h"      // the exact reference, and angular errors: sum, mean, rms, max and where
+#include "chronormal/analysis/shutter.h"      // mean normals over an open shutter
+#include "chronormal/analysis/surface.h"      // doubled vertices, edges, pieces, faces on each other
 
 #include "chronormal/io/bake_mark.h"       // what a bake leaves in a glTF file about itself
 #include "chronormal/io/builtin_morphs.h"  // morphs that need no file
@@ -43,6 +47,7 @@
 #include "chronormal/io/gltf_edit.h"       // changes to a glTF file that keep every other byte
 #include "chronormal/io/input.h"           // the one door: motions, meshes and documents from files of every format
 #include "chronormal/io/output.h"          // files that nobody ever sees half of, motions among them
+#include "chronormal/io/points_file.h"     // points that rest or move, from a NumPy array
 #include "chronormal/io/poses_file.h"      // poses of a rig from a JSON file
 #include "chronormal/io/target_names.h"    // morph targets by name
 
@@ -55,6 +60,7 @@
 #include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/query.h"    // questions about whole intervals of time, answered as arrays
 #include "chronormal/workflow/report.h"   // what a page needs to show an input as it is shown beside as it should be
-#include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/truth.h"  // normals at chosen times, or at weights of targets, and files of them
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

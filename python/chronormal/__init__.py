@@ -22,8 +22,8 @@ import numpy as _np
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "curves",
-           "errors", "facing", "inspect", "read"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "cones",
+           "contain", "curves", "errors", "facing", "inspect", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -287,3 +287,52 @@ def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=Non
         raise ValueError("direction: a place or a direction is an array of 3 numbers")
     return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
                                     silhouettes)
+
+
+def contain(positions, faces, points, times=None, *, start=None, end=None):
+    """Return which points are inside a closed mesh that deforms, and when each crosses its surface: a dict of arrays.
+
+    positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
+    points   (P, 3) points that rest, or (P, 2, 3): each moves straight from the first of all times to the last
+
+    inside           (P,) at the first instant
+    crossing_point   the index of the point; crossings are ordered by point and time
+    crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   when, and through which face
+    crossing_inward  whether the winding number rises; otherwise it falls
+    """
+    return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end,
+                                     _np.ascontiguousarray(points, dtype=_np.float64))
+
+
+def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):
+    """Return cones that contain every normal of a face: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+    meshlets   None, or build meshlets of up to so many triangles (a multiple of 4)
+
+    segment, face     where
+    axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
+                      length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
+                      axis 0 with the sine 1, and a face that never has an area the axis 0 with the sine 0
+    half_angle        degrees
+    meshlet_segment, meshlet_index, meshlet_center, meshlet_radius, meshlet_cone_apex, meshlet_cone_axis, ...
+                      bounds as meshoptimizer has them, right at every instant of the part of the segment
+    member_meshlet, member_face   which face is in which meshlet
+    """
+    return _chronormal.query_cones(*_keyframes(positions, faces, times), start, end, meshlets)
+
+
+def shutter(positions, faces, times=None, *, start=None, end=None):
+    """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
+
+    positions, faces, times, start, end   as for collapse()
+
+    segment, face   where
+    mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
+    mean_unit       (rows, 3) mean of the unit normal, and error: how far the exact one may be from it
+    length          of mean_unit: 1 where normals stay the same, 0 where they cancel
+    half_angle      degrees, of a cone that contains all normals
+    ends, ends_off  (rows, 3) the direction that interpolation between the ends has as its mean, and how many degrees it is off
+    span_face, span_mean ...   the same over all segments together, where there are several
+    """
+    return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end)

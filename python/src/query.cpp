@@ -1,4 +1,5 @@
 // Questions about whole intervals of time: keyframes in, arrays out.
+#include <cmath>
 #include <type_traits>
 #include <variant>
 
@@ -76,11 +77,54 @@ py::dict ask_facing(const Positions& positions, const Indices& offsets, const In
   return answer_of([&] { return query_facing(motion, view, silhouettes, {start, end}); });
 }
 
+PointPaths paths_of(const Array<double>& points) {
+  const bool moves = points.ndim() == 3 && points.shape(1) == 2 && points.shape(2) == 3;
+  if (!moves && !(points.ndim() == 2 && points.shape(1) == 3))
+    refuse("points", "the shape is " + shape_text(points) + " and must be (P, 3) or (P, 2, 3)");
+  const auto count = static_cast<std::size_t>(points.shape(0));
+  const std::size_t row = moves ? 6 : 3;
+  PointPaths paths;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* const first = points.data() + row * i;
+    for (std::size_t k = 0; k < row; ++k) {
+      if (!std::isfinite(static_cast<float>(first[k])))
+        refuse("points[" + std::to_string(i) + "]", "a coordinate is not finite, or too large for float32");
+    }
+    paths.from.insert(paths.from.end(), first, first + 3);
+    paths.to.insert(paths.to.end(), first + row - 3, first + row);
+  }
+  return paths;
+}
+
+py::dict ask_contain(const Positions& positions, const Indices& offsets, const Indices& corners,
+                     const Array<double>& times, std::optional<double> start, std::optional<double> end,
+                     const Array<double>& points) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  const PointPaths paths = paths_of(points);
+  return answer_of([&] { return query_contain(motion, paths, {start, end}); });
+}
+
+py::dict ask_cones(const Positions& positions, const Indices& offsets, const Indices& corners,
+                   const Array<double>& times, std::optional<double> start, std::optional<double> end,
+                   std::optional<std::size_t> meshlets) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_cones(motion, meshlets, {start, end}); });
+}
+
+py::dict ask_shutter(const Positions& positions, const Indices& offsets, const Indices& corners,
+                     const Array<double>& times, std::optional<double> start, std::optional<double> end) {
+  const Motion motion = motion_of(positions, offsets, corners, times);
+  return answer_of([&] { return query_shutter(motion, {start, end}); });
+}
+
 }  // namespace
 
 void add_queries(py::module_& module) {
   module.def("query_collapse", &ask_collapse);
+  module.def("query_cones", &ask_cones);
   module.def("query_facing", &ask_facing);
+  module.def("query_contain", &ask_contain);
+  module.def("query_shutter", &ask_shutter);
 }
 
 }  // namespace chronormal::python

@@ -78,7 +78,8 @@ Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) no
   while (f.a[k].sign() == 0) ++k;
   const Vec3d positive = direction(c[k], f.a[k].sign());
   Collapses found;
-  for (const ExactRoot& root : exact_roots(f).all())
+  const ExactRoots roots = exact_roots(f);
+  for (const ExactRoot& root : roots.all())
     found.at[found.count++] = {root.lower, root.upper, root.before * root.after < 0, signed_by(root.before, positive),
                                signed_by(root.after, positive)};
   return found;

@@ -38,7 +38,8 @@ struct ExactRoots {
   std::size_t count = 0;
   int sign = 0;  ///< where there is no root, the sign of f; 0: f is zero throughout
 
-  [[nodiscard]] std::span<const ExactRoot> all() const noexcept { return {at.data(), count}; }
+  [[nodiscard]] std::span<const ExactRoot> all() const& noexcept { return {at.data(), count}; }
+  void all() && = delete;  // a loop over a temporary would outlive it
 };
 
 /// A polynomial of degree up to N; its coefficients, of rising powers, are settled.

@@ -148,6 +148,41 @@ HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
+// column[c] gets in lane i the element c of row i, which begins at from + i * kStride; of rows of kStride >= 8.
+template <std::size_t kStride>
+HWY_INLINE void LoadColumns(const double* from, Doubles (&column)[kStride]) {
+#if HWY_TARGET == HWY_AVX3
+  // Eight columns by pairs, fours and eights of rows, as StoreEightColumns; the others one by one.
+  __m512d even[4], odd[4];  // of rows 2 i and 2 i + 1, the columns 0 2 4 6 and 1 3 5 7
+  for (std::size_t i = 0; i < 4; ++i) {
+    const __m512d first = _mm512_loadu_pd(from + 2 * i * kStride),
+                  second = _mm512_loadu_pd(from + (2 * i + 1) * kStride);
+    even[i] = _mm512_unpacklo_pd(first, second);
+    odd[i] = _mm512_unpackhi_pd(first, second);
+  }
+  std::size_t c = 0;
+  for (const __m512d* const pairs : {even, odd}) {
+    const __m512d lower04 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b10001000);  // rows 0 to 3 of columns 0, 4
+    const __m512d upper04 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b10001000);  // rows 4 to 7
+    const __m512d lower26 = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0b11011101);
+    const __m512d upper26 = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0b11011101);
+    column[c] = Doubles{_mm512_shuffle_f64x2(lower04, upper04, 0b10001000)};
+    column[c + 4] = Doubles{_mm512_shuffle_f64x2(lower04, upper04, 0b11011101)};
+    column[c + 2] = Doubles{_mm512_shuffle_f64x2(lower26, upper26, 0b10001000)};
+    column[c + 6] = Doubles{_mm512_shuffle_f64x2(lower26, upper26, 0b11011101)};
+    ++c;
+  }
+  constexpr std::size_t kFirst = 8;
+#else
+  constexpr std::size_t kFirst = 0;
+#endif
+  for (std::size_t k = kFirst; k < kStride; ++k) {
+    alignas(64) double lanes[kDoubleLanes];
+    for (std::size_t i = 0; i < kDoubleLanes; ++i) lanes[i] = from[i * kStride + k];
+    column[k] = hn::Load(kDoubles, lanes);
+  }
+}
+
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

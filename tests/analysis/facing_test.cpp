@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
 #include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/whole_polynomial.h"
@@ -248,9 +247,27 @@ TEST(Facing, time_that_runs_back_mirrors_the_changes) {
   EXPECT_GT(changes, 500U);
 }
 
+// Triangles over a grid, of which every vertex goes up or down on its own.
+Motion crumpling_grid(std::uint32_t size) {
+  test::Random random(11);
+  std::vector<fixtures::Point> from, to;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i <= size; ++i) {
+    for (std::uint32_t k = 0; k <= size; ++k) {
+      from.push_back({i / 10.0, k / 10.0, random.uniform(-0.2, 0.2)});
+      to.push_back({i / 10.0, k / 10.0, random.uniform(-0.2, 0.2)});
+      if (i == size || k == size) continue;
+      const std::uint32_t a = i * (size + 1) + k, b = a + size + 1;
+      corners.insert(corners.end(), {a, b, b + 1, a, b + 1, a + 1});
+    }
+  }
+  const std::size_t count = from.size();
+  return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
+}
+
 // The faces at every edge, at instants outside of all brackets.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
-  const Motion motion = make_builtin_morph("bend").value();
+  const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);
   const std::size_t faces = motion.topology.face_count();
   std::vector<ControlNormals> normals(faces);

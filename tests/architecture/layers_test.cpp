@@ -32,7 +32,8 @@ const std::vector<Floor> kFloors = {
     {"schemes", {}},
     {"analysis", {}},
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
-    {"workflow", {"hosts", "shading", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json", "report"}},
+    {"workflow",
+     {"hosts", "shading", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json", "report"}},
     {"cli", {"terminal", "options", "reports", "commands"}},
 };
 

@@ -311,7 +311,10 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb", 2, "--output");
   expect_error("moving.glb -o out.glb --encode harmless --max-bytes 100", 3, "at most 100");
   expect_error("f_0.obj f_1.obj -o out.glb --max-bytes 100", 3, "more than 100 bytes");
-  expect_error("moving.glb -o out.glb --encode exact --max-targets 5", 2, "--max-targets");
+  for (const std::string option : {"--max-targets 5", "--animations-only", "--plan", "--poses random"})
+    expect_error("moving.glb -o out.glb --encode exact " + option, 2,
+                 option.substr(0, option.find(' ')) + ": it is for");
+  expect_error("f_0.obj f_1.obj -o out.glb --encode smallest", 2, "--encode: a sequence is written");
   for (const char* const option : {"--plan", "--max-targets 5", "--animations-only"})
     expect_error(std::string("f_0.obj f_1.obj -o out.glb ") + option, 2, "it is for glTF files");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");

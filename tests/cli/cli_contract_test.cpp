@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "io/cache/npz.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
@@ -225,8 +226,10 @@ const std::map<std::string, std::string> kUses = {
     {"--quiet", "a.obj b.obj --quiet"},
     {"query --direction", "facing a.obj b.obj --direction 0,0,1"},
     {"query --eye", "facing a.obj b.obj --eye 1,2,3"},
+    {"query --points", "contain closed.obj moved.obj --points points.npy"},
     {"query --silhouettes", "facing a.obj b.obj --direction 0,0,1 --silhouettes"},
     {"--from", "a.obj b.obj --from 0.25"},
+    {"query --meshlets", "cones a.obj b.obj --meshlets 8"},
     {"--to", "a.obj b.obj --to 0.75"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},
@@ -271,6 +274,9 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
   test::GltfBuilder shaded = test::hinge().file();
   shaded.add_track(shaded.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   write("shaded.glb", shaded.glb());
+  write("closed.obj", frame + "0\nf 1 2 3\nf 3 2 1\n");
+  write("moved.obj", frame + "1\nf 1 2 3\nf 3 2 1\n");
+  write("points.npy", NpyBytes({1, 3}, std::vector<double>{1, 2, 3}).bytes());
   write("poses.json", "[[1, 1]]");
   write("page.html", "<!--chronormal-data-->");
   std::set<std::string> all;

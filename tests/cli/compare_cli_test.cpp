@@ -28,12 +28,13 @@ class CompareFigures : public testing::Test {
     folder_.write("2.obj", end);
     folder_.write("3.obj", end);
   }
-  [[nodiscard]] std::string output(const std::string& form) const {
-    return run_shell(std::string(kProgram) +
-                         " compare 1.obj 2.obj 3.obj --samples 3 --schemes linear,slerp --no-times " + form,
-                     folder_.path())
-        .out;
+  [[nodiscard]] ProcessResult run(const std::string& form) const {
+    return run_shell(
+        std::string(kProgram) + " compare 1.obj 2.obj 3.obj --samples 3 --schemes linear,slerp --no-times " + form,
+        folder_.path());
   }
+  [[nodiscard]] std::string output(const std::string& form) const { return run(form).out; }
+  [[nodiscard]] int exit_code_of(const std::string& form) const { return run(form).exit_code; }
 
   static constexpr double kLess = 18.43494882292201;  // degrees
   static constexpr double kSum = 180 + kLess;
@@ -79,6 +80,12 @@ TEST_F(CompareFigures, json_has_each_figure_under_its_name) {
   }
   EXPECT_EQ(rows[0]["fallbacks"], 0);
   EXPECT_EQ(rows[1]["fallbacks"], 1) << "of slerp between opposite normals";
+}
+
+TEST_F(CompareFigures, errors_of_several_motions_or_in_the_place_of_the_output_are_refused) {
+  EXPECT_EQ(exit_code_of("--each --errors e.npz"), 2);
+  EXPECT_EQ(exit_code_of("--errors same.npz -o same.npz"), 2);
+  EXPECT_EQ(exit_code_of("--errors e.npz"), 0);
 }
 
 TEST_F(CompareFigures, table_counts_shares_in_pairs_of_all_segments) {

@@ -444,5 +444,22 @@ TEST_F(SampleCliGolden, trimesh_weighs_vertices_by_area) {
   EXPECT_GT(checked, 1000U);
 }
 
+TEST_F(SampleCli, curved_paths_are_for_sequences) {
+  const std::string program = std::string(kProgram) + " sample ";
+  folder_.write("c.obj",
+                std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 0 0 0.5\nv 0 1 0.5\n") + kFaces);
+  const auto arrays = [&](const std::string& path) {
+    return run_shell(program + "a.obj b.obj c.obj --times 0.5 --path " + path + " -o -", folder_.path());
+  };
+  EXPECT_EQ(arrays("catmull-rom").exit_code, 0);
+  EXPECT_NE(arrays("catmull-rom").out, arrays("linear").out);
+  for (const std::string wrong :
+       {"a.obj b.obj --times 0.5 --path curved", "quad.glb --weights 1,0 --path catmull-rom"}) {
+    const ProcessResult refused = run_shell(program + wrong + " -o -", folder_.path());
+    EXPECT_EQ(refused.exit_code, 2) << wrong;
+    EXPECT_NE(refused.err.find("--path"), std::string::npos) << refused.err;
+  }
+}
+
 }  // namespace
 }  // namespace chronormal::sample_cli_test

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "io/cache/npz.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
@@ -85,6 +86,8 @@ void add_keys(const Json& json, const std::string& path, Names& found) {
 TEST_F(Stability, no_key_of_json_vanishes) {
   folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n");
   folder_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 4//1 3//1\n");
+  folder_.write("closed.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n");
+  folder_.write("points.npy", NpyBytes({1, 3}, std::vector<double>{1, 2, 3}).bytes());
   test::GltfBuilder moving = test::still_hills_document(2);
   moving.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0, 0, 1});
   folder_.write("face.glb", moving.glb());
@@ -95,7 +98,8 @@ TEST_F(Stability, no_key_of_json_vanishes) {
         "compare a.obj b.obj", "compare --each --base a.obj b.obj", "compare --base a.obj b.obj --blend 2",
         "compare face.glb --blend 2", "inspect a.obj b.obj", "inspect face.glb", "inspect a.obj",
         "query collapse a.obj b.obj", "query facing a.obj b.obj --eye 1,2,3 --silhouettes",
-        "report face.glb -o face.bin"}) {
+        "query contain closed.obj closed.obj --points points.npy", "query cones a.obj b.obj --meshlets 8",
+        "query shutter a.obj b.obj a.obj", "report face.glb -o face.bin"}) {
     const ProcessResult result = run(arguments + " --json");
     const Json json = Json::parse(result.out, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << arguments << '\n' << result.err;

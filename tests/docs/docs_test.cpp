@@ -308,8 +308,9 @@ TEST(Documents, links_to_files_lead_somewhere) {
   EXPECT_GT(links, 5);
 }
 
-TEST(Documents, the_changelog_knows_the_version) {
+TEST(Documents, the_changelog_and_the_citation_know_the_version) {
   EXPECT_NE(read(kRoot / "CHANGELOG.md").find(std::string("## ") + kVersion), std::string::npos);
+  EXPECT_NE(read(kRoot / "CITATION.cff").find(std::string("\nversion: ") + kVersion + '\n'), std::string::npos);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
   const auto generated = test::without_blocks(test::read_whole(folder / "paper.md"), "times");
   EXPECT_EQ(committed.count, 1u);
   test::expect_same_text(committed.page, generated.page, "docs/paper.md");
-  EXPECT_EQ(test::expect_same_pictures(folder, committed.page), 8u);
+  EXPECT_EQ(test::expect_same_pictures(folder, committed.page), 10u);
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace chronormal::test {
 struct ChildRun {
   bool finished = false;        ///< false where it crashed, was killed, or threw
   std::string text;             ///< what the work returned, or why it did not finish
-  double seconds = 0;           ///< of the wall clock
+  double seconds = 0;           ///< of processors
   std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, above those at the start
 };
 
 /// Whether a sanitizer watches: then memory is not what the program itself takes.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process that is stopped after most_seconds, and, unless a sanitizer watches, may not take
+/// Does the work in a forked process that is stopped after most_seconds of a processor, and, unless a sanitizer watches, may not take
 /// a GiB of address space more than it has at the start.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work);
 

@@ -21,6 +21,7 @@ void write_page(const std::string& folder) {
   measure_figure2(page);
   measure_frames(page);
   measure_slips(page);
+  draw_sketches(page);
   page.write("paper.md");
 }
 

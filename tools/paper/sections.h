@@ -14,6 +14,7 @@ void measure_drift(Page& page);    ///< sequential access
 void measure_figure2(Page& page);  ///< lengths and oscillation
 void measure_frames(Page& page);   ///< random frames, and the best ones
 void measure_slips(Page& page);    ///< the paper's and ours
+void draw_sketches(Page& page);    ///< the paper's Figures 1 and 3, from a face of ours
 
 }  // namespace chronormal::paper
 

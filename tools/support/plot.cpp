@@ -45,6 +45,7 @@ std::string panel_script(const Panel& panel) {
   script += axis("x", panel.x) + axis("y", panel.y);
   script += panel.legend.empty() ? "unset key\n" : fmt::format("set key {} samplen 2 spacing 1.15\n", panel.legend);
 
+  if (panel.equal_axes) script += "set size ratio -1\n";
   script += "unset label\nunset object\n";
   for (const Label& label : panel.labels) {
     const char* align = label.align == Label::Align::kLeft    ? "left"

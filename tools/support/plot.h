@@ -62,6 +62,7 @@ struct Panel {
   std::string legend;  ///< gnuplot's words for where it stands; empty: none
   std::vector<Label> labels;
   std::vector<Band> bands;
+  bool equal_axes = false;  ///< one unit is as long in x as in y
 };
 
 struct Figure {

@@ -44,7 +44,8 @@ struct Collapses {
   std::size_t count = 0;
   bool always = false;  ///< n is zero in the whole segment; count is 0
 
-  [[nodiscard]] std::span<const Collapse> instants() const noexcept { return {at.data(), count}; }
+  [[nodiscard]] std::span<const Collapse> instants() const& noexcept { return {at.data(), count}; }
+  void instants() && = delete;  ///< a loop over a temporary would outlive it
 };
 
 /// Decides for one face, from its positions. Cost: three dot products for most faces; where those do not prove that n(t)

@@ -62,7 +62,8 @@ struct Facing {
   std::size_t count = 0;
   Side side = Side::kNone;  ///< where count is 0: throughout; kNone: edge-on or without area throughout
 
-  [[nodiscard]] std::span<const FacingChange> changes() const noexcept { return {at.data(), count}; }
+  [[nodiscard]] std::span<const FacingChange> changes() const& noexcept { return {at.data(), count}; }
+  void changes() && = delete;  ///< a loop over a temporary would outlive it
   /// The side before the first change and after the last.
   [[nodiscard]] Side first() const noexcept { return count == 0 ? side : at[0].before; }
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }

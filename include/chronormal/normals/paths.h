@@ -19,6 +19,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/polynomial.h"
@@ -57,6 +58,28 @@ using PolynomialNormals = Bernstein<Vec3d, 2 * K>;
                                                    VectorView<const float> from_velocities, VectorView<const float> to,
                                                    VectorView<const float> to_velocities, double start_time,
                                                    double end_time);
+
+/// How the vertices of a sequence move between its keyframes, which say where they are there and nothing else.
+enum class PathKind {
+  kLinear,      ///< straight, as players do
+  kCatmullRom,  ///< on cubics whose velocities follow from the keyframes: catmull_rom_segment()
+};
+
+/// "linear" or "catmull-rom".
+[[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
+/// Finds a path by its name. Errors: kUsage, with all names.
+[[nodiscard]] Result<PathKind> make_path(std::string_view name);
+
+/// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two neighbours
+/// (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the nearest four: of as
+/// many as there are, so that between two keys the motion is straight.
+/// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
+[[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
+                                                       std::span<const Motion::Keyframe* const> keys, std::size_t i);
+
+/// Where the vertices are at a local t.
+template <std::size_t K>
+[[nodiscard]] std::vector<Vec3d> positions_at(const PolynomialSegment<K>& segment, double t);
 
 /// Writes the control normals of a range of faces; (K + 1)^2 cross products per triangle. K = 1, 2 or 3.
 /// result must have faces.count elements

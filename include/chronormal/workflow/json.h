@@ -17,6 +17,7 @@
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/query.h"
+#include "chronormal/workflow/truth.h"
 
 namespace chronormal {
 
@@ -42,6 +43,13 @@ struct NamedBlendComparison {
 };
 
 [[nodiscard]] std::string blend_json(const NamedBlendComparison& input);
+
+struct NamedTruthComparison {
+  std::string name;
+  TruthComparison comparison;
+};
+
+[[nodiscard]] std::string truth_json(const NamedTruthComparison& input);
 
 /// The audit of the input of a bake, and the audit of the file that it made.
 struct BeforeAndAfter {

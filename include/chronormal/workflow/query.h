@@ -23,6 +23,7 @@
 
 #include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
+#include "chronormal/io/points_file.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
@@ -96,6 +97,37 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
+/// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
+/// motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them it moves
+/// straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
+///     ""         inside: one row for each point
+///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
+///                segment and weight
+/// Where the weights of an animation jump, a point may be elsewhere without a crossing.
+/// Errors: of segment_parts() and of Containment::make().
+[[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
+                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// Cones that contain every normal of a face while a part of a segment lasts (analysis/cones.h). Tables:
+///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
+///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
+///     member    meshlet, face
+/// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first keyframe.
+/// Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up to 512, and
+/// for a mesh of larger faces.
+[[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
+                                              const QuerySpan& span = {}, const QueryProgress& progress = {});
+
+/// The mean normals of faces while a shutter is open over the span (analysis/shutter.h). Tables:
+///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends (the
+///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
+///               ends_off (degrees from mean_unit to it): one row for each segment and face
+///     span      the same without segment, over all parts together, weighed by their duration; not for targets
+/// Errors: of segment_parts().
+[[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
+                                                const QueryProgress& progress = {});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
 /// the table has no name. Errors: kUsage for another extension; those of write_output().

@@ -43,6 +43,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 
@@ -57,6 +58,7 @@ struct SampleOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea for the weighting kArea only
+  PathKind path = PathKind::kLinear;          ///< of a sequence at times; normals are exact on either
 };
 
 /// Whether a pose can have these weights. Errors: kUsage for a motion that is not blend shapes; where there is not one
@@ -72,7 +74,8 @@ struct Pose {
 class NormalSampler {
  public:
   /// The motion must be valid or stand still, and outlive the sampler.
-  /// Errors: of make_groups(); kUsage for faces with another weighting than area, and for the length kArea with one.
+  /// Errors: of make_groups(); kUsage for faces with another weighting than area, for the length kArea with one, and for
+  /// curved paths of a motion that is no sequence.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
 
   /// The pose at a time. evaluations says how many times of its segment will follow each other, this one included; what
@@ -102,6 +105,8 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
+  // Of a mesh that stands there; refuses what is beyond float32.
+  [[nodiscard]] Result<Pose> pose_at(const std::vector<Vec3d>& positions, const std::string& mover) const;
   // Anew, and for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, double t) const;
   [[nodiscard]] bool are_exact_units() const noexcept {

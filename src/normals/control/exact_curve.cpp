@@ -1,6 +1,7 @@
 #include "normals/control/exact_curve.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace chronormal::inline internal {
 namespace {
@@ -161,6 +162,25 @@ Vec3d ExactCurve::normal_at(double t) const noexcept {
     value[k].settle();
   }
   return to_doubles(value, unit() - 2 * static_cast<int>(fraction.scale));
+}
+
+// Twice n0 + (s + t) / 2 linear + s t bend, as the sum of two products of Horner's rule: one begins with s, one with t.
+Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
+  const UnitFraction a = UnitFraction::of(s), b = UnitFraction::of(t);
+  const CoefficientVector c1 = linear(), c2 = bend();
+  ValueVector value;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const auto& [outer, inner] : {std::pair{a, b}, std::pair{b, a}}) {
+      WideInteger<kValueDigits> factor;
+      factor.add_product(c2[k], inner);
+      factor.add_shifted(c1[k], inner.scale);
+      factor.settle();
+      value[k].add_product(factor, outer);
+      value[k].add_shifted(n0_[k], a.scale + b.scale);
+    }
+    value[k].settle();
+  }
+  return to_doubles(value, unit() - 1 - static_cast<int>(a.scale + b.scale));
 }
 
 UnitNormal ExactCurve::unit_normal_at(double t) const noexcept {

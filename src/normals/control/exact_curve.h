@@ -48,6 +48,9 @@ class ExactCurve {
   [[nodiscard]] ControlNormals rounded() const noexcept;
   /// n(t), each component rounded once or twice. t is a local_time()
   [[nodiscard]] Vec3d normal_at(double t) const noexcept;
+  /// The middle control normal of the part [s, t] of the curve, rounded in the same way: the blossom of n at (s, t), of
+  /// which n(t) is the case s = t. s and t are local_time()s
+  [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(double t) const noexcept;
   /// The coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.

@@ -32,6 +32,34 @@ Bernstein<Vec3d, K> edge(const PolynomialSegment<K>& segment, std::uint32_t from
   return result;
 }
 
+// The velocities of all vertices at keys[at]: the derivative there of the polynomial through all of these keyframes.
+std::vector<float> velocities_at(std::span<const Motion::Keyframe* const> keys, std::size_t at) {
+  std::vector<double> share(keys.size(), 0.0);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == at) continue;
+    const double apart = keys[at]->time - keys[i]->time;
+    share[at] += 1 / apart;
+    share[i] = -1 / apart;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (k != i && k != at) share[i] *= (keys[at]->time - keys[k]->time) / (keys[i]->time - keys[k]->time);
+  }
+  std::vector<float> result(keys[0]->positions.size());
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    double sum = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) sum += share[i] * static_cast<double>(keys[i]->positions[c]);
+    result[c] = static_cast<float>(sum);
+  }
+  return result;
+}
+
+// Those of the curve through all keys, at key i.
+std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> keys, std::size_t i) {
+  const bool is_end = i == 0 || i + 1 == keys.size();
+  const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size());
+  const std::size_t first = i == 0 ? 0 : is_end ? keys.size() - used : i - 1;
+  return velocities_at(keys.subspan(first, used), i - first);
+}
+
 // The first of the control normals, from the end that is asked for, that is not rounding; zero if there is none.
 template <class Iterator>
 Vec3d first_direction(Iterator begin, Iterator end, double error) {
@@ -72,6 +100,36 @@ PolynomialSegment<3> hermite_segment(const Topology& topology, VectorView<const 
     segment.control[3][v] = p1;
   }
   return segment;
+}
+
+std::string_view path_name(PathKind kind) noexcept { return kind == PathKind::kLinear ? "linear" : "catmull-rom"; }
+
+Result<PathKind> make_path(std::string_view name) {
+  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom})
+    if (name == path_name(kind)) return kind;
+  return Error{ErrorCode::kUsage, "", "there is no such path; there are linear and catmull-rom"};
+}
+
+PolynomialSegment<3> catmull_rom_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
+                                         std::size_t i) {
+  assert(i + 1 < keys.size());
+  const auto packed = [](const std::vector<float>& numbers) {
+    return VectorView<const float>::packed(std::span(numbers));
+  };
+  const std::vector<float> start = curve_velocities(keys, i), end = curve_velocities(keys, i + 1);
+  return hermite_segment(topology, packed(keys[i]->positions), packed(start), packed(keys[i + 1]->positions),
+                         packed(end), keys[i]->time, keys[i + 1]->time);
+}
+
+template <std::size_t K>
+std::vector<Vec3d> positions_at(const PolynomialSegment<K>& segment, double t) {
+  std::vector<Vec3d> result(segment.topology->vertex_count());
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    Bernstein<Vec3d, K> curve;
+    for (std::size_t k = 0; k <= K; ++k) curve[k] = segment.control[k][v];
+    result[v] = evaluate(curve, t);
+  }
+  return result;
 }
 
 template <std::size_t K>
@@ -158,10 +216,8 @@ Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double dis
     Motion::Keyframe keyframe;
     keyframe.time = segment.start_time + t * (segment.end_time - segment.start_time);
     keyframe.positions.reserve(3 * segment.topology->vertex_count());
-    for (std::size_t v = 0; v < segment.topology->vertex_count(); ++v) {
-      Bernstein<Vec3d, K> curve;
-      for (std::size_t k = 0; k <= K; ++k) curve[k] = segment.control[k][v];
-      const Vec3f p = to_float(evaluate(curve, t));
+    for (const Vec3d& position : positions_at(segment, t)) {
+      const Vec3f p = to_float(position);
       keyframe.positions.insert(keyframe.positions.end(), {p.x, p.y, p.z});
     }
     motion.keyframes.push_back(std::move(keyframe));
@@ -175,6 +231,7 @@ Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double dis
                                              std::span<PolynomialNormals<(K)>>) noexcept;                   \
   template void polynomial_group_normals<(K)>(const NormalGroups&, std::span<const PolynomialNormals<(K)>>, \
                                               IndexRange, std::span<PolynomialNormals<(K)>>) noexcept;      \
+  template std::vector<Vec3d> positions_at(const PolynomialSegment<(K)>&, double);                          \
   template UnitNormal unit_normal_at(const std::array<Vec3d, 2 * (K) + 1>&, double) noexcept;               \
   template Result<Motion> cut_into_segments<(K)>(const PolynomialSegment<(K)>&, double, std::size_t)
 

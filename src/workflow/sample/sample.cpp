@@ -83,6 +83,9 @@ Result<NormalSampler> NormalSampler::make(const Motion& motion, const SampleOpti
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
+  if (options.path != PathKind::kLinear && motion.kind != MotionKind::kSequence)
+    return misuse(
+        "only the keyframes of a sequence have curved paths between them: weights of targets move vertices straight");
   NormalSampler sampler(motion, options);
   if (options.elements.kind == ElementKind::kFaces) {
     if (!by_area) return misuse("faces are not weighted: they have one normal");
@@ -149,8 +152,14 @@ std::vector<float> NormalSampler::normals_anew(const Segment& segment, double t)
 Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
-  const Segment segment = motion_->segment(instant.value().segment);
   const double t = instant.value().t;
+  if (options_.path != PathKind::kLinear) {
+    std::vector<const Motion::Keyframe*> keys;
+    for (const Motion::Keyframe& keyframe : motion_->keyframes) keys.push_back(&keyframe);
+    const auto curve = catmull_rom_segment(motion_->topology, keys, instant.value().segment);
+    return pose_at(positions_at(curve, t), "this path moves");
+  }
+  const Segment segment = motion_->segment(instant.value().segment);
   return Pose{positions_at(segment, t),
               are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
 }
@@ -167,18 +176,22 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
       positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
   }
 
+  return pose_at(positions, "these weights move");
+}
+
+Result<Pose> NormalSampler::pose_at(const std::vector<Vec3d>& positions, const std::string& mover) const {
   DoublePositions pose;
   Pose result;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     for (const double coordinate : {positions[v].x, positions[v].y, positions[v].z}) {
       if (!(std::fabs(coordinate) <= kLargestFloat))
-        return misuse("these weights move vertex " + std::to_string(v) + " out of the range of float32");
+        return misuse(mover + " vertex " + std::to_string(v) + " out of the range of float32");
       pose.push_back(coordinate);
       result.positions.push_back(static_cast<float>(coordinate));
     }
   }
-  const Segment segment{&motion_->topology, VectorView<const float>::packed(pose.from.data(), base.count),
-                        VectorView<const float>::packed(pose.to.data(), base.count)};
+  const Segment segment{&motion_->topology, VectorView<const float>::packed(pose.from.data(), positions.size()),
+                        VectorView<const float>::packed(pose.to.data(), positions.size())};
   result.normals = normals_anew(segment, DoublePositions::kMiddle);
   return result;
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/cpu_time.h"
 #include "tests/support/places.h"
 #include "tests/support/random_edits.h"
 #include "tests/support/target_bytes.h"
@@ -47,9 +47,9 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
 
 // What must hold for any bytes at all; returns whether they were read.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
-  const auto start = std::chrono::steady_clock::now();
+  const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.0);
+  EXPECT_LT(clock.seconds(), 1.0);
   if (!target) {
     EXPECT_EQ(target.error().code, ErrorCode::kInvalidInput);
     const bool has_place =

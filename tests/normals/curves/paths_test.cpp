@@ -252,5 +252,75 @@ TEST(PolynomialMotion, a_straight_motion_is_one_piece_and_one_too_curved_is_an_e
   EXPECT_EQ(cut_into_segments(moving.accelerated(), 1e-6).value().segments.size(), 1u);
 }
 
+// Keyframes of a motion that is a polynomial of some degree in time, at uneven times.
+struct Sampled {
+  static constexpr std::array<double, 6> kTimes = {0, 0.25, 1, 1.5, 1.75, 3};
+  Topology topology = fixtures::box_grid(2).topology;
+  std::vector<std::vector<Vec3d>> powers;
+  std::vector<Motion::Keyframe> keyframes;
+
+  Sampled(std::size_t degree, std::size_t count) {
+    fixtures::Random random(degree);
+    powers.resize(degree + 1);
+    for (std::vector<Vec3d>& power : powers)
+      for (std::size_t v = 0; v < topology.vertex_count(); ++v)
+        power.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+    for (std::size_t k = 0; k < count; ++k) {
+      Motion::Keyframe& keyframe = keyframes.emplace_back();
+      keyframe.time = kTimes[k];
+      for (std::size_t v = 0; v < topology.vertex_count(); ++v) {
+        const Vec3d p = at(v, kTimes[k]);
+        for (const double c : {p.x, p.y, p.z}) keyframe.positions.push_back(static_cast<float>(c));
+      }
+    }
+  }
+  [[nodiscard]] Vec3d at(std::size_t v, double time) const {
+    Vec3d sum;
+    for (std::size_t k = powers.size(); k-- > 0;) sum = time * sum + powers[k][v];
+    return sum;
+  }
+  // The largest distance from a curve through the keyframes, over all times.
+  [[nodiscard]] double distance(bool at_keys = false) const {
+    std::vector<const Motion::Keyframe*> keys;
+    for (const Motion::Keyframe& keyframe : keyframes) keys.push_back(&keyframe);
+    double most = 0;
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+      const PolynomialSegment<3> curve = catmull_rom_segment(topology, keys, i);
+      EXPECT_EQ(curve.start_time, keys[i]->time);
+      EXPECT_EQ(curve.end_time, keys[i + 1]->time);
+      for (const double t : at_keys ? std::vector<double>{0, 1} : std::vector<double>{0.2, 0.5, 0.9}) {
+        const std::vector<Vec3d> positions = positions_at(curve, t);
+        const double time = (1 - t) * keys[i]->time + t * keys[i + 1]->time;
+        for (std::size_t v = 0; v < positions.size(); ++v) most = std::max(most, length(positions[v] - at(v, time)));
+      }
+    }
+    return most;
+  }
+};
+
+TEST(CatmullRom, goes_through_its_keys_and_follows_what_as_many_keys_can_tell) {
+  EXPECT_LT(Sampled(1, 2).distance(), 1e-6) << "two keys: straight";
+  EXPECT_LT(Sampled(2, 3).distance(), 3e-6);
+  EXPECT_LT(Sampled(2, 6).distance(), 3e-6);
+  EXPECT_LT(Sampled(5, 6).distance(true), 1e-4) << "at keys, whatever the motion";
+  EXPECT_GT(Sampled(3, 6).distance(), 1e-3) << "a cubic is more than three keys say";
+}
+
+TEST(CatmullRom, leaves_an_end_as_the_cubic_through_four_keys) {
+  const Sampled cubic(3, 4);
+  std::vector<const Motion::Keyframe*> keys;
+  for (const Motion::Keyframe& keyframe : cubic.keyframes) keys.push_back(&keyframe);
+  const PolynomialSegment<3> first = catmull_rom_segment(cubic.topology, keys, 0);
+  const double third = (first.end_time - first.start_time) / 3;
+  for (std::size_t v = 0; v < cubic.topology.vertex_count(); ++v)
+    EXPECT_LT(length((1 / third) * (first.control[1][v] - first.control[0][v]) - cubic.powers[1][v]), 1e-5);
+}
+
+TEST(PathKind, is_found_by_its_name) {
+  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom})
+    EXPECT_EQ(make_path(path_name(kind)).value(), kind);
+  EXPECT_EQ(make_path("hermit").error().code, ErrorCode::kUsage);
+}
+
 }  // namespace
 }  // namespace chronormal::paths_test

@@ -380,5 +380,31 @@ TEST(NormalSampler, mesh_that_stands_still_has_normals) {
   }
 }
 
+// A triangle on whose curved path its plane turns: corner c is at (t, t^2), which three keyframes tell.
+TEST(Sampler, curved_paths_have_the_positions_and_the_normals_of_the_curve) {
+  Motion motion;
+  motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+  for (const float time : {0.0F, 1.0F, 3.0F})
+    motion.keyframes.push_back({{0, 0, 0, 1, 0, 0, 0, 1 + time, time * time}, time, ""});
+  motion.connect_as_sequence();
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+    SampleOptions options = options_of(kind);
+    options.path = PathKind::kCatmullRom;
+    NormalSampler sampler = sampler_of(motion, options);
+    for (const double time : {0.0, 0.5, 1.0, 2.2, 3.0}) {
+      const Pose pose = good(sampler.at_time(time));
+      EXPECT_NEAR(pose.positions[8], time * time, 1e-5);
+      const double size = std::hypot(time * time, 1 + time);
+      EXPECT_NEAR(pose.normals[1], -time * time / size, 1e-6) << time;
+      EXPECT_NEAR(pose.normals[2], (1 + time) / size, 1e-6) << time;
+    }
+  }
+  SampleOptions straight = options_of(ElementKind::kFaces);
+  EXPECT_NEAR(good(sampler_of(motion, straight).at_time(2)).positions[8], 5, 1e-6) << "half way from 1 to 9";
+  motion.connect_as_targets();
+  straight.path = PathKind::kCatmullRom;
+  EXPECT_EQ(NormalSampler::make(motion, straight).error().code, ErrorCode::kUsage);
+}
+
 }  // namespace
 }  // namespace chronormal::sample_test

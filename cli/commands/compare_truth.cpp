@@ -1,0 +1,39 @@
+#include "cli/commands/compare_truth.h"
+
+#include <utility>
+
+namespace chronormal::cli {
+
+std::vector<Option> TruthArguments::table() {
+  return {{"--truth N",
+           &every,
+           "keep every N-th keyframe of a sequence, and compare with those that are left out: what\n"
+           "the motion really did between; curved paths take part",
+           {.check = check_whole(2)}}};
+}
+
+Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input, const ElementArguments& elements,
+                                                      const TruthArguments& arguments, std::vector<std::string> schemes,
+                                                      Progress& progress) {
+  const Result<ElementOptions> wanted = elements.options();
+  if (!wanted) return wanted.error();
+  Result<Input> opened = open_input(input, progress);
+  if (!opened) return opened.error();
+  const Result<const Motion*> motion = opened.value().motion();
+  if (!motion) return motion.error();
+  TruthOptions options;
+  options.every = *arguments.every;
+  options.schemes = std::move(schemes);
+  options.elements = wanted.value();
+  options.progress = progress.callback("comparing");
+  Result<TruthComparison> comparison = compare_with_truth(*motion.value(), options);
+  progress.clear();
+  if (!comparison) {
+    Error error = comparison.error();
+    if (error.code == ErrorCode::kUsage && error.place.empty()) error.place = "--truth";
+    return error;
+  }
+  return NamedTruthComparison{opened.value().name(), std::move(comparison).value()};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,29 @@
+/// The option --truth of `compare`.
+#ifndef CLI_COMMANDS_COMPARE_TRUTH_H_
+#define CLI_COMMANDS_COMPARE_TRUTH_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "chronormal/workflow/json.h"
+#include "cli/options/command.h"
+
+namespace chronormal::cli {
+
+struct TruthArguments {
+  std::optional<std::size_t> every;  ///< given: --truth
+
+  [[nodiscard]] std::vector<Option> table();
+};
+
+/// Reads the input, leaves keyframes out, and compares with them. Errors: those of reading and of compare_with_truth().
+[[nodiscard]] Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
+                                                                    const ElementArguments& elements,
+                                                                    const TruthArguments& arguments,
+                                                                    std::vector<std::string> schemes,
+                                                                    Progress& progress);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_COMMANDS_COMPARE_TRUTH_H_

@@ -1,0 +1,22 @@
+// chronormal query cones: where the normals of faces and of meshlets stay.
+
+#include <memory>
+
+#include "cli/commands/query_question.h"
+
+namespace chronormal::cli {
+
+Question cones_question() {
+  auto meshlets = std::make_shared<std::optional<std::size_t>>();
+  return {"cones",
+          "the cones in which normals stay, and bounds of meshlets",
+          {{"--meshlets N", meshlets.get(),
+            "also build meshlets of up to N triangles, with bounds as meshoptimizer has them"}},
+          [meshlets] {
+            return Result<Ask>([meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
+              return query_cones(motion, *meshlets, span, progress);
+            });
+          }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,28 @@
+// chronormal query contain: which points are inside a closed mesh, and when each goes through its surface.
+
+#include <memory>
+#include <utility>
+
+#include "chronormal/io/points_file.h"
+#include "cli/commands/query_question.h"
+#include "cli/options/command.h"
+
+namespace chronormal::cli {
+
+Question contain_question() {
+  const auto file = std::make_shared<std::string>();
+  return {"contain",
+          "which points are inside a closed mesh, and when they cross its surface",
+          {{"--points P.npy", file.get(), "(n, 3), or (n, 2, 3): from there to there, in the time of the motion"}},
+          [file]() -> Result<Ask> {
+            if (file->empty()) return misuse("--points", "name a .npy file of points");
+            Result<PointPaths> points = read_points_file(*file);
+            if (!points) return points.error();
+            return Ask([points = std::move(points).value()](const Motion& motion, const QuerySpan& span,
+                                                            const QueryProgress& progress) {
+              return query_contain(motion, points, span, progress);
+            });
+          }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,13 @@
+// chronormal query shutter: mean normals for motion blur.
+
+#include "cli/commands/query_question.h"
+
+namespace chronormal::cli {
+
+Question shutter_question() {
+  return {"shutter", "mean normals while a shutter is open, and how far lerp of the ends is off", {}, [] {
+            return Result<Ask>(query_shutter);
+          }};
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,96 @@
+#include "cli/reports/truth_report.h"
+
+#include <algorithm>
+
+#include "cli/reports/compare_report.h"
+#include "cli/terminal/format.h"
+#include "cli/terminal/screen.h"
+#include "cli/terminal/table.h"
+#include "cli/terminal/text.h"
+
+namespace chronormal::cli {
+namespace {
+
+using Align = Table::Align;
+
+double degrees(double radians) { return radians * kDegreesPerRadian; }
+
+const TruthRow* find_row(const TruthComparison& comparison, const std::string& path, const std::string& scheme) {
+  const auto found = std::find_if(comparison.rows.begin(), comparison.rows.end(),
+                                  [&](const TruthRow& row) { return row.path == path && row.scheme == scheme; });
+  return found == comparison.rows.end() ? nullptr : &*found;
+}
+
+std::string mean_of(const TruthRow& row) { return four_decimals(degrees(row.quality.mean())); }
+
+// What the figures say, in sentences.
+std::string remarks(const TruthComparison& c) {
+  constexpr double kAsGood = 0.98;
+  std::string text;
+  const TruthRow* const linear = find_row(c, "linear", "linear");
+  const TruthRow* const exact = find_row(c, "linear", "polynomial");
+  const TruthRow* const curved = find_row(c, "catmull-rom", "exact");
+  if (linear != nullptr && exact != nullptr && exact->quality.mean() > kAsGood * linear->quality.mean())
+    text += formatted(
+        "\nThe exact normals of straight motion (polynomial) are no nearer to this motion than linear: {} and {}\n"
+        "degrees in the mean, since its vertices did not move straight between the keyframes that were kept.\n",
+        mean_of(*exact), mean_of(*linear));
+  if (c.bend > kTooSparse)
+    text += formatted(
+        "\nThe keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and\n"
+        "above {:.2f} nothing tells what happened between. More keyframes help; no scheme does.\n",
+        c.bend, kTooSparse);
+  if (curved == nullptr) text += "\nTwo keyframes have no curve through them: with three, curved paths take part.\n";
+  std::size_t degenerate = 0;
+  for (const TruthRow& row : c.rows) degenerate = std::max(degenerate, row.quality.degenerate);
+  if (degenerate > 0)
+    text += formatted("\ndegenerate: {} ({}, keyframe) {} without an exact normal left out\n", grouped(degenerate),
+                      one_element(c.kind), degenerate == 1 ? "pair" : "pairs");
+  return text;
+}
+
+}  // namespace
+
+std::string truth_table(const NamedTruthComparison& input) {
+  const TruthComparison& c = input.comparison;
+  std::string text =
+      formatted("{}: {}, {}; {} kept, {} left out, which these are held against\n", heading(printable(input.name)),
+                counted(c.vertices, "vertex", "vertices"), counted(c.faces, "face", "faces"),
+                counted(c.kept, "keyframe", "keyframes"), grouped(c.left_out));
+  if (c.kind != ElementKind::kFaces)
+    text += formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
+                      element_kind_name(c.kind));
+  Table table;
+  const std::string element(one_element(c.kind));
+  table.add_column("path", "", Align::kLeft);
+  table.add_column("scheme", "", Align::kLeft);
+  for (const char* title : {"mean", "rms", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  table.add_column("worst at", "segment", Align::kRight);
+  table.add_column("", element, Align::kRight);
+  table.add_column("", "t", Align::kRight);
+  for (const TruthRow& row : c.rows) {
+    const Quality& q = row.quality;
+    const bool has_worst = q.max > 0;
+    table.add_row({row.path, row.scheme, mean_of(row), four_decimals(degrees(q.rms())), four_decimals(degrees(q.max)),
+                   has_worst ? grouped(q.max_at.segment) : "-", has_worst ? grouped(q.max_at.element) : "-",
+                   has_worst ? formatted("{:.2f}", q.max_at.t) : "-"});
+  }
+  return text + '\n' + table.text() + remarks(c);
+}
+
+std::string truth_csv(const NamedTruthComparison& input) {
+  const TruthComparison& c = input.comparison;
+  std::string text =
+      "input,vertices,faces,elements,kept,left_out,bend,path,scheme,mean_degrees,rms_degrees,max_degrees,max_segment,"
+      "max_element,max_t,degenerate,missing\n";
+  for (const TruthRow& row : c.rows) {
+    const Quality& q = row.quality;
+    text += formatted("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name), c.vertices,
+                      c.faces, element_kind_name(c.kind), c.kept, c.left_out, c.bend, row.path, csv_field(row.scheme),
+                      degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
+                      q.max_at.t, q.degenerate, q.missing);
+  }
+  return text;
+}
+
+}  // namespace chronormal::cli

@@ -1,0 +1,229 @@
+#include "chronormal/workflow/truth.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/paths.h"
+#include "chronormal/schemes/scheme.h"
+#include "chronormal/workflow/compare.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlockSize = 1024;
+
+VectorView<const float> positions_of(const Motion::Keyframe& keyframe) {
+  return VectorView<const float>::packed(std::span(keyframe.positions));
+}
+
+// The keyframes that are kept.
+class KeptKeys {
+ public:
+  KeptKeys(const Motion& motion, std::size_t every) : motion_(motion), every_(every) {}
+
+  [[nodiscard]] std::size_t count() const { return (motion_.keyframes.size() - 1) / every_ + 1; }
+  [[nodiscard]] const Motion::Keyframe& operator[](std::size_t i) const { return motion_.keyframes[i * every_]; }
+  [[nodiscard]] Segment segment(std::size_t i) const {
+    const KeptKeys& keys = *this;
+    return {&motion_.topology, positions_of(keys[i]), positions_of(keys[i + 1]), keys[i].time, keys[i + 1].time, i};
+  }
+  // The keyframes between the kept ones i and i + 1.
+  [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
+    return std::span(motion_.keyframes).subspan(i * every_ + 1, every_ - 1);
+  }
+  [[nodiscard]] std::vector<const Motion::Keyframe*> all() const {
+    std::vector<const Motion::Keyframe*> keys;
+    for (std::size_t i = 0; i < count(); ++i) keys.push_back(&(*this)[i]);
+    return keys;
+  }
+
+ private:
+  const Motion& motion_;
+  std::size_t every_;
+};
+
+// The faces of a motion, or groups of their corners, and the control normals of either on a path of any degree.
+class Elements {
+ public:
+  Elements(const Topology& topology, std::optional<NormalGroups> groups)
+      : groups_(std::move(groups)), count_(groups_ ? groups_->size() : topology.face_count()) {}
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
+  [[nodiscard]] std::size_t first_output(std::size_t element) const {
+    if (!groups_) return element;
+    const auto outputs = groups_->element_of_output();
+    return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
+  }
+  [[nodiscard]] std::vector<ControlNormals> control_normals(const Segment& segment) const {
+    std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
+    if (!groups_) return of_faces;
+    std::vector<ControlNormals> result(count_);
+    group_control_normals(*groups_, of_faces, {0, count_}, result);
+    return result;
+  }
+  [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(const PolynomialSegment<3>& segment) const {
+    std::vector<PolynomialNormals<3>> of_faces(segment.topology->face_count());
+    parallel_blocks_of(of_faces.size(), [&](IndexRange range) {
+      polynomial_face_normals(segment, range, std::span(of_faces).subspan(range.first, range.count));
+    });
+    if (!groups_) return of_faces;
+    std::vector<PolynomialNormals<3>> result(count_);
+    parallel_blocks_of(count_, [&](IndexRange range) {
+      polynomial_group_normals<3>(*groups_, of_faces, range, std::span(result).subspan(range.first, range.count));
+    });
+    return result;
+  }
+  // The exact normals of a mesh that stands still.
+  void exact_normals(const Segment& still, IndexRange range, std::span<Vec3d> result) const {
+    if (!groups_) return reference_normals(still, range, 0, result);
+    for (std::size_t i = 0; i < range.count; ++i)
+      result[i] = reference_normal(still, groups_->faces(range.first + i), 0);
+  }
+
+  template <class Body>
+  static void parallel_blocks_of(std::size_t count, const Body& body) {
+    parallel_for((count + kBlockSize - 1) / kBlockSize, [&](std::size_t b) {
+      body(IndexRange{b * kBlockSize, std::min(kBlockSize, count - b * kBlockSize)});
+    });
+  }
+
+ private:
+  std::optional<NormalGroups> groups_;
+  std::size_t count_;
+};
+
+// One kept segment with what stands between its ends.
+struct Piece {
+  Segment segment;
+  std::span<const Motion::Keyframe> between;
+  std::vector<ControlNormals> straight;
+  std::vector<PolynomialNormals<3>> curved;  // none where there are too few keyframes for a curve
+
+  [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
+    return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);
+  }
+};
+
+// The errors of all rows on one block of elements, the curved path last.
+std::vector<Quality> errors_of_block(const Piece& piece, const Elements& elements, IndexRange range,
+                                     const std::vector<std::string>& names) {
+  std::vector<std::unique_ptr<Scheme>> schemes;
+  for (const std::string& name : names) {
+    schemes.push_back(make_scheme(name).value());
+    schemes.back()->prepare(
+        {&piece.segment, range, std::span(piece.straight).subspan(range.first, range.count), elements.are_faces()});
+  }
+  std::vector<Quality> result(names.size() + (piece.curved.empty() ? 0 : 1));
+  std::vector<Vec3d> exact(range.count);
+  std::vector<float> packed(3 * range.count);
+  const auto shown = VectorView<float>::packed(packed);
+  for (const Motion::Keyframe& keyframe : piece.between) {
+    const double t = piece.local_time(keyframe);
+    const Segment still{piece.segment.topology, positions_of(keyframe), positions_of(keyframe),
+                        keyframe.time,          keyframe.time,          piece.segment.index};
+    elements.exact_normals(still, range, exact);
+    const ErrorPlace first{piece.segment.index, range.first, t};
+    for (std::size_t s = 0; s < schemes.size(); ++s) {
+      schemes[s]->evaluate(t, shown);
+      result[s].add(exact, shown, first);
+    }
+    if (piece.curved.empty()) continue;
+    for (std::size_t i = 0; i < range.count; ++i)
+      shown.set(i, to_float(unit_normal_at(piece.curved[range.first + i], t).vector));
+    result.back().add(exact, shown, first);
+  }
+  return result;
+}
+
+Status check(const Motion& motion, const TruthOptions& options) {
+  const auto refuse = [](const std::string& message) { return Error{ErrorCode::kUsage, "", message}; };
+  if (options.every < 2)
+    return refuse("with every keyframe kept, none is left to compare with: keep every 2nd or fewer");
+  if (motion.kind != MotionKind::kSequence)
+    return refuse(
+        "vertices of blend shapes move straight between their weights: the exact normals are the truth there, and "
+        "compare without --truth holds schemes against them");
+  if (motion.keyframes.size() <= options.every)
+    return refuse("there are " + std::to_string(motion.keyframes.size()) + " keyframes: of these, keeping every " +
+                  std::to_string(options.every) + "th leaves no two");
+  return Success{};
+}
+
+}  // namespace
+
+double bend_of(const Motion& motion, std::size_t every) {
+  const KeptKeys keys(motion, every);
+  double bent = 0, way = 0;
+  for (std::size_t i = 1; i + 1 < keys.count(); ++i) {
+    const auto before = positions_of(keys[i - 1]), at = positions_of(keys[i]), after = positions_of(keys[i + 1]);
+    // Times may be uneven: what counts is the place on the straight way at the time of the middle one.
+    const double part = (keys[i].time - keys[i - 1].time) / (keys[i + 1].time - keys[i - 1].time);
+    for (std::size_t v = 0; v < at.count; ++v) {
+      const Vec3d p = to_double(before[v]), q = to_double(at[v]), r = to_double(after[v]);
+      // Of even times, twice the distance from the middle is the second difference.
+      bent += 2 * length(q - ((1 - part) * p + part * r));
+      way += length(q - p) + length(r - q);
+    }
+  }
+  return way > 0 ? bent / way : 0;
+}
+
+Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOptions& options) {
+  if (const Status status = check(motion, options); !status) return status.error();
+  const ElementKind kind = options.elements.kind;
+  const std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
+  for (const std::string& name : names) {
+    const auto scheme = make_scheme(name);
+    if (!scheme) return scheme.error();
+    if (kind != ElementKind::kFaces && scheme.value()->needs_faces())
+      return Error{
+          ErrorCode::kUsage, "",
+          name + " looks at the edges of faces; it has no meaning for " + std::string(element_kind_name(kind))};
+  }
+  std::optional<NormalGroups> groups;
+  if (kind != ElementKind::kFaces) {
+    Result<NormalGroups> made = make_groups(motion, options.elements);
+    if (!made) return made.error();
+    groups = std::move(made).value();
+  }
+  const Elements elements(motion.topology, std::move(groups));
+  const KeptKeys keys(motion, options.every);
+  const bool has_curve = keys.count() >= 3;
+
+  TruthComparison result;
+  result.kind = kind;
+  result.vertices = motion.topology.vertex_count();
+  result.faces = motion.topology.face_count();
+  result.elements = elements.count();
+  result.kept = keys.count();
+  result.left_out = (keys.count() - 1) * (options.every - 1);
+  result.bend = bend_of(motion, options.every);
+  for (const std::string& name : names) result.rows.push_back({std::string(path_name(PathKind::kLinear)), name, {}});
+  if (has_curve) result.rows.push_back({std::string(path_name(PathKind::kCatmullRom)), "exact", {}});
+
+  const std::size_t blocks = (elements.count() + kBlockSize - 1) / kBlockSize;
+  std::vector<std::vector<Quality>> found(blocks);
+  for (std::size_t i = 0; i + 1 < keys.count(); ++i) {
+    Piece piece{keys.segment(i), keys.between(i), elements.control_normals(keys.segment(i)), {}};
+    if (has_curve) piece.curved = elements.control_normals(catmull_rom_segment(motion.topology, keys.all(), i));
+    Elements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
+      found[range.first / kBlockSize] = errors_of_block(piece, elements, range, names);
+    });
+    for (const std::vector<Quality>& block : found)
+      for (std::size_t r = 0; r < result.rows.size(); ++r) result.rows[r].quality.add(block[r]);
+    if (options.progress) options.progress(i + 1, keys.count() - 1);
+  }
+  for (TruthRow& row : result.rows) {
+    if (row.quality.count > 0) row.quality.max_at.element = elements.first_output(row.quality.max_at.element);
+  }
+  return result;
+}
+
+}  // namespace chronormal

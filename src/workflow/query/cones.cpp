@@ -1,0 +1,192 @@
+// The question `cones`: in which cone every normal of a face stays, and bounds of meshlets that hold while they deform.
+
+#include "chronormal/analysis/cones.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "chronormal/analysis/cluster_bounds.h"
+#include "chronormal/workflow/query.h"
+#include "workflow/query/parts.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kMostTriangles = 512;  // of a meshlet, as meshoptimizer has it
+constexpr float kConeWeight = 0.5F;          // meshlets of faces that look alike are culled more often
+
+// For people, and no less than it is.
+double degrees_of(const NormalCone& cone) { return half_angle(cone) * kDegreesPerRadian * (1 + 0x1p-48); }
+
+struct Meshlets {
+  std::vector<std::uint32_t> faces, offsets = {0};  // meshlet after meshlet
+
+  [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t m) const {
+    return std::span(faces).subspan(offsets[m], offsets[m + 1] - offsets[m]);
+  }
+};
+
+// meshoptimizer names the corners of its triangles, in their order but for where each begins; this finds their faces.
+Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
+  const std::span<const std::uint32_t> corners = motion.topology.corners();
+  const std::vector<float>& positions = motion.keyframes.front().positions;
+  constexpr std::size_t kMostVertices = 255;
+  const std::size_t most = meshopt_buildMeshletsBound(corners.size(), kMostVertices, most_triangles);
+  std::vector<meshopt_Meshlet> meshlets(most);
+  std::vector<unsigned> vertices(most * kMostVertices);
+  std::vector<unsigned char> triangles(most * most_triangles * 3);
+  meshlets.resize(meshopt_buildMeshlets(meshlets.data(), vertices.data(), triangles.data(), corners.data(),
+                                        corners.size(), positions.data(), positions.size() / 3, 3 * sizeof(float),
+                                        kMostVertices, most_triangles, kConeWeight));
+  using Triangle = std::array<std::uint32_t, 3>;
+  const auto from_the_lowest = [](Triangle triangle) {
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+    return triangle;
+  };
+  std::vector<std::pair<Triangle, std::uint32_t>> faces;
+  for (std::size_t f = 0; 3 * f < corners.size(); ++f)
+    faces.push_back(
+        {from_the_lowest({corners[3 * f], corners[3 * f + 1], corners[3 * f + 2]}), static_cast<std::uint32_t>(f)});
+  std::sort(faces.begin(), faces.end());
+  std::vector<std::uint8_t> taken(faces.size());
+  Meshlets result;
+  for (const meshopt_Meshlet& meshlet : meshlets) {
+    for (std::size_t i = 0; i < meshlet.triangle_count; ++i) {
+      const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
+      const unsigned* const global = &vertices[meshlet.vertex_offset];
+      const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
+      // Doubled faces are taken one after the other.
+      auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
+      while (taken[found->second] != 0) ++found;
+      taken[found->second] = 1;
+      result.faces.push_back(found->second);
+    }
+    result.offsets.push_back(static_cast<std::uint32_t>(result.faces.size()));
+  }
+  return result;
+}
+
+// The columns of meshopt_Bounds, a row for each segment and meshlet.
+QueryTable meshlet_table(const Motion& motion, const Meshlets& meshlets, std::span<const SegmentPart> parts,
+                         const QueryProgress& progress) {
+  const std::vector<std::vector<ClusterBounds>> found =
+      for_parts<std::vector<ClusterBounds>>(parts, progress, [&](const SegmentPart& part) {
+        std::vector<ClusterBounds> bounds;
+        for (std::size_t m = 0; m < meshlets.size(); ++m)
+          bounds.push_back(cluster_bounds(motion.segment(part.segment), meshlets[m], part.t0, part.t1));
+        return bounds;
+      });
+  std::vector<std::int64_t> segments, numbers, cutoffs_s8, axes_s8;
+  std::vector<float> centers, radii, apexes, axes, cutoffs;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    for (std::size_t m = 0; m < found[p].size(); ++m) {
+      const ClusterBounds& b = found[p][m];
+      segments.push_back(static_cast<std::int64_t>(parts[p].segment));
+      numbers.push_back(static_cast<std::int64_t>(m));
+      centers.insert(centers.end(), std::begin(b.center), std::end(b.center));
+      radii.push_back(b.radius);
+      apexes.insert(apexes.end(), std::begin(b.cone_apex), std::end(b.cone_apex));
+      axes.insert(axes.end(), std::begin(b.cone_axis), std::end(b.cone_axis));
+      cutoffs.push_back(b.cone_cutoff);
+      axes_s8.insert(axes_s8.end(), std::begin(b.cone_axis_s8), std::end(b.cone_axis_s8));
+      cutoffs_s8.push_back(b.cone_cutoff_s8);
+    }
+  }
+  return {"meshlet",
+          "bounds of meshlets, as meshoptimizer has them",
+          {{"segment", std::move(segments)},
+           {"index", std::move(numbers)},
+           {"center", std::move(centers), 3},
+           {"radius", std::move(radii)},
+           {"cone_apex", std::move(apexes), 3},
+           {"cone_axis", std::move(axes), 3},
+           {"cone_cutoff", std::move(cutoffs)},
+           {"cone_axis_s8", std::move(axes_s8), 3},
+           {"cone_cutoff_s8", std::move(cutoffs_s8)}}};
+}
+
+QueryTable member_table(const Meshlets& meshlets) {
+  std::vector<std::int64_t> index, faces(meshlets.faces.begin(), meshlets.faces.end());
+  for (std::size_t m = 0; m < meshlets.size(); ++m)
+    index.insert(index.end(), meshlets[m].size(), static_cast<std::int64_t>(m));
+  return {"member", "the faces of each meshlet", {{"meshlet", std::move(index)}, {"face", std::move(faces)}}};
+}
+
+Status check_meshlets(const Motion& motion, std::size_t most_triangles) {
+  if (most_triangles < 4 || most_triangles > kMostTriangles || most_triangles % 4 != 0)
+    return Error{ErrorCode::kUsage, "--meshlets", "it must be a multiple of 4, from 4 to 512 triangles"};
+  if (!motion.topology.all_triangles())
+    return Error{ErrorCode::kUsage, "--meshlets", "meshlets are made of triangles, and this mesh has larger faces"};
+  return Success{};
+}
+
+}  // namespace
+
+Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets, const QuerySpan& span,
+                                const QueryProgress& progress) {
+  const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
+  if (!parts) return parts.error();
+  if (meshlets) {
+    if (const Status status = check_meshlets(motion, *meshlets); !status) return status.error();
+  }
+  const std::size_t count = motion.topology.face_count();
+  const std::vector<std::vector<NormalCone>> found =
+      for_parts<std::vector<NormalCone>>(parts.value(), progress, [&](const SegmentPart& part) {
+        std::vector<NormalCone> cones(count);
+        face_normal_cones(motion.segment(part.segment), {0, count}, part.t0, part.t1, cones);
+        return cones;
+      });
+
+  std::vector<std::int64_t> segments, faces;
+  std::vector<float> axes, sines;
+  std::vector<double> half_angles;
+  std::size_t whole = 0, empty = 0;
+  double sum = 0, largest = 0;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    for (std::size_t f = 0; f < count; ++f) {
+      const NormalCone& cone = found[p][f];
+      segments.push_back(static_cast<std::int64_t>(parts.value()[p].segment));
+      faces.push_back(static_cast<std::int64_t>(f));
+      axes.insert(axes.end(), {cone.axis.x, cone.axis.y, cone.axis.z});
+      sines.push_back(cone.sine);
+      half_angles.push_back(degrees_of(cone));
+      whole += cone.is_whole_sphere() ? 1U : 0U;
+      empty += cone.is_empty() ? 1U : 0U;
+      if (cone.is_whole_sphere() || cone.is_empty()) continue;
+      sum += half_angles.back();
+      largest = std::max(largest, half_angles.back());
+    }
+  }
+  const auto number = [](std::size_t value) { return static_cast<double>(value); };
+  const std::size_t narrow = faces.size() - whole - empty;
+  QueryAnswer answer{
+      "cones",
+      {{"segments", "segments looked at", number(parts.value().size())},
+       {"faces", "faces in each", number(count)},
+       {"whole_sphere", "cones that are the whole sphere", number(whole)},
+       {"empty", "that are empty: no area at any time", number(empty)},
+       {"mean_half_angle", "degrees: half-angle of the others, mean", narrow == 0 ? 0 : sum / number(narrow)},
+       {"largest_half_angle", "degrees: largest of them", largest}},
+      {{"",
+        "cones that contain every normal of a face, half-angles in degrees",
+        {{"segment", std::move(segments)},
+         {"face", std::move(faces)},
+         {"axis", std::move(axes), 3},
+         {"sine", std::move(sines)},
+         {"half_angle", std::move(half_angles)}}}}};
+  if (meshlets) {
+    const Meshlets built = build_meshlets(motion, *meshlets);
+    answer.facts.push_back({"meshlets", "meshlets", number(built.size())});
+    answer.tables.push_back(meshlet_table(motion, built, parts.value(), progress));
+    answer.tables.push_back(member_table(built));
+  }
+  return answer;
+}
+
+}  // namespace chronormal

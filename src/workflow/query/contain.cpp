@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <utility>
+
+#include "chronormal/analysis/containment.h"
+#include "chronormal/workflow/query.h"
+
+namespace chronormal {
+namespace {
+
+struct Passed {
+  std::size_t segment = 0;
+  double time = 0;
+  Crossing crossing;
+};
+
+// Where points are at a time of the motion, as float32 as its vertices.
+std::vector<float> places_at(const PointPaths& points, double share) {
+  std::vector<float> places(points.from.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = static_cast<float>(
+        points.from[i] == points.to[i] ? points.from[i] : (1 - share) * points.from[i] + share * points.to[i]);
+  return places;
+}
+
+QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& windings, const std::vector<Passed>& all) {
+  std::vector<std::uint8_t> inside;
+  for (const std::int32_t winding : windings) inside.push_back(winding != 0 ? 1 : 0);
+  std::vector<std::int64_t> points, of_segments, faces;
+  std::vector<double> times, normals;
+  std::vector<std::uint8_t> inward;
+  for (const auto& [segment, time, crossing] : all) {
+    points.push_back(crossing.point);
+    of_segments.push_back(static_cast<std::int64_t>(segment));
+    faces.push_back(crossing.face);
+    times.push_back(time);
+    inward.push_back(crossing.inward ? 1 : 0);
+    normals.insert(normals.end(), {crossing.normal.x, crossing.normal.y, crossing.normal.z});
+  }
+  const auto count = [](auto value) { return static_cast<double>(value); };
+  return {"contain",
+          {{"segments", "segments looked at", count(segments)},
+           {"points", "points", count(inside.size())},
+           {"inside", "of them inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
+           {"crossings", "crossings of the surface", count(all.size())},
+           {"inward", "of them inward", count(std::count(inward.begin(), inward.end(), 1))}},
+          {{"crossing",
+            "crossings, by point and time",
+            {{"point", std::move(points)},
+             {"time", std::move(times)},
+             {"segment", std::move(of_segments)},
+             {"face", std::move(faces)},
+             {"inward", std::move(inward)},
+             {"normal", std::move(normals), 3}}},
+           {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
+}
+
+}  // namespace
+
+Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points, const QuerySpan& span,
+                                  const QueryProgress& progress) {
+  const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
+  if (!parts) return parts.error();
+  const Result<Containment> containment =
+      Containment::make(motion.topology, weld_coincident(motion),
+                        VectorView<const float>::packed(motion.keyframes[motion.keyframes.size() / 2].positions));
+  if (!containment) return containment.error();
+
+  double first = motion.segment(0).start_time, last = first;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    first = std::min(first, motion.segment(s).start_time);
+    last = std::max(last, motion.segment(s).end_time);
+  }
+  std::vector<std::int32_t> windings;
+  std::vector<Passed> all;
+  for (std::size_t i = 0; i < parts.value().size(); ++i) {
+    const SegmentPart& part = parts.value()[i];
+    const Segment segment = motion.segment(part.segment);
+    const auto places = [&](double time) { return places_at(points, (time - first) / (last - first)); };
+    const std::vector<float> start = places(segment.start_time), end = places(segment.end_time);
+    const auto from = VectorView<const float>::packed(start), to = VectorView<const float>::packed(end);
+    if (i == 0) windings = containment.value().winding_numbers(segment, part.t0, from, to);
+    for (const Crossing& crossing : containment.value().crossings(segment, from, to)) {
+      if (part.t0 <= crossing.t && crossing.t <= part.t1)
+        all.push_back(
+            {part.segment, segment.start_time + crossing.t * (segment.end_time - segment.start_time), crossing});
+    }
+    if (progress) progress(i + 1, parts.value().size());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Passed& a, const Passed& b) { return a.crossing.point < b.crossing.point; });
+  return answer_of(parts.value().size(), windings, all);
+}
+
+}  // namespace chronormal

@@ -1,0 +1,140 @@
+// The question `shutter`: what normal a renderer should show while the shutter is open, and what it shows instead where it
+// interpolates between the ends.
+
+#include "chronormal/analysis/shutter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "chronormal/analysis/cones.h"
+#include "chronormal/workflow/query.h"
+#include "workflow/query/parts.h"
+
+namespace chronormal {
+namespace {
+
+// Of all faces over a part of a segment, or over parts that follow each other.
+struct Means {
+  std::vector<ShutterNormal> normals;
+  std::vector<Vec3d> from, to;  // unit normals at both ends
+  std::vector<NormalCone> cones;
+};
+
+Means means_of(const Motion& motion, const SegmentPart& part) {
+  const std::size_t count = motion.topology.face_count();
+  const Segment segment = motion.segment(part.segment);
+  Means means{std::vector<ShutterNormal>(count), {}, {}, std::vector<NormalCone>(count)};
+  face_shutter_normals(segment, {0, count}, part.t0, part.t1, means.normals);
+  face_normal_cones(segment, {0, count}, part.t0, part.t1, means.cones);
+  std::vector<ControlNormals> control(count);
+  face_control_normals(segment, {0, count}, control);
+  for (const ControlNormals& c : control) {
+    means.from.push_back(unit_normal_at(c, part.t0).vector);
+    means.to.push_back(unit_normal_at(c, part.t1).vector);
+  }
+  return means;
+}
+
+// Parts weigh as much as they last.
+Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::span<const Means> found) {
+  Means whole = found.front();
+  whole.to = found.back().to;
+  double total = 0;
+  std::vector<double> durations;
+  for (const SegmentPart& part : parts) {
+    const Segment segment = motion.segment(part.segment);
+    durations.push_back((part.t1 - part.t0) * (segment.end_time - segment.start_time));
+    total += durations.back();
+  }
+  for (std::size_t f = 0; f < whole.normals.size(); ++f) {
+    ShutterNormal sum;
+    std::vector<NormalCone> cones;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const ShutterNormal& one = found[p].normals[f];
+      const double share = durations[p] / total;
+      sum = {sum.mean + share * one.mean, sum.mean_unit + share * one.mean_unit,
+             sum.error + share * one.error + 0x1p-48};
+      cones.push_back(found[p].cones[f]);
+    }
+    whole.normals[f] = sum;
+    whole.cones[f] = enclosing_cone(cones);
+  }
+  return whole;
+}
+
+// A table of means, row after row.
+struct Rows {
+  std::vector<std::int64_t> segments, faces;
+  std::vector<double> mean, mean_unit, error, spread, half_angle, ends, ends_off;
+  double sum_off = 0, largest_off = 0;
+  std::size_t judged = 0;
+
+  void add(const Means& means, std::size_t segment) {
+    const auto append = [](std::vector<double>& list, const Vec3d& v) { list.insert(list.end(), {v.x, v.y, v.z}); };
+    for (std::size_t f = 0; f < means.normals.size(); ++f) {
+      const ShutterNormal& s = means.normals[f];
+      const Vec3d between = unit(means.from[f] + means.to[f]);
+      const double off = angle_between(s.mean_unit, between) * kDegreesPerRadian;
+      segments.push_back(static_cast<std::int64_t>(segment));
+      faces.push_back(static_cast<std::int64_t>(f));
+      append(mean, s.mean);
+      append(mean_unit, s.mean_unit);
+      error.push_back(s.error);
+      spread.push_back(length(s.mean_unit));
+      half_angle.push_back(chronormal::half_angle(means.cones[f]) * kDegreesPerRadian * (1 + 0x1p-48));
+      append(ends, between);
+      ends_off.push_back(off);
+      if (s.mean_unit == Vec3d{} || between == Vec3d{}) continue;
+      ++judged;
+      sum_off += off;
+      largest_off = std::max(largest_off, off);
+    }
+  }
+
+  [[nodiscard]] QueryTable table(std::string name, std::string meaning, bool has_segments) && {
+    QueryTable table{std::move(name), std::move(meaning), {}};
+    if (has_segments) table.columns.push_back({"segment", std::move(segments)});
+    table.columns.push_back({"face", std::move(faces)});
+    table.columns.push_back({"mean", std::move(mean), 3});
+    table.columns.push_back({"mean_unit", std::move(mean_unit), 3});
+    table.columns.push_back({"error", std::move(error)});
+    table.columns.push_back({"length", std::move(spread)});
+    table.columns.push_back({"half_angle", std::move(half_angle)});
+    table.columns.push_back({"ends", std::move(ends), 3});
+    table.columns.push_back({"ends_off", std::move(ends_off)});
+    return table;
+  }
+};
+
+}  // namespace
+
+Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
+  const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
+  if (!parts) return parts.error();
+  const std::vector<Means> found =
+      for_parts<Means>(parts.value(), progress, [&](const SegmentPart& part) { return means_of(motion, part); });
+  Rows rows;
+  for (std::size_t p = 0; p < found.size(); ++p) rows.add(found[p], parts.value()[p].segment);
+  const auto number = [](std::size_t value) { return static_cast<double>(value); };
+  const auto mean_off = [](const Rows& of) { return of.judged == 0 ? 0 : of.sum_off / static_cast<double>(of.judged); };
+  QueryAnswer answer{
+      "shutter",
+      {{"segments", "segments looked at", number(parts.value().size())},
+       {"faces", "faces in each", number(motion.topology.face_count())},
+       {"largest_error", "bound of the error of any mean", *std::max_element(rows.error.begin(), rows.error.end())},
+       {"mean_ends_off", "degrees: lerp or nlerp of the ends is off, mean", mean_off(rows)},
+       {"largest_ends_off", "degrees: largest", rows.largest_off}},
+      {}};
+  answer.tables.push_back(
+      std::move(rows).table("", "mean normals while the shutter is open, and those half way between the ends", true));
+  if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
+    Rows whole;
+    whole.add(whole_of(motion, parts.value(), found), 0);
+    answer.facts.push_back({"span_mean_ends_off", "degrees: the same over the whole span, mean", mean_off(whole)});
+    answer.facts.push_back({"span_largest_ends_off", "degrees: largest", whole.largest_off});
+    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole span", false));
+  }
+  return answer;
+}
+
+}  // namespace chronormal

@@ -1,0 +1,91 @@
+// `compare --truth`: its forms agree, its remarks say what the figures say, and it refuses what does not go with it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::compare_truth_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CompareTruth : public testing::Test {
+ protected:
+  // Two triangles that turn by an angle from frame to frame, about an axis through neither.
+  void write_turn(double angle, int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      std::ostringstream text;
+      text.precision(9);
+      const double c = std::cos(angle * frame), s = std::sin(angle * frame);
+      const double places[4][3] = {{1, 0, 0}, {2, 0.3, 0.2}, {1.5, 1, 0.4}, {2.4, 1.2, -0.3}};
+      for (const auto& p : places)
+        text << "v " << c * p[0] + s * p[2] << ' ' << p[1] << ' ' << c * p[2] - s * p[0] << '\n';
+      text << "f 1 2 3\nf 2 4 3\n";
+      folder_.write("f" + std::to_string(frame) + ".obj", text.str());
+    }
+  }
+  [[nodiscard]] ProcessResult run(const std::string& arguments) const {
+    return run_shell(std::string(kProgram) + " compare 'f*.obj' " + arguments, folder_.path());
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
+  write_turn(0.2, 9);
+  const ProcessResult table = run("--truth 2"), csv = run("--truth 2 --csv");
+  const Json json = Json::parse(run("--truth 2 --json").out);
+  EXPECT_EQ(json["kept_keyframes"], 5);
+  EXPECT_EQ(json["left_out_keyframes"], 4);
+  EXPECT_NEAR(json["bend"], std::sin(0.2), 1e-5);
+  EXPECT_EQ(json["is_too_sparse"], false);
+  EXPECT_NE(table.out.find("5 keyframes kept, 4 left out"), std::string::npos) << table.out;
+  std::istringstream lines(csv.out);
+  std::string line;
+  std::getline(lines, line);
+  for (const Json& row : json["rows"]) {
+    std::getline(lines, line);
+    const std::string names = row["path"].get<std::string>() + "," + row["scheme"].get<std::string>() + ",";
+    EXPECT_NE(line.find(names), std::string::npos) << line;
+    if (row["mean_degrees"] < 0.01) continue;  // in fewer digits, with a power of ten
+    char mean[32];
+    std::snprintf(mean, sizeof mean, "%.4f", row["mean_degrees"].get<double>());
+    EXPECT_NE(table.out.find(mean), std::string::npos) << names << mean << '\n' << table.out;
+  }
+  EXPECT_EQ(json["rows"].back()["path"], "catmull-rom");
+}
+
+TEST_F(CompareTruth, says_where_keyframes_are_too_far_apart_and_where_exact_is_no_nearer) {
+  write_turn(0.1, 9);
+  const std::string near = run("--truth 2").out;
+  EXPECT_EQ(near.find("too far apart"), std::string::npos) << near;
+  EXPECT_NE(near.find("no nearer to this motion than linear"), std::string::npos) << near;
+  write_turn(0.9, 9);
+  const std::string far = run("--truth 2").out;
+  EXPECT_NE(far.find("too far apart for a curve"), std::string::npos) << far;
+  EXPECT_NE(run("--truth 8").out.find("with three, curved paths take part"), std::string::npos);
+}
+
+TEST_F(CompareTruth, refuses_what_does_not_go_with_it) {
+  write_turn(0.2, 5);
+  for (const std::string other :
+       {"--blend 4", "--each", "--samples 5", "--access random", "--certify", "--tolerance 1", "--errors e.npz"}) {
+    const ProcessResult refused = run("--truth 2 " + other);
+    EXPECT_EQ(refused.exit_code, 2) << other;
+    EXPECT_NE(refused.err.find(other == "--blend 4" ? "--truth" : other.substr(0, other.find(' '))), std::string::npos)
+        << refused.err;
+  }
+  EXPECT_EQ(run("--truth 1").exit_code, 2);
+  EXPECT_EQ(run("--truth 5").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace chronormal::compare_truth_cli_test
