@@ -33,12 +33,24 @@ constexpr std::size_t kTimes = 64;
 constexpr double kOracle = 1e-12;  // radians
 
 const std::vector<std::string>& all_schemes() {
-  static const std::vector<std::string> names = {
-      "recompute",          "polynomial",      "rational",         "linear",
-      "quadratic",          "cubic",           "lagrange:5",       "lagrange:12",
-      "linear:scaled",      "slerp",           "decasteljau:4",    "decasteljau:9",
-      "quaternion:matrix",  "quaternion:edge", "quaternion:polar", "quaternion:random:3",
-      "quaternion:optimal", "circle",          "circle:timed"};
+  static const std::vector<std::string> names = {"recompute",
+                                                 "polynomial",
+                                                 "rational",
+                                                 "linear",
+                                                 "quadratic",
+                                                 "cubic",
+                                                 "lagrange:5",
+                                                 "lagrange:12",
+                                                 "linear:scaled",
+                                                 "slerp",
+                                                 "decasteljau:4",
+                                                 "quaternion:matrix",
+                                                 "quaternion:edge",
+                                                 "quaternion:polar",
+                                                 "quaternion:random:3",
+                                                 "quaternion:optimal",
+                                                 "circle",
+                                                 "circle:timed"};
   return names;
 }
 
