@@ -100,17 +100,6 @@ std::array<Curved<3>, 2> hermite() {
                     {}}};
 }
 
-template <std::size_t K>
-std::vector<Vec3d> positions_at(const PolynomialSegment<K>& segment, double t) {
-  std::vector<Vec3d> result;
-  for (std::size_t v = 0; v < segment.control[0].size(); ++v) {
-    Bernstein<Vec3d, K> curve;
-    for (std::size_t k = 0; k <= K; ++k) curve[k] = segment.control[k][v];
-    result.push_back(evaluate(curve, t));
-  }
-  return result;
-}
-
 // The truth: area-weighted normals from the positions at t, in double.
 template <std::size_t K>
 std::vector<Vec3d> recomputed(const Curved<K>& curved, double t) {
