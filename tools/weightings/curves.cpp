@@ -101,7 +101,7 @@ std::array<Curved<3>, 2> hermite() {
 }
 
 template <std::size_t K>
-std::vector<Vec3d> positions_at(const PolynomialSegment<K>& segment, double t) {
+std::vector<Vec3d> vertices_at(const PolynomialSegment<K>& segment, double t) {
   std::vector<Vec3d> result;
   for (std::size_t v = 0; v < segment.control[0].size(); ++v) {
     Bernstein<Vec3d, K> curve;
@@ -114,7 +114,7 @@ std::vector<Vec3d> positions_at(const PolynomialSegment<K>& segment, double t) {
 // The truth: area-weighted normals from the positions at t, in double.
 template <std::size_t K>
 std::vector<Vec3d> recomputed(const Curved<K>& curved, double t) {
-  const std::vector<Vec3d> p = positions_at(curved.segment, t);
+  const std::vector<Vec3d> p = vertices_at(curved.segment, t);
   std::vector<Vec3d> result(p.size());
   for (std::size_t f = 0; f < curved.topology.face_count(); ++f) {
     const auto face = curved.topology.face(f);
@@ -131,7 +131,7 @@ Motion cut(const Curved<K>& curved, std::size_t pieces) {
   for (std::size_t i = 0; i <= pieces; ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(pieces);
     Motion::Keyframe keyframe{{}, t, {}};
-    for (const Vec3d& p : positions_at(curved.segment, t)) {
+    for (const Vec3d& p : vertices_at(curved.segment, t)) {
       const Vec3f rounded = to_float(p);
       keyframe.positions.insert(keyframe.positions.end(), {rounded.x, rounded.y, rounded.z});
     }
