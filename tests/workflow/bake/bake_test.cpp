@@ -247,6 +247,7 @@ TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
 
 TEST(Bake, a_baked_file_is_left_as_it_is) {
   for (const auto& [encoding, name] : kBakeEncodings) {
+    if (encoding == BakeEncoding::kKeys) continue;  // of sequences alone
     SCOPED_TRACE(name);
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
