@@ -100,8 +100,8 @@ TEST(ExactCollapse, no_answer_is_wrong_in_any_family) {
     return fault_of(found, normal_polynomials(segment, face));
   });
   EXPECT_EQ(wrong, 0U);
-  EXPECT_GT(collapsing, 10000U);
-  EXPECT_GT(turning, 5000U);
+  EXPECT_GT(collapsing, test::wanted_cases() / 10);
+  EXPECT_GT(turning, test::wanted_cases() / 20);
 }
 
 TEST(Collapse, a_range_of_faces_has_those_that_collapse) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/io/builtin_morphs.h"
+#include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/read_input.h"
 #include "tests/support/winding_oracle.h"
@@ -28,11 +28,6 @@ using exact::Corners;
 using fixtures::Random;
 
 constexpr std::uint64_t kSeed = 20230;
-
-std::size_t wanted_cases() {
-  const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
-  return full == nullptr ? 100000 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
-}
 
 // The outsides of a tetrahedron, a double pyramid and a cube, whatever their vertices make of them.
 const std::array<std::vector<Corners>, 3> kMeshes{{
@@ -186,7 +181,7 @@ void judge_windings(const Scene& scene, Random& random, const std::string& what)
 
 TEST(ExactContainment, windings_between_crossings_are_those_of_whole_numbers) {
   Random random(kSeed);
-  const std::size_t wanted = wanted_cases();
+  const std::size_t wanted = test::wanted_cases();
   std::size_t cases = 0;
   for (std::size_t i = 0; cases < wanted; ++i) {
     const std::size_t shape = i % kMeshes.size();
@@ -231,7 +226,7 @@ Scene hard_scene(Random& random, std::size_t shape) {
 
 TEST(ExactContainment, crossings_are_the_roots_in_rationals) {
   Random random(kSeed + 1);
-  const std::size_t wanted = wanted_cases() / 200;
+  const std::size_t wanted = test::wanted_cases() / 200;
   std::size_t cases = 0, found = 0, special = 0;
   for (std::size_t i = 0; cases < wanted; ++i) {
     const Scene scene = hard_scene(random, i % kMeshes.size());

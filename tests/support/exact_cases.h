@@ -9,14 +9,17 @@
 #include <iostream>
 #include <string>
 
+#include "tests/support/child_process.h"
 #include "tests/support/hard_motions.h"
 
 namespace chronormal::test {
 
-/// How many cases are wanted: 100,000, or what the variable CHRONORMAL_FULL_CASES says.
+/// How many cases are wanted: 100,000, or a tenth of that where a sanitizer watches, or what the variable
+/// CHRONORMAL_FULL_CASES says.
 [[nodiscard]] inline std::size_t wanted_cases() {
   const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
-  return full == nullptr ? 100000 : static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
+  if (full != nullptr) return static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
+  return is_sanitized() ? 10000 : 100000;
 }
 /// At how many instants a case is looked at: few, and 64 in one of fifty.
 [[nodiscard]] inline std::size_t wanted_times(Random& random) { return random.below(50) == 0 ? 64 : 3; }
