@@ -40,7 +40,7 @@ chronormal_wasm_library(pugixml pugixml-* src/pugixml.cpp)
 target_include_directories(pugixml SYSTEM PUBLIC ${root}/src)
 add_library(pugixml::pugixml ALIAS pugixml)
 
-chronormal_wasm_library(meshoptimizer meshoptimizer-* src/indexcodec.cpp src/vertexcodec.cpp src/vertexfilter.cpp src/simplifier.cpp src/allocator.cpp)
+chronormal_wasm_library(meshoptimizer meshoptimizer-* src/indexcodec.cpp src/vertexcodec.cpp src/vertexfilter.cpp src/simplifier.cpp src/clusterizer.cpp src/allocator.cpp)
 target_include_directories(meshoptimizer SYSTEM PUBLIC ${root}/src)
 add_library(meshoptimizer::meshoptimizer ALIAS meshoptimizer)
 
