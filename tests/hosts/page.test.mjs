@@ -76,6 +76,8 @@ function bakedByProgram(file) {
 async function bakeAndDownload(file) {
   const name = basename(file).replace(/\.glb$/, '.right.glb'), { bytes, words } = bakedByProgram(file);
   await press('button.bake');
+  // A bake may take longer than a single question to the browser.
+  while (await page.$('.busy:not([hidden])')) await new Promise((resolve) => setTimeout(resolve, 200));
   if (words) {
     await page.waitForSelector('.busy[hidden]', WAIT);
     return assert.ok(words.includes((await said()).split('\n').at(-1)), `the page says "${await said()}", and the program ${words}`);

@@ -21,7 +21,7 @@ export function meet(positions, triangles, origin, direction) {
     const v = (dx * qx + dy * qy + dz * qz) / determinant, w = 1 - u - v;
     if (v < 0 || w < 0) continue;
     const distance = (fx * qx + fy * qy + fz * qz) / determinant;
-    if (distance <= 0 || distance >= nearest) continue;
+    if (!(distance > 0 && distance < nearest)) continue;
     nearest = distance;
     vertex = triangles[w >= u && w >= v ? t : u >= v ? t + 1 : t + 2];
   }

@@ -1,5 +1,5 @@
 // The picture: a mesh twice with one camera, as it is shown and as it should be, side by side or with a wipe between them.
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Vector3, WebGLRenderer } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { VIRIDIS, degreesText } from './colors.js';
 import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
@@ -108,17 +108,20 @@ export function makeView(stage, onPoint) {
     requestAnimationFrame(draw);
   }
 
+  // Of what is a number: weights of a file may be none, and then positions are none either.
   function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
     for (const triangles of [part.triangles, part.coarse ?? []]) {
       for (const v of triangles) {
         for (let c = 0; c < 3; ++c) {
-          least[c] = Math.min(least[c], positions[3 * v + c]);
-          most[c] = Math.max(most[c], positions[3 * v + c]);
+          const x = positions[3 * v + c];
+          if (x < least[c]) least[c] = x;
+          if (x > most[c]) most[c] = x;
         }
       }
     }
-    const [low, high] = [new Vector3(...least), new Vector3(...most)], centre = low.clone().add(high).multiplyScalar(0.5);
+    const hasPlace = [...least, ...most].every(Number.isFinite), none = [0, 0, 0];
+    const [low, high] = [new Vector3(...(hasPlace ? least : none)), new Vector3(...(hasPlace ? most : none))], centre = low.clone().add(high).multiplyScalar(0.5);
     return { centre, low, high, size: high.distanceTo(centre) || 1 };
   }
 
@@ -154,6 +157,7 @@ export function makeView(stage, onPoint) {
       ([name, member, size]) => [name, new BufferAttribute(surface[member], size).setUsage(DynamicDrawUsage)]);
     const geometryOf = (triangles) => {
       const geometry = new BufferGeometry();
+      geometry.boundingSphere = new Sphere(); // by which nothing is culled, and nothing need be put in order
       for (const [name, attribute] of attributes) geometry.setAttribute(name, attribute);
       return geometry.setIndex(new BufferAttribute(triangles, 1));
     };
@@ -205,7 +209,7 @@ export function makeView(stage, onPoint) {
     const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
     up.cross(side);
     const tilted = (a, b) => normal.clone().addScaledVector(side, a).addScaledVector(up, b);
-    let best = { free: -1 };
+    let best = { free: 0, direction: normal };
     for (const direction of [towards, normal.clone(), ...[[0.9, 0], [-0.9, 0], [0, 0.9], [0, -0.9], [2, 0], [-2, 0], [0, 2], [0, -2]].map((tilt) => tilted(...tilt))]) {
       direction.normalize();
       const from = target.clone().addScaledVector(direction, 1e-3 * radius);
@@ -220,6 +224,7 @@ export function makeView(stage, onPoint) {
   view.visit = (vertex) => {
     marked = vertex;
     const target = new Vector3().fromArray(surface.positions, 3 * vertex);
+    if (!target.toArray().every(Number.isFinite)) return request();
     const normal = new Vector3().fromArray(surface.right, 3 * vertex);
     const towards = camera.position.clone().sub(controls.target).normalize().addScaledVector(normal, 1.5);
     if (towards.length() < 0.1) towards.copy(normal);
