@@ -32,7 +32,7 @@ std::string headline(const NamedComparison& input) {
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
 
-// Of a bound, so that what is shown is one as well.
+// These round the digits of a bound outwards, so that the number that is printed is a bound as well.
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 

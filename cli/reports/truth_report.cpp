@@ -23,7 +23,7 @@ const TruthRow* find_row(const TruthComparison& comparison, const std::string& p
 
 std::string mean_of(const TruthRow& row) { return four_decimals(degrees(row.quality.mean())); }
 
-// What the figures say, in sentences.
+// Returns sentences that tell a reader what the figures mean.
 std::string remarks(const TruthComparison& c) {
   constexpr double kAsGood = 0.98;
   std::string text;

@@ -19,7 +19,7 @@
 
 namespace chronormal::inline internal {
 
-/// What a scheme shows on a piece, before it is scaled to length 1.
+/// This is the vector that a scheme makes on a piece, before it is scaled to length 1.
 struct CurvePiece {
   Bernstein<Vec3d, 3> p;
   double radius = 0;         ///< what is shown at any t of the piece is within this of p(t)

@@ -38,7 +38,7 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   if (largest == 0) return std::nullopt;
   const double scale = 1 / largest;
   const Vec3d n0 = scale * c.n0, m = scale * c.m, n1 = scale * c.n1;
-  // Of three components, and for what cutting in double adds.
+  // This is for three components, and covers what cutting in double adds.
   const auto error_of = [&](std::size_t k, const Vec3d& v) {
     return 1.7320509 * scale * errors[k] + 0x1p-46 * max_abs(v);
   };
@@ -119,7 +119,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// What all elements of a block have in common.
+// All elements of a block share these.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme) : fitted_(scheme.fitted_curves()) {

@@ -76,7 +76,7 @@ struct Facing {
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;
 
-/// What a shutter that is open over [t0, t1] may see of a face.
+/// Says which sides of a face may be seen while a shutter is open over [t0, t1].
 enum class ShutterSide : std::int8_t {
   kBack = -1,  ///< never its front: it may be culled
   kBoth = 0,

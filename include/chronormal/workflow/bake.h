@@ -176,7 +176,7 @@ struct SequenceBake {
   double largest_error = 0;         ///< degrees, of endpoint and harmless; of a weighting that is fitted
   std::size_t without_normals = 0;  ///< elements that have no area in the whole motion
   std::vector<std::string> warnings;
-  /// Of keys.
+  /// The numbers that --encode keys reports.
   struct Keys {
     std::size_t count = 0;       ///< the first and the last among them
     std::size_t in_between = 0;  ///< those that lie between two keyframes

@@ -105,7 +105,7 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
-  // Of a mesh that stands there; refuses what is beyond float32.
+  // Computes the pose of a mesh whose vertices are there, and refuses positions beyond float32.
   [[nodiscard]] Result<Pose> pose_at(const std::vector<Vec3d>& positions, const std::string& mover) const;
   // Anew, and for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, double t) const;
