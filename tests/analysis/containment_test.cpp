@@ -162,19 +162,29 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Holds the winding numbers at both ends and between, as crossings say they are, against the oracle.
+// Whether a point has the same winding number, another than at t, right before t and right after: as it is at the moment in
+// which it touches an edge.
+bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
+  constexpr double kBeside = 0x1p-44;
+  return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
+}
+
+// Holds the winding numbers at both ends and at a time between, and what crossings say of them, against the oracle.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
-  const std::vector<std::int32_t> starts = scene.windings(0), ends = scene.windings(1);
+  const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
+  const std::vector<std::int32_t> starts = scene.windings(0), between = scene.windings(t), ends = scene.windings(1);
   for (std::size_t p = 0; p < scene.from.size(); ++p) {
     const std::span<const Crossing> crossings = of_point(all, p);
+    const int expected = scene.expected_winding(p, t), told = winding_before(starts[p], crossings, t);
     ASSERT_EQ(starts[p], scene.expected_winding(p, 0)) << what << ", point " << p;
+    ASSERT_EQ(between[p], expected) << what << ", point " << p;
     ASSERT_EQ(ends[p], winding_before(starts[p], crossings, 2)) << what << ", point " << p;
-    const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
     const bool is_clear =
         std::none_of(crossings.begin(), crossings.end(), [t](const Crossing& c) { return std::fabs(c.t - t) < 1e-12; });
-    if (is_clear) {
-      ASSERT_EQ(scene.expected_winding(p, t), winding_before(starts[p], crossings, t)) << what << ", point " << p;
+    if (is_clear && expected != told) {
+      ASSERT_TRUE(is_touch(scene, p, t, told)) << what << ", point " << p << ", at t = " << t << ": " << expected
+                                               << ", and by crossings " << told;
     }
   }
 }
@@ -304,6 +314,25 @@ TEST(Containment, the_surface_may_pass_points_that_rest) {
   EXPECT_TRUE(crossings[0].inward);
   EXPECT_EQ(crossings[0].normal, (Vec3d{1, 0, 0}));
   EXPECT_TRUE(crossings[0].face == 10 || crossings[0].face == 11) << crossings[0].face;
+}
+
+TEST(Containment, a_touch_changes_the_winding_number_for_a_moment_only) {
+  // At t = 15/32, and only then, the point is on the edge (5, 6), from where it crosses nothing.
+  Scene scene(kMeshes[2],
+              {{3, 2, 1}, {-1, -6, -5}, {-5, -4, -2}, {8, -7, -4}, {4, 5, 3}, {-2, 6, -7}, {7, -8, -6}, {-3, -1, 5}},
+              {{6, 0, -8}, {8, 0, 0}, {7, 1, -6}, {3, -2, -6}, {2, 4, 8}, {0, -6, 6}, {8, 1, -4}, {-1, 5, -8}});
+  scene.from = {{4, -5, -3}};
+  scene.to = {{-2.25F, 4.25F, -0.75F}};
+  constexpr double kTouch = 15.0 / 32;
+  const std::vector<Crossing> crossings = scene.crossings();
+  const int told = winding_before(scene.windings(0)[0], crossings, kTouch);
+  EXPECT_EQ(told, -1);
+  for (const double t : {kTouch - 0x1p-20, kTouch - 0x1p-44, kTouch, kTouch + 0x1p-44, kTouch + 0x1p-20}) {
+    EXPECT_EQ(scene.windings(t)[0], t == kTouch ? 0 : told) << t - kTouch;
+    EXPECT_EQ(scene.expected_winding(0, t), t == kTouch ? 0 : told) << t - kTouch;
+  }
+  EXPECT_TRUE(std::none_of(crossings.begin(), crossings.end(),
+                           [](const Crossing& c) { return std::fabs(c.t - kTouch) < 0x1p-20; }));
 }
 
 TEST(Containment, winding_numbers_of_a_cube_that_is_turned_inside_out_are_negative) {
