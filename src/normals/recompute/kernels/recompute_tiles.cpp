@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/recompute/kernels/recompute_tiles.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "normals/recompute/kernels/results-inl.h"
 #include "simd/index_range-inl.h"
 #include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
@@ -217,40 +217,6 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
     if (flags[i] == 0) doubtful[count++] = static_cast<std::uint32_t>(first + i);
   }
   return count;
-}
-
-enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
-
-// Writes kLanes vectors from the first-th on, but for those beyond the end.
-template <ResultLayout kLayout>
-HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
-  if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
-    if constexpr (kLayout == ResultLayout::kPlanes) {
-      hn::StoreU(v.x, kFloats, result.x + first);
-      hn::StoreU(v.y, kFloats, result.y + first);
-      hn::StoreU(v.z, kFloats, result.z + first);
-    } else {
-      StorePacked<kLayout == ResultLayout::kStreamed>(v, result.x + 3 * first);
-    }
-    return;
-  }
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
-  hn::Store(v.x, kFloats, x);
-  hn::Store(v.y, kFloats, y);
-  hn::Store(v.z, kFloats, z);
-  for (std::size_t i = 0; i < kLanes && first + i < result.count; ++i) result.set(first + i, {x[i], y[i], z[i]});
-}
-
-// Calls body with the layout of a result, as a constant.
-template <class Body>
-HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
-  if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
-  if (result.is_packed()) {
-    if (stream && reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0)
-      return body(std::integral_constant<ResultLayout, ResultLayout::kStreamed>());
-    return body(std::integral_constant<ResultLayout, ResultLayout::kPacked>());
-  }
-  return body(std::integral_constant<ResultLayout, ResultLayout::kOther>());
 }
 
 // Whether one of the 48 corners of a block is this vertex.
