@@ -1,0 +1,43 @@
+/// Exact normals between two steps of a vtkPolyData.
+///
+/// Both steps have the same cells, and every point moves on a straight line between them. A cell has the vector area of
+/// its polygon, or of the triangles of its strip, as normal; a point has the sum over the faces that use it: area
+/// weights, as vtkTriangleMeshPointNormals has them. Vertices, lines, and points without faces have (0, 0, 0).
+///
+/// Bits       The normal of a point follows from the faces around it alone, and not from the order of points and cells
+///            or from what else is in the mesh. So a piece has the bits of the whole, wherever it has all these faces.
+/// Precision  Positions in float go through the control normals of the library, which are exact where double is not
+///            enough; positions of any other type are computed in double.
+#ifndef CHRONORMAL_VTK_POLY_DATA_NORMALS_H_
+#define CHRONORMAL_VTK_POLY_DATA_NORMALS_H_
+
+#include <vtkDataArray.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/normals/control_normals.h"
+
+namespace chronormal::vtk {
+
+/// Whether two steps are a motion: the same cells over the same points, all of them finite.
+/// Errors: kInvalidInput, with the place "cell C" or "point P" where only some of it differs.
+[[nodiscard]] Status check_motion(vtkPolyData* from, vtkPolyData* to);
+
+/// The control normals of all points and cells of a motion: one walk over the faces serves both.
+struct MotionNormals {
+  std::vector<ControlNormals> of_points;  ///< empty where not asked for
+  std::vector<ControlNormals> of_cells;
+};
+/// Precondition: check_motion() found no error. O(corners log corners of a point), on all cores.
+[[nodiscard]] MotionNormals motion_normals(vtkPolyData* from, vtkPolyData* to, bool points, bool cells);
+
+/// The unit normals at t as an array of three components, of double or of float.
+[[nodiscard]] vtkSmartPointer<vtkDataArray> unit_normals(const std::vector<ControlNormals>& normals, double t,
+                                                         bool in_double);
+
+}  // namespace chronormal::vtk
+
+#endif  // CHRONORMAL_VTK_POLY_DATA_NORMALS_H_

@@ -1,0 +1,217 @@
+#include "vtkChronormalInterpolator.h"
+
+#include <vtkCellData.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleVectorKey.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "poly_data_normals.h"
+
+vtkStandardNewMacro(vtkChronormalInterpolator);
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+// What one execution is asked for.
+struct vtkChronormalInterpolator::Request {
+  double t = 0;                // from the earlier step, 0, to the later one, 1
+  bool remove_ghosts = false;  // whether ghost cells are there for seams alone
+  std::string place;           // of the data in composite data, for messages
+};
+
+namespace {
+
+using Attributes = std::array<vtkDataSetAttributes*, 2>;
+
+Attributes attributes(vtkDataSet* data) { return {data->GetPointData(), data->GetCellData()}; }
+
+bool has_normals(vtkDataSet* data) {
+  return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
+}
+
+vtkSmartPointer<vtkDataSet> without_normals(vtkDataSet* data) {
+  const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
+  copy->ShallowCopy(data);
+  for (vtkDataSetAttributes* const of : attributes(copy)) of->SetNormals(nullptr);
+  return copy;
+}
+
+// Puts back what was mixed as if it were an amount.
+void keep_names(vtkDataSet* before, vtkDataSet* output) {
+  const Attributes from = attributes(before), to = attributes(output);
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    for (vtkAbstractArray* const array :
+         {static_cast<vtkAbstractArray*>(from[k]->GetGlobalIds()), from[k]->GetPedigreeIds(),
+          from[k]->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())})
+      if (array != nullptr && array->GetName() != nullptr) to[k]->AddArray(array);
+  }
+}
+
+void set_normals(vtkDataSetAttributes* output, vtkDataSetAttributes* before, vtkDataArray* normals) {
+  vtkDataArray* const stored = before->GetNormals();
+  normals->SetName(stored != nullptr && stored->GetName() != nullptr ? stored->GetName() : "Normals");
+  output->SetNormals(normals);
+}
+
+double time_of(vtkDataObject* step) {
+  return step->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())
+             ? step->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP())
+             : 0;
+}
+
+}  // namespace
+
+void vtkChronormalInterpolator::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ComputePointNormals: " << (this->ComputePointNormals ? "on" : "off") << '\n';
+  os << indent << "ComputeCellNormals: " << (this->ComputeCellNormals ? "on" : "off") << '\n';
+}
+
+int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+                                                   vtkInformationVector* outputs) {
+  if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
+  vtkInformation* const in = inputs[0]->GetInformationObject(0);
+  vtkInformation* const out = outputs->GetInformationObject(0);
+
+  // At the ends of the range vtkTemporalInterpolator asks for one step. A mesh that has no area there has a direction all
+  // the same, the limit from within the segment, so both steps are needed.
+  const int count = in->Length(Pipeline::TIME_STEPS());
+  if (count >= 2 && in->Length(UPDATE_TIME_STEPS()) == 1) {
+    const double* const times = in->Get(Pipeline::TIME_STEPS());
+    const bool at_start = in->Get(UPDATE_TIME_STEPS())[0] == times[0];
+    std::array<double, 2> ends = {times[at_start ? 0 : count - 2], times[at_start ? 1 : count - 1]};
+    in->Set(UPDATE_TIME_STEPS(), ends.data(), 2);
+  }
+
+  // The faces on the other side of a seam.
+  if (out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+    in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
+  return 1;
+}
+
+int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSmartPointer<vtkDataObject>>& inputs,
+                                       vtkInformationVector* outputs) {
+  vtkInformation* const out = outputs->GetInformationObject(0);
+  vtkDataObject* const output = vtkDataObject::GetData(out);
+  if (inputs.empty() || inputs.front() == nullptr || inputs.back() == nullptr) {
+    vtkErrorMacro("There is no data to interpolate.");
+    return 0;
+  }
+  vtkDataObject* const from = inputs.front();
+  vtkDataObject* const to = inputs.back();
+  const double start = time_of(from), end = time_of(to);
+  const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : start;
+  Request request;
+  request.t = end > start ? std::clamp((time - start) / (end - start), 0.0, 1.0) : 0.0;
+  request.remove_ghosts =
+      out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1 && out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) == 0;
+
+  const vtkSmartPointer<vtkDataObject> result = this->Interpolate(from, to, request);
+  output->Initialize();
+  if (result == nullptr) return 0;
+  output->ShallowCopy(result);
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+
+  vtkNew<vtkDoubleArray> steps;
+  steps->SetName("OriginalTimeSteps");
+  for (vtkDataObject* const step : inputs) steps->InsertNextValue(time_of(step));
+  output->GetFieldData()->AddArray(steps);
+  return 1;
+}
+
+vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::Interpolate(vtkDataObject* from, vtkDataObject* to,
+                                                                      const Request& request) {
+  if (auto* const blocks = vtkCompositeDataSet::SafeDownCast(from)) {
+    if (auto* const later = vtkCompositeDataSet::SafeDownCast(to))
+      return this->InterpolateBlocks(blocks, later, request);
+  } else if (auto* const data = vtkDataSet::SafeDownCast(from)) {
+    if (auto* const later = vtkDataSet::SafeDownCast(to); later != nullptr && later->IsA(data->GetClassName()))
+      return this->InterpolateMesh(data, later, request);
+  }
+  vtkErrorMacro(<< request.place << "A " << from->GetClassName() << " and a " << to->GetClassName()
+                << " cannot be interpolated.");
+  return nullptr;
+}
+
+vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::InterpolateBlocks(vtkCompositeDataSet* from,
+                                                                            vtkCompositeDataSet* to,
+                                                                            const Request& request) {
+  const auto blocks = [](vtkCompositeDataSet* data) {
+    const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(data->NewIterator());
+    iterator->SkipEmptyNodesOff();
+    iterator->InitTraversal();
+    return iterator;
+  };
+  const auto result = vtkSmartPointer<vtkCompositeDataSet>::Take(from->NewInstance());
+  result->CopyStructure(from);
+  const auto earlier = blocks(from), later = blocks(to);
+  for (; !earlier->IsDoneWithTraversal() && !later->IsDoneWithTraversal();
+       earlier->GoToNextItem(), later->GoToNextItem()) {
+    Request of_block = request;
+    of_block.place = "block " + std::to_string(earlier->GetCurrentFlatIndex()) + ": ";
+    vtkDataObject* const before = earlier->GetCurrentDataObject();
+    vtkDataObject* const after = later->GetCurrentDataObject();
+    if (before == nullptr && after == nullptr) continue;
+    if (before == nullptr || after == nullptr || earlier->GetCurrentFlatIndex() != later->GetCurrentFlatIndex()) {
+      vtkErrorMacro(<< of_block.place << "It is in one of the two steps only.");
+      return nullptr;
+    }
+    const vtkSmartPointer<vtkDataObject> block = this->Interpolate(before, after, of_block);
+    if (block == nullptr) return nullptr;
+    result->SetDataSet(earlier, block);
+  }
+  if (!earlier->IsDoneWithTraversal() || !later->IsDoneWithTraversal()) {
+    vtkErrorMacro("The two steps have other numbers of blocks.");
+    return nullptr;
+  }
+  return result;
+}
+
+vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSet* from, vtkDataSet* to,
+                                                                       const Request& request) {
+  auto* const mesh = vtkPolyData::SafeDownCast(from);
+  auto* const later = vtkPolyData::SafeDownCast(to);
+  if (mesh == nullptr && (has_normals(from) || has_normals(to))) {
+    vtkErrorMacro(<< request.place << "The normals of a " << from->GetClassName()
+                  << " are those of its surface: extract it first, by vtkDataSetSurfaceFilter.");
+    return nullptr;
+  }
+  if (mesh != nullptr) {
+    if (const chronormal::Status motion = chronormal::vtk::check_motion(mesh, later); !motion) {
+      vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
+                    << time_of(from) << " and " << time_of(to) << '.');
+      return nullptr;
+    }
+  }
+
+  const auto output = vtkSmartPointer<vtkDataSet>::Take(
+      this->Superclass::InterpolateDataSet(without_normals(from), without_normals(to), request.t));
+  keep_names(from, output);
+  if (mesh == nullptr) return output;
+
+  const bool points = this->ComputePointNormals || mesh->GetPointData()->GetNormals() != nullptr;
+  const bool cells = this->ComputeCellNormals || mesh->GetCellData()->GetNormals() != nullptr;
+  const bool in_double = mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
+  const chronormal::vtk::MotionNormals normals = chronormal::vtk::motion_normals(mesh, later, points, cells);
+  const auto unit = [&](const std::vector<chronormal::ControlNormals>& of) {
+    return chronormal::vtk::unit_normals(of, request.t, in_double);
+  };
+  if (points) set_normals(output->GetPointData(), mesh->GetPointData(), unit(normals.of_points));
+  if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), unit(normals.of_cells));
+  if (request.remove_ghosts) static_cast<vtkPolyData*>(output.Get())->RemoveGhostCells();
+  return output;
+}
