@@ -20,6 +20,7 @@
 #include <array>
 #include <string>
 
+#include "ghost_cells.h"
 #include "poly_data_normals.h"
 
 vtkStandardNewMacro(vtkChronormalInterpolator);
@@ -28,9 +29,9 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // What one execution is asked for.
 struct vtkChronormalInterpolator::Request {
-  double t = 0;                // from the earlier step, 0, to the later one, 1
-  bool remove_ghosts = false;  // whether ghost cells are there for seams alone
-  std::string place;           // of the data in composite data, for messages
+  double t = 0;       // from the earlier step, 0, to the later one, 1
+  int ghosts = -1;    // how many levels of ghost cells to keep, or -1 where a whole is asked for
+  std::string place;  // of the data in composite data, for messages
 };
 
 namespace {
@@ -81,14 +82,37 @@ void vtkChronormalInterpolator::PrintSelf(ostream& os, vtkIndent indent) {
   os << indent << "ComputeCellNormals: " << (this->ComputeCellNormals ? "on" : "off") << '\n';
 }
 
+vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                                      vtkInformationVector* outputs) {
+  if (!request->Has(Pipeline::REQUEST_UPDATE_EXTENT()))
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+  vtkInformation* const in = inputs[0]->GetInformationObject(0);
+  vtkInformation* const out = outputs->GetInformationObject(0);
+  const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
+
+  // The steps that vtkMultiTimeStepAlgorithm keeps are of one piece. It forgets them when it is asked for information.
+  const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
+  if (piece != this->KeptPiece) {
+    vtkNew<vtkInformation> forget;
+    forget->Set(Pipeline::REQUEST_INFORMATION());
+    if (this->Superclass::ProcessRequest(forget, inputs, outputs) == 0) return 0;
+    this->KeptPiece = piece;
+  }
+
+  // Each step needs the faces on the other side of a seam.
+  const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
+  if (pieces > 1) in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), ghosts + 1);
+  return result;
+}
+
 int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
                                                    vtkInformationVector* outputs) {
   if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
-  vtkInformation* const in = inputs[0]->GetInformationObject(0);
-  vtkInformation* const out = outputs->GetInformationObject(0);
 
   // At the ends of the range vtkTemporalInterpolator asks for one step. A mesh that has no area there has a direction all
   // the same, the limit from within the segment, so both steps are needed.
+  vtkInformation* const in = inputs[0]->GetInformationObject(0);
   const int count = in->Length(Pipeline::TIME_STEPS());
   if (count >= 2 && in->Length(UPDATE_TIME_STEPS()) == 1) {
     const double* const times = in->Get(Pipeline::TIME_STEPS());
@@ -96,10 +120,6 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
     std::array<double, 2> ends = {times[at_start ? 0 : count - 2], times[at_start ? 1 : count - 1]};
     in->Set(UPDATE_TIME_STEPS(), ends.data(), 2);
   }
-
-  // The faces on the other side of a seam.
-  if (out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
-    in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
   return 1;
 }
 
@@ -117,8 +137,8 @@ int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSma
   const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : start;
   Request request;
   request.t = end > start ? std::clamp((time - start) / (end - start), 0.0, 1.0) : 0.0;
-  request.remove_ghosts =
-      out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1 && out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) == 0;
+  if (out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+    request.ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
   const vtkSmartPointer<vtkDataObject> result = this->Interpolate(from, to, request);
   output->Initialize();
@@ -212,6 +232,7 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSe
   };
   if (points) set_normals(output->GetPointData(), mesh->GetPointData(), unit(normals.of_points));
   if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), unit(normals.of_cells));
-  if (request.remove_ghosts) static_cast<vtkPolyData*>(output.Get())->RemoveGhostCells();
+  if (request.ghosts >= 0) chronormal::vtk::keep_ghost_levels(vtkPolyData::SafeDownCast(output), request.ghosts);
+
   return output;
 }

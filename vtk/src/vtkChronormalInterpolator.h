@@ -17,6 +17,8 @@
 #ifndef vtkChronormalInterpolator_h
 #define vtkChronormalInterpolator_h
 
+#include <array>
+
 #include "vtkChronormalModule.h"
 #include "vtkTemporalInterpolator.h"
 
@@ -45,6 +47,8 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkChronormalInterpolator() = default;
   ~vtkChronormalInterpolator() override = default;
 
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                             vtkInformationVector* outputs) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int Execute(vtkInformation* request, const std::vector<vtkSmartPointer<vtkDataObject>>& inputs,
               vtkInformationVector* outputVector) override;
@@ -59,6 +63,7 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
 
   bool ComputePointNormals = true;
   bool ComputeCellNormals = false;
+  std::array<int, 3> KeptPiece = {0, 1, 0};  // which piece of how many, with how many ghost levels, was asked for last
 };
 
 #endif
