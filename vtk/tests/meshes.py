@@ -6,6 +6,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 SIDE = 20
@@ -99,22 +100,26 @@ def mesh(points, faces):
 
 
 class Steps(VTKPythonAlgorithmBase):
-    """A source with time steps; `make(time)` gives the data of each. It notes what it was asked for."""
+    """A source with time steps; `make(time)` gives the data of each. It notes the times, and the piece with its ghost
+    levels, that it was asked for; where it cannot cut pieces, VTK has it make the first piece alone."""
 
-    def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", times=TIMES):
+    def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
-        self.make, self.times, self.asked = make, times, []
+        self.make, self.cuts, self.asked, self.piece = make, cuts, [], None
 
     def RequestInformation(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
-        info.Set(Pipeline.TIME_STEPS(), self.times, len(self.times))
-        info.Set(Pipeline.TIME_RANGE(), (self.times[0], self.times[-1]), 2)
+        info.Set(Pipeline.TIME_STEPS(), TIMES, len(TIMES))
+        info.Set(Pipeline.TIME_RANGE(), (TIMES[0], TIMES[-1]), 2)
+        if self.cuts:
+            info.Set(vtkAlgorithm.CAN_HANDLE_PIECE_REQUEST(), 1)
         return 1
 
     def RequestData(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
         time = info.Get(Pipeline.UPDATE_TIME_STEP())
         self.asked.append(time)
+        self.piece = (info.Get(Pipeline.UPDATE_PIECE_NUMBER()), info.Get(Pipeline.UPDATE_NUMBER_OF_GHOST_LEVELS()))
         output = vtkDataObject.GetData(info)
         output.ShallowCopy(self.make(time))
         output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)

@@ -53,6 +53,7 @@ class RightTest(unittest.TestCase):
             data, truth = at(ours, time), between(time)
             self.assertLess(degrees(normals(data), point_normals(truth, triangles())).max(), 1e-5)
             self.assertLess(degrees(cell_normals(data), areas(truth, triangles())).max(), 1e-5)
+            self.assertLess(np.abs(places(data) - truth).max(), 1e-6)
             for lengths in (np.linalg.norm(n, axis=1) for n in (normals(data), cell_normals(data))):
                 self.assertLess(np.abs(lengths - 1).max(), 1e-6)
             worst_of_stock = max(worst_of_stock, degrees(normals(at(stock, time)), point_normals(truth, triangles())).max())
@@ -111,10 +112,11 @@ class RightTest(unittest.TestCase):
 
     def test_bits_do_not_depend_on_the_order_of_points_and_cells(self):
         random = np.random.default_rng(7)
+        in_double = lambda time: positions(time).astype(float)  # float would hide most of the rounding of sums
         order, of_cells = random.permutation(400), random.permutation(len(triangles()))
         rank = np.argsort(order)
-        shuffled = Steps(lambda time: mesh(positions(time)[order], rank[triangles()[of_cells]]))
-        source = Steps()
+        shuffled = Steps(lambda time: mesh(in_double(time)[order], rank[triangles()[of_cells]]))
+        source = Steps(lambda time: mesh(in_double(time), triangles()))
         found = normals(at(connected(vtkChronormalInterpolator, shuffled), 0.3))
         whole = normals(at(connected(vtkChronormalInterpolator, source), 0.3))
         np.testing.assert_array_equal(found, whole[order])
@@ -225,6 +227,31 @@ class PiecesTest(unittest.TestCase):
             data = at(ours, time, 0, 1, 0)
             np.testing.assert_array_equal(normals(data), whole[numbers(data)])
             self.assertEqual(data.GetNumberOfPoints(), 400)
+
+    def test_sources_that_cut_pieces_in_any_order_keep_ids_and_bits_in_double(self):
+        def make(time):
+            """The whole mesh in an order of its own, of which all but every third cell or so are marked as ghosts."""
+            piece, _ = source.piece
+            random = np.random.default_rng(piece)
+            order, of_cells = random.permutation(400), random.permutation(len(triangles()))
+            data = mesh(positions(time).astype(float)[order], np.argsort(order)[triangles()[of_cells]])
+            for attributes, ids in ((data.GetPointData(), order), (data.GetCellData(), of_cells)):
+                vtk_to_numpy(attributes.GetGlobalIds())[:] = ids
+            flags = np.where(of_cells * 3 // len(of_cells) == piece, 0, vtkDataSetAttributes.DUPLICATECELL)
+            data.GetCellData().AddArray(named(flags.astype(np.uint8), vtkDataSetAttributes.GhostArrayName()))
+            return data
+
+        source = Steps(make, cuts=True)
+        source_of_whole = Steps(lambda time: mesh(positions(time).astype(float), triangles()))
+        whole = normals(at(connected(vtkChronormalInterpolator, source_of_whole), 1.7))
+        ours = connected(vtkChronormalInterpolator, source)
+        cells = []
+        for piece in range(3):
+            data = at(ours, 1.7, piece, 3, 0)
+            self.assertEqual(source.piece, (piece, 1))
+            np.testing.assert_array_equal(normals(data), whole[vtk_to_numpy(data.GetPointData().GetGlobalIds())])
+            cells += vtk_to_numpy(data.GetCellData().GetGlobalIds()).tolist()
+        self.assertEqual(sorted(cells), list(range(len(triangles()))))
 
 
 class ErrorsTest(unittest.TestCase):
