@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <string>
 #include <vector>
 
 namespace chronormal::vtk {
@@ -56,34 +55,25 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() drops flags and global ids: they go as plain arrays of other names meanwhile.
-  struct Kept {
-    vtkDataSetAttributes* of;
-    std::string global_ids;
-  };
-  std::array<Kept, 2> kept = {Kept{piece->GetPointData(), {}}, Kept{piece->GetCellData(), {}}};
-  for (Kept& k : kept) {
-    if (vtkDataArray* const ids = k.of->GetGlobalIds(); ids != nullptr && ids->GetName() != nullptr) {
-      k.global_ids = ids->GetName();
-      k.of->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
-    }
-    if (vtkDataArray* const flags = k.of->GetArray(kFlags)) {
-      const auto copy = vtkSmartPointer<vtkDataArray>::Take(flags->NewInstance());
-      copy->ShallowCopy(flags);
-      copy->SetName(kMeanwhile);
-      k.of->AddArray(copy);
-    }
+  // RemoveGhostCells() drops the flags of what is left: they go by another name meanwhile.
+  const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
+  for (vtkDataSetAttributes* const attributes : all) {
+    vtkDataArray* const flags = attributes->GetArray(kFlags);
+    if (flags == nullptr) continue;
+    const auto kept = vtkSmartPointer<vtkDataArray>::Take(flags->NewInstance());
+    kept->ShallowCopy(flags);
+    kept->SetName(kMeanwhile);
+    attributes->AddArray(kept);
   }
   piece->GetCellData()->AddArray(beyond);
   piece->RemoveGhostCells();
-  for (const Kept& k : kept) {
-    if (!k.global_ids.empty()) k.of->SetActiveAttribute(k.global_ids.c_str(), vtkDataSetAttributes::GLOBALIDS);
-    const vtkSmartPointer<vtkDataArray> flags = k.of->GetArray(kMeanwhile);
-    k.of->RemoveArray(kMeanwhile);
-    k.of->RemoveArray(kFlags);
+  for (vtkDataSetAttributes* const attributes : all) {
+    const vtkSmartPointer<vtkDataArray> flags = attributes->GetArray(kMeanwhile);
+    attributes->RemoveArray(kMeanwhile);
+    attributes->RemoveArray(kFlags);
     if (flags == nullptr || flags->GetRange()[1] == 0) continue;
     flags->SetName(kFlags);
-    k.of->AddArray(flags);
+    attributes->AddArray(flags);
   }
 }
 

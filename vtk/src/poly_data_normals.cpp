@@ -1,7 +1,6 @@
 #include "poly_data_normals.h"
 
 #include <vtkCellArray.h>
-#include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -137,6 +136,7 @@ ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std
 }
 
 std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to, const Faces& faces) {
+  if (faces.count() == 0) return {};
   vtkFloatArray* const before = vtkFloatArray::SafeDownCast(from->GetPoints()->GetData());
   vtkFloatArray* const after = vtkFloatArray::SafeDownCast(to->GetPoints()->GetData());
   const std::size_t points = size(from->GetNumberOfPoints());
@@ -165,41 +165,52 @@ ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   return sum.without_rounding();
 }
 
-// The sums over the faces of each element. element_of(k) and face_of(k) name an element and a face, `pairs` times.
-template <class ElementOf, class FaceOf>
-std::vector<ControlNormals> sums(std::size_t elements, std::size_t pairs, const ElementOf& element_of,
-                                 const FaceOf& face_of, const std::vector<ControlNormals>& of_faces) {
-  // A list of faces for each element, by counting.
-  std::vector<std::size_t> end(elements + 1, 0);
-  for (std::size_t k = 0; k < pairs; ++k) ++end[element_of(k) + 1];
-  for (std::size_t e = 0; e < elements; ++e) end[e + 1] += end[e];
-  std::vector<std::uint32_t> faces(pairs);
-  for (std::size_t k = 0; k < pairs; ++k) faces[end[element_of(k)]++] = static_cast<std::uint32_t>(face_of(k));
+// Vectors in an array of VTK, in float or in double.
+struct Vectors {
+  Vectors(std::size_t count, bool in_double)
+      : array(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(in_double ? VTK_DOUBLE : VTK_FLOAT))) {
+    array->SetNumberOfComponents(3);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  }
+  void set(std::size_t i, const Vec3d& v) const {
+    const std::array values = {v.x, v.y, v.z};
+    array->SetTuple(static_cast<vtkIdType>(i), values.data());
+  }
 
-  std::vector<ControlNormals> result(elements);
-  for_elements(elements, [&](std::size_t e) {
+  vtkSmartPointer<vtkDataArray> array;
+};
+
+// Which faces each element has the sum of.
+struct Groups {
+  // element_of(k) and face_of(k) name an element and a face of it, `pairs` times.
+  template <class ElementOf, class FaceOf>
+  Groups(std::size_t elements, std::size_t pairs, const ElementOf& element_of, const FaceOf& face_of)
+      : ends(elements + 1, 0), faces(pairs) {
+    // By counting: ends[e + 1] counts e, then ends[e] is where e begins, and in the end where it ends.
+    for (std::size_t k = 0; k < pairs; ++k) ++ends[element_of(k) + 1];
+    for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
+    for (std::size_t k = 0; k < pairs; ++k) faces[ends[element_of(k)]++] = static_cast<std::uint32_t>(face_of(k));
+  }
+
+  [[nodiscard]] std::size_t size() const { return ends.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t e) const {
+    const std::size_t first = e == 0 ? 0 : ends[e - 1];
+    return std::span(faces).subspan(first, ends[e] - first);
+  }
+
+  std::vector<std::uint32_t> ends, faces;
+};
+
+vtkSmartPointer<vtkDataArray> normals_of_groups(const Groups& groups, const std::vector<ControlNormals>& of_faces,
+                                                double t, bool in_double) {
+  const Vectors result(groups.size(), in_double);
+  for_elements(groups.size(), [&](std::size_t e) {
     thread_local std::vector<ControlNormals> terms;
     terms.clear();
-    for (std::size_t k = e == 0 ? 0 : end[e - 1]; k < end[e]; ++k) terms.push_back(of_faces[faces[k]]);
-    result[e] = sum_of(terms);
+    for (const std::uint32_t f : groups.of(e)) terms.push_back(of_faces[f]);
+    result.set(e, unit_normal_at(sum_of(terms), t).vector);
   });
-  return result;
-}
-
-template <class Array>
-vtkSmartPointer<vtkDataArray> evaluated(const std::vector<ControlNormals>& normals, double t) {
-  using Scalar = typename Array::ValueType;
-  const auto result = vtkSmartPointer<Array>::New();
-  result->SetNumberOfComponents(3);
-  result->SetNumberOfTuples(static_cast<vtkIdType>(normals.size()));
-  Scalar* const values = result->GetPointer(0);
-  for_elements(normals.size(), [&](std::size_t i) {
-    const Vec3d n = unit_normal_at(normals[i], t).vector;
-    values[3 * i] = static_cast<Scalar>(n.x);
-    values[3 * i + 1] = static_cast<Scalar>(n.y);
-    values[3 * i + 2] = static_cast<Scalar>(n.z);
-  });
-  return result;
+  return result.array;
 }
 
 }  // namespace
@@ -218,29 +229,28 @@ Status check_motion(vtkPolyData* from, vtkPolyData* to) {
   return check_positions(to);
 }
 
-MotionNormals motion_normals(vtkPolyData* from, vtkPolyData* to, bool points, bool cells) {
-  MotionNormals result;
-  if (from->GetNumberOfPoints() == 0) return result;
+MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells) {
+  const bool in_double = from->GetPoints() != nullptr && from->GetPoints()->GetDataType() == VTK_DOUBLE;
   const Faces faces = find_faces(from);
   const std::vector<ControlNormals> of_faces = normals_of_faces(from, to, faces);
+  MeshNormals result;
   if (points) {
     std::vector<std::uint32_t> face_of_corner(faces.corners.size());
     for (std::size_t f = 0; f < faces.count(); ++f)
       std::fill(face_of_corner.begin() + faces.offsets[f], face_of_corner.begin() + faces.offsets[f + 1],
                 static_cast<std::uint32_t>(f));
-    result.of_points = sums(
+    const Groups groups(
         size(from->GetNumberOfPoints()), faces.corners.size(), [&](std::size_t k) { return faces.corners[k]; },
-        [&](std::size_t k) { return face_of_corner[k]; }, of_faces);
+        [&](std::size_t k) { return face_of_corner[k]; });
+    result.of_points = normals_of_groups(groups, of_faces, t, in_double);
   }
-  if (cells)
-    result.of_cells = sums(
+  if (cells) {
+    const Groups groups(
         size(from->GetNumberOfCells()), faces.count(), [&](std::size_t k) { return size(faces.cells[k]); },
-        [](std::size_t k) { return k; }, of_faces);
+        [](std::size_t k) { return k; });
+    result.of_cells = normals_of_groups(groups, of_faces, t, in_double);
+  }
   return result;
-}
-
-vtkSmartPointer<vtkDataArray> unit_normals(const std::vector<ControlNormals>& normals, double t, bool in_double) {
-  return in_double ? evaluated<vtkDoubleArray>(normals, t) : evaluated<vtkFloatArray>(normals, t);
 }
 
 }  // namespace chronormal::vtk

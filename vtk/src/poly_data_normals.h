@@ -15,10 +15,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include <vector>
-
 #include "chronormal/core/result.h"
-#include "chronormal/normals/control_normals.h"
 
 namespace chronormal::vtk {
 
@@ -26,17 +23,14 @@ namespace chronormal::vtk {
 /// Errors: kInvalidInput, with the place "cell C" or "point P" where only some of it differs.
 [[nodiscard]] Status check_motion(vtkPolyData* from, vtkPolyData* to);
 
-/// The control normals of all points and cells of a motion: one walk over the faces serves both.
-struct MotionNormals {
-  std::vector<ControlNormals> of_points;  ///< empty where not asked for
-  std::vector<ControlNormals> of_cells;
+/// Unit normals as arrays of three components, of double where the points are, else of float.
+struct MeshNormals {
+  vtkSmartPointer<vtkDataArray> of_points;  ///< nothing where not asked for
+  vtkSmartPointer<vtkDataArray> of_cells;
 };
-/// Precondition: check_motion() found no error. O(corners log corners of a point), on all cores.
-[[nodiscard]] MotionNormals motion_normals(vtkPolyData* from, vtkPolyData* to, bool points, bool cells);
-
-/// The unit normals at t as an array of three components, of double or of float.
-[[nodiscard]] vtkSmartPointer<vtkDataArray> unit_normals(const std::vector<ControlNormals>& normals, double t,
-                                                         bool in_double);
+/// The normals at t, from the earlier step, 0, to the later one, 1. On all cores, but for the lists of who has which face.
+/// Precondition: check_motion() found no error.
+[[nodiscard]] MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells);
 
 }  // namespace chronormal::vtk
 

@@ -225,13 +225,9 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSe
 
   const bool points = this->ComputePointNormals || mesh->GetPointData()->GetNormals() != nullptr;
   const bool cells = this->ComputeCellNormals || mesh->GetCellData()->GetNormals() != nullptr;
-  const bool in_double = mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
-  const chronormal::vtk::MotionNormals normals = chronormal::vtk::motion_normals(mesh, later, points, cells);
-  const auto unit = [&](const std::vector<chronormal::ControlNormals>& of) {
-    return chronormal::vtk::unit_normals(of, request.t, in_double);
-  };
-  if (points) set_normals(output->GetPointData(), mesh->GetPointData(), unit(normals.of_points));
-  if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), unit(normals.of_cells));
+  const auto normals = chronormal::vtk::normals_between(mesh, later, request.t, points, cells);
+  if (points) set_normals(output->GetPointData(), mesh->GetPointData(), normals.of_points);
+  if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), normals.of_cells);
   if (request.ghosts >= 0) chronormal::vtk::keep_ghost_levels(vtkPolyData::SafeDownCast(output), request.ghosts);
 
   return output;

@@ -103,14 +103,14 @@ class Steps(VTKPythonAlgorithmBase):
     """A source with time steps; `make(time)` gives the data of each. It notes the times, and the piece with its ghost
     levels, that it was asked for; where it cannot cut pieces, VTK has it make the first piece alone."""
 
-    def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False):
+    def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False, times=TIMES):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
-        self.make, self.cuts, self.asked, self.piece = make, cuts, [], None
+        self.make, self.cuts, self.times, self.asked, self.piece = make, cuts, times, [], None
 
     def RequestInformation(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
-        info.Set(Pipeline.TIME_STEPS(), TIMES, len(TIMES))
-        info.Set(Pipeline.TIME_RANGE(), (TIMES[0], TIMES[-1]), 2)
+        info.Set(Pipeline.TIME_STEPS(), self.times, len(self.times))
+        info.Set(Pipeline.TIME_RANGE(), (self.times[0], self.times[-1]), 2)
         if self.cuts:
             info.Set(vtkAlgorithm.CAN_HANDLE_PIECE_REQUEST(), 1)
         return 1
