@@ -1,3 +1,4 @@
+// Levels of ghost cells, counted outward from the cells of a piece; VTK 9 marks ghosts, and not how far away they are.
 #include "ghost_cells.h"
 
 #include <vtkCellData.h>

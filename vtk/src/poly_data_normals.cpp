@@ -1,3 +1,4 @@
+// Normals of faces at both ends of a segment, sums over the faces of points and cells, and their directions at t.
 #include "poly_data_normals.h"
 
 #include <vtkCellArray.h>
@@ -44,20 +45,24 @@ std::array<vtkCellArray*, 4> cell_lists(vtkPolyData* mesh) {
 
 Status check_cells(vtkPolyData* from, vtkPolyData* to) {
   const auto before = cell_lists(from), after = cell_lists(to);
-  vtkIdType first = 0;
+  vtkIdType number = 0;
   vtkNew<vtkIdList> a, b;
   for (std::size_t list = 0; list < before.size(); ++list) {
-    if (before[list] == after[list]) continue;
     const vtkIdType count = before[list]->GetNumberOfCells();
     if (count != after[list]->GetNumberOfCells())
       return invalid_input("", "the two steps have other numbers of vertices, lines, polygons or strips");
-    for (vtkIdType c = 0; c < count; ++c) {
+    for (vtkIdType c = 0; c < count; ++c, ++number) {
+      const auto place = [number] { return "cell " + std::to_string(number); };
       before[list]->GetCellAtId(c, a);
+      for (const vtkIdType point : *a) {
+        if (point < 0 || point >= from->GetNumberOfPoints())
+          return invalid_input(place(), "it names point " + std::to_string(point) + ", which the mesh does not have");
+      }
+      if (before[list] == after[list]) continue;
       after[list]->GetCellAtId(c, b);
       if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
-        return invalid_input("cell " + std::to_string(first + c), "it has other points in the two steps");
+        return invalid_input(place(), "it has other points in the two steps");
     }
-    first += count;
   }
   return Success{};
 }

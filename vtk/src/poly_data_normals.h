@@ -19,7 +19,7 @@
 
 namespace chronormal::vtk {
 
-/// Whether two steps are a motion: the same cells over the same points, all of them finite.
+/// Whether two steps are a motion: the same cells over the same points, which are all there and finite.
 /// Errors: kInvalidInput, with the place "cell C" or "point P" where only some of it differs.
 [[nodiscard]] Status check_motion(vtkPolyData* from, vtkPolyData* to);
 

@@ -1,3 +1,4 @@
+// The filter as pipelines see it: what it asks of its input, block by block what becomes of the data, and errors.
 #include "vtkChronormalInterpolator.h"
 
 #include <vtkCellData.h>
@@ -12,7 +13,6 @@
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
@@ -29,6 +29,8 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // What one execution is asked for.
 struct vtkChronormalInterpolator::Request {
+  double start = 0;   // the time of the earlier step
+  double end = 0;     // that of the later one
   double t = 0;       // from the earlier step, 0, to the later one, 1
   int ghosts = -1;    // how many levels of ghost cells to keep, or -1 where a whole is asked for
   std::string place;  // of the data in composite data, for messages
@@ -44,21 +46,34 @@ bool has_normals(vtkDataSet* data) {
   return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
 }
 
-vtkSmartPointer<vtkDataSet> without_normals(vtkDataSet* data) {
+// Ids, flags of ghosts, and texts: what would be mixed as if it were an amount, or is no array of numbers at all.
+bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
+  return array == of->GetGlobalIds() || array == of->GetPedigreeIds() ||
+         array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
+}
+
+// What vtkTemporalInterpolator may mix: all but normals and texts, which it cannot.
+vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   copy->ShallowCopy(data);
-  for (vtkDataSetAttributes* const of : attributes(copy)) of->SetNormals(nullptr);
+  for (vtkDataSetAttributes* const of : attributes(copy)) {
+    of->SetNormals(nullptr);
+    for (int i = of->GetNumberOfArrays() - 1; i >= 0; --i)
+      if (!of->GetAbstractArray(i)->IsA("vtkDataArray")) of->RemoveArray(i);
+  }
   return copy;
 }
 
-// Puts back what was mixed as if it were an amount.
+// Takes names from the step before.
 void keep_names(vtkDataSet* before, vtkDataSet* output) {
   const Attributes from = attributes(before), to = attributes(output);
   for (std::size_t k = 0; k < from.size(); ++k) {
-    for (vtkAbstractArray* const array :
-         {static_cast<vtkAbstractArray*>(from[k]->GetGlobalIds()), from[k]->GetPedigreeIds(),
-          from[k]->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())})
-      if (array != nullptr && array->GetName() != nullptr) to[k]->AddArray(array);
+    for (int i = 0; i < from[k]->GetNumberOfArrays(); ++i) {
+      vtkAbstractArray* const array = from[k]->GetAbstractArray(i);
+      if (!is_name(from[k], array) || array->GetName() == nullptr) continue;
+      to[k]->AddArray(array);
+      if (array == from[k]->GetPedigreeIds()) to[k]->SetPedigreeIds(array);
+    }
   }
 }
 
@@ -133,10 +148,12 @@ int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSma
   }
   vtkDataObject* const from = inputs.front();
   vtkDataObject* const to = inputs.back();
-  const double start = time_of(from), end = time_of(to);
-  const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : start;
   Request request;
-  request.t = end > start ? std::clamp((time - start) / (end - start), 0.0, 1.0) : 0.0;
+  request.start = time_of(from);
+  request.end = time_of(to);
+  const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : request.start;
+  if (request.end > request.start)
+    request.t = std::clamp((time - request.start) / (request.end - request.start), 0.0, 1.0);
   if (out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
     request.ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
@@ -213,13 +230,13 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSe
   if (mesh != nullptr) {
     if (const chronormal::Status motion = chronormal::vtk::check_motion(mesh, later); !motion) {
       vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
-                    << time_of(from) << " and " << time_of(to) << '.');
+                    << request.start << " and " << request.end << '.');
       return nullptr;
     }
   }
 
-  const auto output = vtkSmartPointer<vtkDataSet>::Take(
-      this->Superclass::InterpolateDataSet(without_normals(from), without_normals(to), request.t));
+  const auto output =
+      vtkSmartPointer<vtkDataSet>::Take(this->Superclass::InterpolateDataSet(amounts(from), amounts(to), request.t));
   keep_names(from, output);
   if (mesh == nullptr) return output;
 
@@ -229,6 +246,5 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSe
   if (points) set_normals(output->GetPointData(), mesh->GetPointData(), normals.of_points);
   if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), normals.of_cells);
   if (request.ghosts >= 0) chronormal::vtk::keep_ghost_levels(vtkPolyData::SafeDownCast(output), request.ghosts);
-
   return output;
 }

@@ -9,7 +9,7 @@
 ///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
 ///            double where the points are.
 /// Time       Any time: outside the range of the input it is that of the nearer end.
-/// Arrays     Ids and ghost flags are those of the step before, since they are names and not amounts.
+/// Arrays     Ids, ghost flags and texts are those of the step before, since they are names and not amounts.
 /// Pieces     Where a piece is asked for, one more ghost level is asked of the input, so that the normals along seams
 ///            have the bits of the whole; ghost cells that nobody asked for are removed again.
 /// Errors     Where the cells of a mesh differ between the two steps, where normals belong to data other than

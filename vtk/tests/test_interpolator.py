@@ -5,7 +5,7 @@ import unittest
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_DOUBLE
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkPoints
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkDataSetAttributes, vtkImageData, vtkMultiBlockDataSet,
                                            vtkPolyData, vtkUnstructuredGrid)
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
@@ -13,7 +13,7 @@ from vtkmodules.vtkFiltersHybrid import vtkTemporalInterpolator
 from vtkmodules.vtkFiltersParallel import vtkExtractPolyDataPiece
 
 from chronormal_vtk.vtkChronormal import vtkChronormalInterpolator
-from meshes import (TIMES, Steps, areas, between, degrees, mesh, named, normals, numbers, point_normals, positions, quads,
+from meshes import (TIMES, Steps, areas, between, cells, degrees, mesh, named, normals, numbers, point_normals, positions, quads,
                     triangles)
 
 ANY_TIME = (-3.0, 0.0, 0.1, 0.5, 0.99, 1.0, 1.3, 2.2, 2.5, 7.0)
@@ -158,6 +158,20 @@ class ArraysTest(unittest.TestCase):
             ids = vtk_to_numpy(attributes.GetGlobalIds())
             np.testing.assert_array_equal(ids, np.arange(len(ids)))
 
+    def test_texts_are_those_of_the_step_before(self):
+        def make(time):
+            data = mesh(positions(time, 2), triangles(2))
+            texts = vtkStringArray()
+            texts.SetName("texts")
+            for k in range(4):
+                texts.InsertNextValue(f"{k} at {time}")
+            data.GetPointData().SetPedigreeIds(texts)
+            return data
+
+        source = Steps(make)
+        found = at(connected(vtkChronormalInterpolator, source), 0.7).GetPointData().GetPedigreeIds()
+        self.assertEqual([found.GetValue(k) for k in range(4)], [f"{k} at 0.0" for k in range(4)])
+
     def test_blocks_of_composite_data_are_interpolated_each(self):
         def make(time):
             inner, outer = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
@@ -294,6 +308,16 @@ class ErrorsTest(unittest.TestCase):
         self.assertIn("the two steps have other numbers of vertices, lines, polygons or strips",
                       self.error_of(lambda time: mesh(positions(time, 4), triangles(4)[int(time):])))
 
+    def test_a_cell_of_points_that_are_not_there_is_an_error(self):
+        def broken(time):
+            faces = triangles(4)
+            data = mesh(positions(time, 4), faces)
+            faces[3, 1] = 16
+            data.SetPolys(cells(faces))
+            return data
+
+        self.assertIn("cell 3: it names point 16, which the mesh does not have", self.error_of(broken))
+
     def test_a_point_that_is_nowhere_is_an_error(self):
         def lost(time):
             points = positions(time, 4)
@@ -327,7 +351,8 @@ class ErrorsTest(unittest.TestCase):
             grid.GetPointData().SetNormals(named(np.ones((1, 3)), "Normals"))
             blocks.SetBlock(1, grid)
 
-        for block, text in ((changes, "block 2: the two steps have 16 and 25 points"),
+        no_motion = "block 2: the two steps have 16 and 25 points, so there is no motion between the steps at times 0 and 1."
+        for block, text in ((changes, no_motion),
                             (goes, "block 2: It is in one of the two steps only."),
                             (grows, "The two steps have other numbers of blocks."),
                             (volume, "block 2: The normals of a vtkUnstructuredGrid are those of its surface")):
