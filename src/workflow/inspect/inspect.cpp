@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "analysis/near_collapse.h"
+#include "analysis/signs/near_collapse.h"
 #include "chronormal/analysis/collapse.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
