@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "chronormal/normals/weighting.h"
+#include "core/bits.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
@@ -13,13 +15,14 @@
 namespace chronormal {
 namespace {
 
-// The bin of an angle of [0, 180] degrees among kAuditFineBins.
+// The bin of an angle of [0, 180] degrees among kAuditFineBins. A doubling is an exponent of double, and its bins are the
+// first bits of the fraction, so that both together are one number.
 std::size_t fine_bin(double degrees) noexcept {
+  static_assert(kAuditBinsOfDoubling == 128);
+  constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   if (!(degrees >= std::ldexp(1, kAuditLeastExponent))) return 0;
-  int exponent = 0;
-  const double digits = std::frexp(degrees, &exponent);  // of [1/2, 1)
-  const int of_doubling = static_cast<int>((2 * digits - 1) * kAuditBinsOfDoubling);
-  return static_cast<std::size_t>(1 + (exponent - 1 - kAuditLeastExponent) * kAuditBinsOfDoubling + of_doubling);
+  constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
+  return static_cast<std::size_t>(1 + (bit_cast<std::uint64_t>(degrees) >> kFractionBits) - kFirst);
 }
 
 // Where such a bin ends, in degrees.
@@ -59,8 +62,9 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   ++judged;
   sum += degrees;
   sum_of_squares += degrees * degrees;
-  const auto* const bin = std::upper_bound(kAuditBinEdges.begin(), kAuditBinEdges.end(), degrees);
-  ++histogram[static_cast<std::size_t>(bin - kAuditBinEdges.begin())];
+  std::size_t bin = 0;
+  for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
+  ++histogram[bin];
   ++counts[fine_bin(degrees)];
   if (degrees > worst) {
     worst = degrees;
