@@ -46,6 +46,7 @@ void finish(Audit& result);
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
 //     begin(segment, start, end)     gets the normals at both ends before the samples (where kNeedsEnds)
+//     show()                         is called where something was placed, before shown()
 //     shown(output)                  a normal of any length, zero for none
 //     right(output, n)               the direction for a normal of the geometry
 //     at(segment, t, output)         for people
@@ -171,7 +172,10 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
       const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
-      if (placed.place(source, s, t)) error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+      if (placed.place(source, s, t)) {
+        source.show();
+        error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+      }
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
                     source.at(s, t, part.outputs().front()).at);

@@ -52,6 +52,7 @@ class SequenceSource {
     return true;
   }
   void forget() { known_ = false; }
+  void show() {}
 
   void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
     start_ = start.elements;
