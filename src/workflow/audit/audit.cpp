@@ -3,27 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
 #include "chronormal/normals/weighting.h"
-#include "core/bits.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
 
 namespace chronormal {
 namespace {
-
-// The bin of an angle of [0, 180] degrees among kAuditFineBins. A doubling is an exponent of double, and its bins are the
-// first bits of the fraction, so that both together are one number.
-std::size_t fine_bin(double degrees) noexcept {
-  static_assert(kAuditBinsOfDoubling == 128);
-  constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
-  if (!(degrees >= std::ldexp(1, kAuditLeastExponent))) return 0;
-  constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
-  return static_cast<std::size_t>(1 + (bit_cast<std::uint64_t>(degrees) >> kFractionBits) - kFirst);
-}
 
 // Where such a bin ends, in degrees.
 double end_of_fine_bin(std::size_t bin) noexcept {
@@ -62,10 +50,7 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   ++judged;
   sum += degrees;
   sum_of_squares += degrees * degrees;
-  std::size_t bin = 0;
-  for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
-  ++histogram[bin];
-  ++counts[fine_bin(degrees)];
+  count_in_bins(degrees, *this);
   if (degrees > worst) {
     worst = degrees;
     worst_at = place;

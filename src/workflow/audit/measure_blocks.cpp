@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "analysis/quality/kernels/shown_angles.h"
@@ -57,7 +59,8 @@ std::vector<Block> make_blocks(const JudgedPart& part) {
 struct Scratch {
   MovingTriangles triangles;
   std::vector<MovingTriangles::Normal> faces;
-  PlanesOf4 from, to, right;
+  PlanesOf4 start, end, between;  // right normals, at the ends of a segment and inside
+  PlanesOf4 from, to;             // what a host keeps of those at the ends
   std::vector<double> degrees;
 };
 
@@ -91,29 +94,35 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
 std::vector<double> largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block) {
   std::vector<double> largest(block.elements.count, 0.0);
   Scratch scratch;
+  std::optional<std::size_t> keyframe;  // which scratch.end is of
   for (const std::size_t s : segments) {
     const Segment segment = motion.segment(s);
     scratch.triangles.gather(segment.from, segment.to, block.corners);
-    add_up_at(block, 0, scratch, scratch.from);
-    add_up_at(block, 0.5, scratch, scratch.right);
-    add_up_at(block, 1, scratch, scratch.to);
+    if (keyframe == motion.segments[s].from)
+      std::swap(scratch.start, scratch.end);
+    else
+      add_up_at(block, 0, scratch, scratch.start);
+    add_up_at(block, 0.5, scratch, scratch.between);
+    add_up_at(block, 1, scratch, scratch.end);
+    keyframe = motion.segments[s].to;
     for (std::size_t e = 0; e < largest.size(); ++e) {
-      const Vec3d start = normal_of(scratch.from, e), end = normal_of(scratch.to, e);
-      const Vec3d m = 2.0 * normal_of(scratch.right, e) - 0.5 * (start + end);
+      const Vec3d start = normal_of(scratch.start, e), end = normal_of(scratch.end, e);
+      const Vec3d m = 2.0 * normal_of(scratch.between, e) - 0.5 * (start + end);
       largest[e] = std::max({largest[e], length(start), length(m), length(end)});
     }
   }
   return largest;
 }
 
-// Replaces right normals at a keyframe by what is interpolated of those that a host keeps.
-void keep_as_host(AuditRule rule, PlanesOf4& sums) {
+// What is interpolated of right normals at a keyframe, as a host keeps them.
+void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
+  result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
     Vec3d kept = rounded_to_float(unit(normal_of(sums, e)));
     if (rule != AuditRule::kLerp) kept = unit(kept);
-    sums.x[e] = kept.x;
-    sums.y[e] = kept.y;
-    sums.z[e] = kept.z;
+    result.x[e] = kept.x;
+    result.y[e] = kept.y;
+    result.z[e] = kept.z;
   }
 }
 
@@ -121,35 +130,58 @@ double time_of_sample(std::size_t i, std::size_t samples) {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
 
+// Adds those of all outputs, in their order, as MotionError::add() and add_unlit() do.
+template <class At>
+void add_errors(std::span<const double> of_elements, const Block& block, const JudgedPart& part, MotionError& result,
+                const At& at) {
+  double sum = 0, sum_of_squares = 0, worst = 0;  // in registers
+  std::size_t judged = 0;
+  for (const JudgedOutput& output : part.outputs().subspan(block.outputs.first, block.outputs.count)) {
+    double degrees = of_elements[output.element - block.elements.first];
+    if (degrees < 0) {
+      if (degrees == kNotJudged) {
+        ++result.no_normal;
+        continue;
+      }
+      if (result.unlit++ == 0) result.unlit_at = at(output);
+      degrees = 180;
+    }
+    ++judged;
+    sum += degrees;
+    sum_of_squares += degrees * degrees;
+    count_in_bins(degrees, result);
+    if (degrees > worst) {
+      worst = degrees;
+      result.worst_at = at(output);
+    }
+  }
+  result.judged = judged;
+  result.sum = sum;
+  result.sum_of_squares = sum_of_squares;
+  result.worst = worst;
+}
+
 // Writes the errors of a block at each sample of a segment.
 void measure_block(const Segment& segment, std::size_t number, const Block& block, std::span<const double> largest,
                    const JudgedPart& part, AuditRule rule, const FindPlace& at, Scratch& scratch,
                    std::span<MotionError> errors) {
   scratch.triangles.gather(segment.from, segment.to, block.corners);
-  add_up_at(block, 0, scratch, scratch.from);
-  add_up_at(block, 1, scratch, scratch.to);
-  keep_as_host(rule, scratch.from);
-  keep_as_host(rule, scratch.to);
+  add_up_at(block, 0, scratch, scratch.start);
+  add_up_at(block, 1, scratch, scratch.end);
+  keep_as_host(rule, scratch.start, scratch.from);
+  keep_as_host(rule, scratch.end, scratch.to);
   for (std::size_t e = 0; e < largest.size(); ++e) scratch.from.w[e] = kVanished * largest[e];
   scratch.degrees.resize(block.elements.count);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double t = time_of_sample(i, errors.size());
-    add_up_at(block, t, scratch, scratch.right);
+    const bool is_inside = i > 0 && i + 1 < errors.size();
+    if (is_inside) add_up_at(block, t, scratch, scratch.between);
+    const PlanesOf4& right = is_inside ? scratch.between : i == 0 ? scratch.start : scratch.end;
     const double weight = rule != AuditRule::kStep ? t : t < 1 ? 0 : 1;
-    shown_angles({scratch.from, scratch.to, scratch.right, kRoundingOfTerms}, weight, scratch.degrees);
-    MotionError& sum = errors[i];
-    sum = {};
-    const AuditPlace nowhere;
-    for (const JudgedOutput& output : part.outputs().subspan(block.outputs.first, block.outputs.count)) {
-      const double degrees = scratch.degrees[output.element - block.elements.first];
-      if (degrees >= 0) {
-        sum.add(degrees, degrees > sum.worst ? at(number, t, output) : nowhere);
-      } else if (degrees == kNotLit) {
-        sum.add_unlit(at(number, t, output));
-      } else {
-        ++sum.no_normal;
-      }
-    }
+    shown_angles({scratch.from, scratch.to, right, kRoundingOfTerms}, weight, scratch.degrees);
+    errors[i] = {};
+    add_errors(scratch.degrees, block, part, errors[i],
+               [&](const JudgedOutput& output) { return at(number, t, output); });
   }
 }
 

@@ -41,7 +41,9 @@ HWY_INLINE Real RoundedToFloat(Real a) {
 void TriangleNormals(const float* groups, std::size_t count, double t, MovingTriangles::Normal* result) {
   const Real of_t(t), s = Real(1.0) - of_t;
   for (std::size_t first = 0; first < count; first += kTriangles, groups += kTriangles * kPositionValues) {
-    double planes[4][kTriangles];
+    MovingTriangles::Normal normals[kTriangles];
+    const std::size_t last = std::min(kTriangles, count - first);
+    MovingTriangles::Normal* const to = last == kTriangles ? result + first : normals;
     for (std::size_t lane = 0; lane < kTriangles; lane += kDoubleLanes) {
       const auto coordinate = [&](std::size_t k) HWY_ATTR {
         const float* const from = groups + k * kTriangles + lane;
@@ -52,13 +54,9 @@ void TriangleNormals(const float* groups, std::size_t count, double t, MovingTri
       };
       const Real3 a = corner(0), e = corner(1) - a, f = corner(2) - a;
       const Real3 n = Real3{Real(0.0), Real(0.0), Real(0.0)} + cross(e, f);
-      n.x.store(planes[0] + lane);
-      n.y.store(planes[1] + lane);
-      n.z.store(planes[2] + lane);
-      max_abs(n).store(planes[3] + lane);
+      hn::StoreInterleaved4(n.x.v, n.y.v, n.z.v, max_abs(n).v, kDoubles, &to[lane].x);
     }
-    const std::size_t last = std::min(kTriangles, count - first);
-    for (std::size_t i = 0; i < last; ++i) result[first + i] = {planes[0][i], planes[1][i], planes[2][i], planes[3][i]};
+    if (to == normals) std::copy_n(normals, last, result + first);
   }
 }
 
