@@ -9,7 +9,7 @@
 ///                that is named, and in none of them worse than before (docs/theory.md, section 16)
 ///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
 ///                at every instant in every host that adds up targets
-///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
+///     endpoint   the best single delta per target (analysis/fits/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
 ///

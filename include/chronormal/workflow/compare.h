@@ -3,7 +3,7 @@
 ///
 /// A host that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
 /// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
-/// each target alone at weight 1), those that are best by least squares (analysis/blend_quality.h), and the exact
+/// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the exact
 /// normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended positions
 /// in double.
 ///

@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
@@ -59,6 +60,7 @@ class SequenceSource {
     return true;
   }
   void forget() { known_ = false; }
+  void show() {}
 
   void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
     start_ = start.elements;
@@ -295,7 +297,16 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
              {},
              {}});
     };
-    measure(source, part, result.rule, progress, subject, kept, tell);
+    const bool is_straight = options.path == PathKind::kLinear;
+    if (is_straight && !kept.any() && !result.stored &&
+        can_measure_blocks(part, result.rule, weighting, subject.samples)) {
+      const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
+        return source.at(segment, t, output);
+      };
+      measure_blocks(motion, segments, part, result.rule, at, progress, subject);
+    } else {
+      measure(source, part, result.rule, progress, subject, kept, tell);
+    }
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

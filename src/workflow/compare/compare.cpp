@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/quality/kernels/reference_angles.h"
 #include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
@@ -144,8 +145,16 @@ class Elements {
     }
     return errors;
   }
-  void exact_normals(const Segment& segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept {
+  // For exact_normals(); nothing where these are not of triangles on straight lines.
+  [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
+    if (groups_ || curved_ || !segment.topology->all_triangles()) return std::nullopt;
+    return ReferenceTriangles(segment, range);
+  }
+  // Of any length.
+  void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
+                     double t, std::span<Vec3d> result) const noexcept {
     if (curved_) return curved_->exact_normals(segment.index, range, t, result);
+    if (triangles) return triangles->normals(t, result);
     if (!groups_) return reference_normals(segment, range, t, result);
     for (std::size_t i = 0; i < range.count; ++i)
       result[i] = reference_normal(segment, groups_->faces(range.first + i), t);
@@ -231,6 +240,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
       tallies[s].certified = certified_error(*schemes[s], {&segment, range, control_normals, all.are_faces()}, errors);
   }
 
+  const std::optional<ReferenceTriangles> triangles = all.triangles(segment, range);
   std::vector<Vec3d> exact(range.count);
   std::vector<float> planes(3 * range.count);
   float* const first = planes.data();
@@ -243,7 +253,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   std::vector<double> evaluate_ns(schemes.size(), 0);
   for (std::size_t i = 0; i < samples; ++i) {
     const double t = time_of_sample(i, samples);
-    all.exact_normals(segment, range, t, exact);
+    all.exact_normals(segment, range, triangles, t, exact);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
       const auto start = Clock::now();
       if (playbacks[s])
