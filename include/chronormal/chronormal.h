@@ -23,6 +23,7 @@
 #include "chronormal/normals/float_recompute.h"    // the fastest rival: in float32, without a promise
 #include "chronormal/normals/normal_curves.h"      // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/normal_groups.h"      // which corners share a normal, and the sums of those that do
+#include "chronormal/normals/path_curves.h"        // normals of degree 6, prepared once, evaluated in float32
 #include "chronormal/normals/paths.h"              // vertices on curves: normals of degree 4 and 6
 #include "chronormal/normals/playback.h"           // curves of normals, played at equal steps
 #include "chronormal/normals/recompute.h"          // the rival: the cross product anew at every t
