@@ -35,6 +35,7 @@ struct Options {
   std::optional<std::string> errors;  // where to write every single one
   BlendArguments blend;
   TruthArguments truth;
+  PathArgument path;
 
   [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
 };
@@ -64,6 +65,7 @@ std::string option_of_schemes(const Options& options) {
   if (options.errors) return "--errors";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
+  if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -95,8 +97,11 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
+  compare_options.path = options.path.read().value();
+  if (const Status status = check_path(input, compare_options.path); !status) return status.error();
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
+  if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
   return comparison;
 }
 
@@ -165,6 +170,7 @@ std::string option_of_samples(const Options& options) {
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
+  if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -194,12 +200,17 @@ Result<int> run(const Options& options) {
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
+  const Result<PathKind> path = options.path.read();
+  if (!path) return path.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
                   "it is about normals at random access: leave out --access sequential");
+  if (path.value() != PathKind::kLinear && (options.certify || options.tolerance))
+    return misuse(options.certify ? "--certify" : "--tolerance",
+                  "certificates are of straight paths: leave out --path, or compare at samples");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   if (options.errors) {
@@ -263,6 +274,7 @@ Command compare_command() {
              &options->access,
              "random (default): each moment on its own; sequential: each from the one before",
              {.check = check_access}}},
+           options->path.table("every scheme is held against the exact normals of this path"),
            {{"--certify", &options->certify,
              "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
             {"--tolerance DEG", &options->tolerance,

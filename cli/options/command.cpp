@@ -5,6 +5,7 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
 
 namespace chronormal::cli {
 namespace {
@@ -44,6 +45,40 @@ Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<
     to_hosts = std::move(found).value();
   }
   return Success{};
+}
+
+std::vector<Option> PathArgument::table(const std::string& what) {
+  return {{"--path NAME", &name,
+           "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
+           "catmull-rom, on curves through them; hermite, with the velocities of the file;\n" +
+               what}};
+}
+
+Result<PathKind> PathArgument::read() const {
+  const Result<PathKind> path = make_path(name);
+  if (!path) return misuse("--path", path.error().message);
+  return path;
+}
+
+Status check_path(Input& input, PathKind path) {
+  if (path == PathKind::kLinear) return Success{};
+  if (input.document() != nullptr)
+    return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
+  const Result<const Motion*> motion = input.motion();
+  if (!motion) return motion.error();
+  if (const Status status = chronormal::check_path(*motion.value(), path); !status)
+    return misuse("--path", status.error().message);
+  return Success{};
+}
+
+void warn_if_sparse(const std::string& command, PathKind path, double bend) {
+  if (!(path != PathKind::kLinear && bend > kTooSparse)) return;
+  say(command,
+      formatted(
+          "the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and "
+          "above {:.2f} nothing tells what happened between",
+          bend, kTooSparse),
+      Tone::kWarning);
 }
 
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {

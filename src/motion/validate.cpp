@@ -48,6 +48,13 @@ Status validate(const Motion& motion) {
         return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
                              "the position is not a finite number");
     }
+    if (!keyframe.velocities.empty() && keyframe.velocities.size() != keyframe.positions.size())
+      return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
+    for (std::size_t i = 0; i < keyframe.velocities.size(); ++i) {
+      if (!std::isfinite(keyframe.velocities[i]))
+        return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                             "the velocity is not a finite number");
+    }
     if (!std::isfinite(keyframe.time)) return invalid_input(keyframe_place(motion, k), "the time is not finite");
   }
 

@@ -30,6 +30,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
@@ -57,6 +58,9 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
+  /// How the vertices of a sequence move: on curved paths every scheme is held against the exact normals of these curves,
+  /// and one more row, "exact", is PathCurves (normals/path_curves.h).
+  PathKind path = PathKind::kLinear;
 };
 
 /// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
@@ -99,13 +103,15 @@ struct Comparison {
   MotionKind motion = MotionKind::kSequence;  ///< what the segments are
   std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
   std::optional<double> tolerance = {};       ///< degrees, where it was given
+  PathKind path = PathKind::kLinear;          ///< that all of them are held against
+  double bend = 0;                            ///< of a curved path: bend_of(), to hold against kTooSparse
   std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes.
+///            tolerance, certificates of sequential access or of curved paths, those of check_path(), and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

@@ -1,9 +1,11 @@
 #include "chronormal/analysis/quality.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
-#include "core/portable_math.h"
+#include "analysis/quality/kernels/reference_angles.h"
 
 namespace chronormal {
 
@@ -13,30 +15,28 @@ double Quality::rms() const noexcept { return count == 0 ? 0 : std::sqrt(sum_of_
 
 void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first) {
   assert(exact.size() == normals.count);
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    const Vec3d u = to_double(normals[i]);
-    // Through the largest component of the exact normal, whose length is an area of any size.
-    const double scale = max_abs(exact[i]);
-    if (scale == 0) {
-      ++degenerate;
-      continue;
-    }
-    const double square = dot(u, u);
-    if (!(square > 0 && std::isfinite(square))) {
-      ++missing;
-      continue;
-    }
-    const Vec3d n{exact[i].x / scale, exact[i].y / scale, exact[i].z / scale};
-    const Vec3d x = cross(n, u);
-    const double angle = portable::atan2(std::sqrt(dot(x, x)), dot(n, u));
-    sum += angle;
-    sum_of_squares += angle * angle;
-    ++count;
-    if (angle > max) {
-      max = angle;
-      max_at = {first.segment, first.element + i, first.t};
+  constexpr std::size_t kAtOnce = 256;
+  std::array<double, kAtOnce> angles;
+  Quality all = *this;  // in registers
+  for (std::size_t begin = 0; begin < exact.size(); begin += kAtOnce) {
+    const std::size_t size = std::min(kAtOnce, exact.size() - begin);
+    angles_to_exact(exact.subspan(begin, size), normals.part({begin, size}), std::span(angles).first(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      const double angle = angles[i];
+      if (angle < 0) {
+        ++(angle == kNoExactNormal ? all.degenerate : all.missing);
+        continue;
+      }
+      all.sum += angle;
+      all.sum_of_squares += angle * angle;
+      ++all.count;
+      if (angle > all.max) {
+        all.max = angle;
+        all.max_at = {first.segment, first.element + begin + i, first.t};
+      }
     }
   }
+  *this = all;
 }
 
 void Quality::add(const Quality& other) {

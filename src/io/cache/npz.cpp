@@ -31,10 +31,10 @@ std::string element_place(const std::string& place, std::initializer_list<std::s
 }
 
 // One sample of an array (T, V, 3). Positions of float32 in C order are common, and copied in one go.
-Result<PositionCache> read_positions(const Array& array, const std::string& place) {
+Result<PositionCache> read_positions(const Array& array, const std::string& place, const std::string& what) {
   if (array.kind != Kind::kFloat || array.shape.size() != 3 || array.shape[2] != 3 || array.element_count() == 0)
     return invalid_input(place,
-                         "positions must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+                         what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
   PositionCache cache;
   cache.vertex_count = vertices;
@@ -96,6 +96,17 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
     if (array.kind == Kind::kUnsigned) time = static_cast<double>(array.vertex(k));
     if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is not a finite number");
   }
+  return Success{};
+}
+
+// Velocities per second, of the shape of the positions.
+Status take_velocities(const Array& array, const std::string& place, Motion& motion) {
+  Result<PositionCache> read = read_positions(array, place, "velocities");
+  if (!read) return read.error();
+  std::vector<PositionCache::Sample>& samples = read.value().samples;
+  if (samples.size() != motion.keyframes.size() || read.value().vertex_count != motion.topology.vertex_count())
+    return invalid_input(place, "velocities must be as many as positions, but are " + array.text());
+  for (std::size_t k = 0; k < samples.size(); ++k) motion.keyframes[k].velocities = std::move(samples[k].positions);
   return Success{};
 }
 
@@ -189,7 +200,7 @@ Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, 
   Result<Array> array = npy::read_header(bytes, bytes.size(), name + ", header");
   if (!array) return array.error();
   array.value().data = bytes.substr(array.value().data_begin);
-  Result<PositionCache> cache = read_positions(array.value(), name + ", positions");
+  Result<PositionCache> cache = read_positions(array.value(), name + ", positions", "positions");
   if (cache) set_regular_times(cache.value(), options.frames_per_second);
   return cache;
 }
@@ -202,7 +213,7 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
 
   const Result<Array> positions = archive.read("positions");
   if (!positions) return positions.error();
-  Result<PositionCache> cache = read_positions(positions.value(), archive.place("positions"));
+  Result<PositionCache> cache = read_positions(positions.value(), archive.place("positions"), "positions");
   if (!cache) return cache.error();
 
   const Result<Array> faces = archive.read("faces");
@@ -229,6 +240,12 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
   for (std::size_t k = 0; k < cache.value().samples.size() && kind == MotionKind::kTargets; ++k)
     cache.value().samples[k].time = k == 0 ? 0 : 1;
   Result<Motion> motion = motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name, kind);
+  if (motion && kind == MotionKind::kSequence && archive.has("velocities")) {
+    const Result<Array> velocities = archive.read("velocities");
+    if (!velocities) return velocities.error();
+    if (Status status = take_velocities(velocities.value(), archive.place("velocities"), motion.value()); !status)
+      return status.error();
+  }
   for (std::size_t k = 0; motion && kind == MotionKind::kTargets && k < motion.value().keyframes.size(); ++k)
     motion.value().keyframes[k].name = k == 0 ? "base" : "target " + std::to_string(k - 1);
   return motion;
@@ -287,9 +304,13 @@ Result<std::string> write_npz(const Motion& motion) {
   const Result<std::string> faces = write_npy_faces(motion.topology);
   if (!faces) return faces.error();
   NpyBytes positions({motion.keyframes.size(), motion.topology.vertex_count(), 3});
+  NpyBytes velocities({motion.keyframes.size(), motion.topology.vertex_count(), 3});
+  const bool has_velocities = std::none_of(motion.keyframes.begin(), motion.keyframes.end(),
+                                           [](const Motion::Keyframe& key) { return key.velocities.empty(); });
   std::vector<double> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     positions.append(keyframe.positions);
+    if (has_velocities) velocities.append(keyframe.velocities);
     times.push_back(keyframe.time);
   }
   const NpyBytes time_array({times.size()}, times);
@@ -297,6 +318,7 @@ Result<std::string> write_npz(const Motion& motion) {
   std::vector<NpzMember> members = {{"positions", positions.bytes()}, {"faces", faces.value()}};
   if (motion.kind != MotionKind::kTargets) members.push_back({"times", time_array.bytes()});
   if (motion.kind != MotionKind::kSequence) members.push_back({"kind", kind});
+  if (has_velocities) members.push_back({"velocities", velocities.bytes()});
   return write_npz(members);
 }
 

@@ -1,13 +1,20 @@
 // Sequences: mesh files in order, of one topology.
 #include "io/input/sequence.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
+#include "io/bytes/file.h"
 #include "io/input/formats.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/obj_faces.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -44,6 +51,42 @@ std::string frame_place(std::size_t k, const std::string& name) {
   return "frame " + std::to_string(k) + " (" + name + ")";
 }
 
+Result<FileBytes> open_frame(const InputOptions& options, const std::string& path, const std::string& place) {
+  Result<FileBytes> file = FileBytes::open(path, options.resolve);
+  if (file) return file;
+  Error error = file.error();
+  error.place = place;
+  return error;
+}
+
+// A frame that is not the first.
+struct ReadFrame {
+  Result<std::vector<float>> positions = std::vector<float>();
+  std::uint64_t bytes = 0;  // of its file, where nobody has counted them
+};
+
+// faces: those of the first frame, where their text can be compared. shaded: gets the normals of the frame, where they
+// are wanted.
+ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
+                     const ObjFaces* faces, ReadMotion* shaded, const Topology& topology) {
+  const Result<FileBytes> file = open_frame(options, path, place);
+  if (!file) return {file.error()};
+  const std::string_view bytes = file.value().bytes();
+  const std::uint64_t counted = shaded != nullptr ? 0 : bytes.size();
+  if (faces != nullptr) {
+    const Format* const format = find_format(file_name_of(path), bytes);
+    if (format != nullptr && format->read_mesh == read_obj)
+      if (std::optional<std::vector<float>> positions = faces->positions_of(bytes))
+        return {std::move(*positions), counted};
+  }
+  Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
+                                             : read_mesh(bytes, file_name_of(path), place);
+  if (!mesh) return {mesh.error()};
+  if (const Status same = check_same_topology(topology, "frame 0", mesh.value().topology, place); !same)
+    return {same.error()};
+  return {std::move(mesh.value().positions), counted};
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> find_frames(const InputOptions& options) {
@@ -60,19 +103,42 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   ReadMotion read;
   Motion& motion = read.motion;
   motion.keyframes.reserve(total);
-  for (std::size_t k = 0; k < total; ++k) {
-    const std::string name = file_name_of(files[k]), place = frame_place(k, name);
-    Result<MeshFrame> frame = read_mesh_file(options, files[k], place, read);
-    if (!frame) return frame.error();
-    if (k == 0) {
-      motion.topology = std::move(frame.value().topology);
-    } else if (Status status = check_same_topology(motion.topology, "frame 0", frame.value().topology, place);
-               !status) {
-      return status.error();
-    }
+  const auto place = [&files](std::size_t k) { return frame_place(k, file_name_of(files[k])); };
+  const auto keep = [&](std::vector<float> positions) {
+    const std::size_t k = motion.keyframes.size();
     const double time = static_cast<double>(k) / options.frames_per_second;
-    motion.keyframes.push_back({std::move(frame.value().positions), time, name});
+    motion.keyframes.push_back({std::move(positions), time, file_name_of(files[k])});
     if (options.progress) options.progress(k + 1, total);
+  };
+
+  const Result<FileBytes> first_file = open_frame(options, files[0], place(0));
+  if (!first_file) return first_file.error();
+  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), files[0], place(0), read);
+  if (!first) return first.error();
+  motion.topology = std::move(first.value().topology);
+  keep(std::move(first.value().positions));
+
+  // The frames that follow, as many at a time as there are threads, but for those of a resolver, which may not be ready
+  // for that, and where the normals of one depend on whether the frame before had some.
+  const bool keeps_normals = options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty();
+  const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
+  std::optional<ObjFaces> faces;
+  const Format* const format = find_format(file_name_of(files[0]), first_file.value().bytes());
+  if (!keeps_normals && format->read_mesh == read_obj)
+    faces.emplace(first_file.value().bytes(), motion.keyframes[0].positions);
+  while (motion.keyframes.size() < total) {
+    const std::size_t begin = motion.keyframes.size(), count = std::min(at_once, total - begin);
+    std::vector<ReadFrame> frames(count);
+    parallel_for(count, [&](std::size_t i) {
+      const std::size_t k = begin + i;
+      frames[i] = read_frame(options, files[k], place(k), faces ? &*faces : nullptr, keeps_normals ? &read : nullptr,
+                             motion.topology);
+    });
+    for (ReadFrame& frame : frames) {
+      if (!frame.positions) return frame.positions.error();
+      read.bytes_read += frame.bytes;
+      keep(std::move(frame.positions).value());
+    }
   }
   motion.connect_as_sequence();
   if (Status status = validate(motion); !status) return status.error();

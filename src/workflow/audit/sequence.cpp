@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
@@ -29,12 +30,13 @@ class SequenceSource {
   static constexpr bool kNeedsEnds = true;
 
   SequenceSource(const Motion& motion, const StoredNormals& normals, bool stored, const JudgedPart& part,
-                 AuditRule rule, const PartNormals& first, std::span<const std::size_t> segments)
+                 AuditRule rule, PathKind path, const PartNormals& first, std::span<const std::size_t> segments)
       : motion_(motion),
         normals_(normals),
         stored_(stored),
         part_(part),
         rule_(rule),
+        path_(path),
         first_(first),
         segments_(segments) {}
 
@@ -45,12 +47,20 @@ class SequenceSource {
     t_ = t;
     const Segment s = motion_.segment(segments_[segment]);
     const auto vertices = part_.vertices();
+    if (path_ != PathKind::kLinear) {
+      if (curve_index_ != s.index) curve_ = path_segment(motion_, s.index, path_);
+      curve_index_ = s.index;
+      const std::vector<Vec3d> all = positions_at(curve_, t);
+      for (std::size_t i = 0; i < vertices.size(); ++i) positions[i] = all[vertices[i]];
+      return true;
+    }
     parallel_each(vertices.size(), kRange, [&](std::size_t i) {
       positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
     });
     return true;
   }
   void forget() { known_ = false; }
+  void show() {}
 
   void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
     start_ = start.elements;
@@ -105,6 +115,9 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
+  PathKind path_;
+  PolynomialSegment<3> curve_;  // of the segment below, on curved paths
+  std::size_t curve_index_ = static_cast<std::size_t>(-1);
   const PartNormals& first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
@@ -211,7 +224,10 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
   if (!options.hosts.empty())
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
+  if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
+  result.path = options.path;
+  if (options.path != PathKind::kLinear) result.bend = bend_of(motion);
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   const Result<NormalGroups> groups = audited_groups(motion, normals, options.weld);
   if (!groups) return groups.error();
@@ -263,7 +279,7 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
       continue;
     }
     const PartNormals first = normals_at_first_keyframe(part, base);
-    SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
+    SequenceSource source(motion, normals, result.stored, part, result.rule, options.path, first, segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
                           static_cast<bool>(watch)};
     const auto tell = [&](const MeasuredSample& sample) {
@@ -281,7 +297,16 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
              {},
              {}});
     };
-    measure(source, part, result.rule, progress, subject, kept, tell);
+    const bool is_straight = options.path == PathKind::kLinear;
+    if (is_straight && !kept.any() && !result.stored &&
+        can_measure_blocks(part, result.rule, weighting, subject.samples)) {
+      const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
+        return source.at(segment, t, output);
+      };
+      measure_blocks(motion, segments, part, result.rule, at, progress, subject);
+    } else {
+      measure(source, part, result.rule, progress, subject, kept, tell);
+    }
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }
