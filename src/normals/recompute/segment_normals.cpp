@@ -23,9 +23,9 @@ namespace {
 // Where the data of a pass lie, by their size: in the cache of a core, in the shared one, in memory.
 enum Level { kNear, kShared, kMemory };
 
-// Nanoseconds, one for each level: of one core of an Intel Xeon of 2.6 GHz with 2 MiB of its own, on meshes of 15 k, 45 k,
-// 1 M and 10 M triangles in grid order and shuffled, on a dance and on a sphere that turns inside out. What is added for
-// polygons, and for a cache line that is far away, is the difference between two of them.
+// Nanoseconds, one for each level: of one core of an Intel Xeon of 2.6 GHz with 2 MiB of its own, on meshes of 15 k,
+// 45 k, 1 M and 10 M triangles in grid order and shuffled, on a dance and on a sphere that turns inside out. What is
+// added for polygons, and for a cache line that is far away, is the difference between two of them.
 struct Row {
   std::array<double, 3> at;
 };
