@@ -1,5 +1,5 @@
 # Runs the benchmarks on tiny meshes: each of them verifies what it times, and ends the run where it is wrong.
-execute_process(COMMAND ${PROGRAM} --quick --sizes 1k --filter "^(faces|vertices|schemes|blend|uses|cones)/1k/" --json -
+execute_process(COMMAND ${PROGRAM} --quick --sizes 1k --filter "^(faces|vertices|schemes|blend|dense blend|uses|cones)/1k/" --json -
                 OUTPUT_VARIABLE json ERROR_VARIABLE log RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "the benchmarks failed (${result}):\n${log}")
