@@ -14,6 +14,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -116,6 +117,7 @@ Times time_command(const std::string& program, const std::vector<std::string>& a
 
 void print_row(const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
+  std::fflush(stdout);
 }
 
 void measure_input(const std::string& program, const std::string& title, const std::vector<std::string>& files,
