@@ -54,7 +54,7 @@ std::string words_of(const InputOptions& input) {
 }
 
 Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
-  const Result<const Motion*> motion = input.motion();
+  const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   const Result<const StoredNormals*> normals = input.normals();
   if (!normals) return normals.error();
@@ -64,6 +64,7 @@ Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
 Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
+  wanted.stream = true;
   Result<Input> opened = open_input(std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
@@ -71,7 +72,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
-  const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
+  const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.tolerance,
                  can_be_baked ? words_of(options.input) : ""};
 }

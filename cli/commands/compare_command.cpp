@@ -85,7 +85,7 @@ std::string footer() {
 }
 
 Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
-  const Result<const Motion*> motion = input.motion();
+  const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
                                  options.sample_count(),
@@ -124,7 +124,8 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
     if (const Status status = check_input(input); options.each && !status) return status.error();
   }
   std::vector<NamedComparison> comparisons;
-  for (const InputOptions& wanted : inputs) {
+  for (InputOptions& wanted : inputs) {
+    wanted.stream = true;
     Result<Input> input = open_input(wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());

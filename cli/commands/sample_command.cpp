@@ -146,12 +146,13 @@ Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
+  wanted.stream = true;
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  const Result<const Motion*> read = input.value().motion();
+  const Result<MotionStream*> read = input.value().stream();
   if (!read) return read.error();
-  const Motion& motion = *read.value();
+  const Motion& motion = read.value()->motion();
   if (request.sample.path != PathKind::kLinear && motion.kind != MotionKind::kSequence)
     return misuse("--path", "only a sequence has curved paths between its keyframes: weights move vertices straight");
   const Result<Moments> moments = moments_of(input.value(), request.asked);
@@ -162,7 +163,7 @@ Result<int> run(const Options& options) {
     if (!status) return status.error();
   }
   const auto written =
-      write_samples(motion, request.sample, moments.value(), request.output, progress.callback("sampling"));
+      write_samples(*read.value(), request.sample, moments.value(), request.output, progress.callback("sampling"));
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)

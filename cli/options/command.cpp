@@ -90,7 +90,16 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        "32 MiB are always allowed)",
        {.check = check_whole(0)}},
       {"--sample NAME", &input.samples, morph_names()},
-      {"--fps N", &input.frames_per_second, "how many keyframes a second has, in formats without times (default 1)"}};
+      {"--fps N", &input.frames_per_second, "how many keyframes a second has, in formats without times (default 1)"},
+      {"--from K",
+       &input.from,
+       "the first keyframe of a sequence that counts, from 0 (default 0)",
+       {.check = check_whole(0)}},
+      {"--to K",
+       &input.to,
+       "the last keyframe of a sequence that counts (default: the last there is)",
+       {.check = check_whole(0)}},
+      {"--every N", &input.every, "take every Nth keyframe of a sequence (default 1)", {.check = check_whole(1)}}};
   for (const RefusedOption& option : refused)
     std::erase_if(table,
                   [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });

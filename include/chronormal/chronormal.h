@@ -9,9 +9,10 @@
 #include "chronormal/core/vec3.h"        // three-component vectors over any scalar
 #include "chronormal/core/views.h"       // vectors in the caller's memory, as planes or packed
 
-#include "chronormal/motion/blend_set.h"  // a base and targets, with any weights at once
-#include "chronormal/motion/motion.h"     // keyframes, the straight segments between them, and where a time lies
-#include "chronormal/motion/topology.h"   // which vertices make which face
+#include "chronormal/motion/blend_set.h"      // a base and targets, with any weights at once
+#include "chronormal/motion/motion.h"         // keyframes, the straight segments between them, and where a time lies
+#include "chronormal/motion/motion_stream.h"  // keyframes that are read when they are needed
+#include "chronormal/motion/topology.h"       // which vertices make which face
 
 #include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double

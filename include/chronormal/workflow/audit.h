@@ -38,6 +38,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
@@ -239,6 +240,9 @@ struct Audit {
 /// between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
+/// The same of a stream, of which two keyframes are held at a time; it is read twice, and up to where all vertices have moved
+/// and none coincide any more once again for each of the two. Errors: those of the stream, too.
+[[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal
 

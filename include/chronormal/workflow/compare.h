@@ -30,6 +30,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
@@ -71,8 +72,8 @@ struct CertifiedError {
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element; times are those of a thread among all that work, the median over blocks of up to 1,024 elements that stay
-/// in cache (on a smaller mesh, the calls themselves are most of it).
+/// element; times are those of a thread among all that work, the median over segments of that over blocks of up
+/// to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves are most of it).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
@@ -107,11 +108,14 @@ struct Comparison {
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
 ///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
-/// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
+/// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
+/// The same of a stream, a few segments of which are held at a time: as many as have a few thousand elements for each
+/// thread, but at least one. Errors: those of the stream, too.
+[[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
 /// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
 /// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.

@@ -43,6 +43,7 @@ inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditMan
 void finish(Audit& result);
 
 // A source is a motion with what is shown on the way:
+//     enter(segment)                 makes ready what is asked about this segment; a Status
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
 //     begin(segment, start, end)     gets the normals at both ends before the samples (where kNeedsEnds)
@@ -69,7 +70,8 @@ struct PlacedPart {
 
 /// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle.
 template <class Source>
-[[nodiscard]] std::vector<double> largest_control_normals(Source& source, std::size_t segments, PlacedPart& placed) {
+[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, std::size_t segments,
+                                                                  PlacedPart& placed) {
   std::vector<double> largest(placed.part.elements().size(), 0.0);
   const auto normals_at = [&](std::size_t s, double t) {
     placed.place(source, s, t);
@@ -77,6 +79,7 @@ template <class Source>
   };
   source.forget();
   for (std::size_t s = 0; s < segments; ++s) {
+    if (const Status status = source.enter(s); !status) return status.error();
     const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
     placed.place(source, s, 1);
     const std::vector<Vec3d>& end = placed.normals.elements;
@@ -148,12 +151,15 @@ void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, 
                  bool is_weight, double at);
 
 /// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
-/// is called after each segment, each_sample(measured sample) after each sample.
+/// is called after each segment, each_sample(measured sample) after each sample. Errors: those of source.enter().
 template <class Source, class EachSample>
-void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
-             AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {
+[[nodiscard]] Status measure(Source& source, const JudgedPart& part, AuditRule rule,
+                             const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,
+                             const EachSample& each_sample) {
   PlacedPart placed(part);
-  const std::vector<double> largest = largest_control_normals(source, subject.segments, placed);
+  const Result<std::vector<double>> all_largest = largest_control_normals(source, subject.segments, placed);
+  if (!all_largest) return all_largest.error();
+  const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;
   const auto shown = [&](std::size_t, const JudgedOutput& output) {
@@ -162,6 +168,9 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   for (std::size_t s = 0; s < subject.segments; ++s) {
+    if (const Status status = source.enter(s); !status) return status;
+    MotionError of_segment,
+        of_keys;  // added up segment by segment, so that sums do not depend on where a motion is divided
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
       const PartNormals start = placed.normals;
@@ -175,13 +184,16 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
                     source.at(s, t, part.outputs().front()).at);
-      subject.error.add(error);
-      if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
+      of_segment.add(error);
+      if (i == 0 || i + 1 == subject.samples) of_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
+    subject.error.add(of_segment);
+    subject.at_keys.add(of_keys);
     progress();
   }
   subject.vertices = part.outputs().size();
+  return Success{};
 }
 
 }  // namespace chronormal::inline internal

@@ -28,9 +28,10 @@ class SequenceSource {
  public:
   static constexpr bool kNeedsEnds = true;
 
-  SequenceSource(const Motion& motion, const StoredNormals& normals, bool stored, const JudgedPart& part,
+  SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
                  AuditRule rule, const PartNormals& first, std::span<const std::size_t> segments)
-      : motion_(motion),
+      : stream_(stream),
+        motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
@@ -38,6 +39,7 @@ class SequenceSource {
         first_(first),
         segments_(segments) {}
 
+  [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
     if (known_ && segment == segment_ && t == t_) return false;
     known_ = true;
@@ -100,6 +102,7 @@ class SequenceSource {
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
   }
 
+  MotionStream& stream_;
   const Motion& motion_;
   const StoredNormals& normals_;
   bool stored_;
@@ -161,12 +164,19 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::size_t> segments) {
+Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const std::size_t> segments) {
+  const Motion& motion = stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
+  std::size_t still = moves.size();
   for (const std::size_t s : segments) {
+    if (still == 0) break;
+    if (const Status status = stream.hold_segment(s); !status) return status.error();
     const Segment segment = motion.segment(s);
-    for (std::size_t v = 0; v < moves.size(); ++v)
-      if (segment.from[v] != segment.to[v]) moves[v] = true;
+    for (std::size_t v = 0; v < moves.size(); ++v) {
+      if (moves[v] || segment.from[v] == segment.to[v]) continue;
+      moves[v] = true;
+      --still;
+    }
   }
   return moves;
 }
@@ -189,20 +199,29 @@ PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const f
 
 }  // namespace
 
-Result<NormalGroups> internal::audited_groups(const Motion& motion, const StoredNormals& normals, bool weld) {
-  const Topology& topology = motion.topology;
-  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+Result<NormalGroups> internal::audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld) {
+  const Topology& topology = stream.motion().topology;
+  const Result<Points> welded =
+      weld ? weld_coincident(stream) : Result<Points>(separate_points(topology.vertex_count()));
+  if (!welded) return welded.error();
+  const Points& points = welded.value();
   if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
   const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
   return NormalGroups::by_split_normals(topology, points, of_corners);
 }
 
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
-  return watched_audit(motion, normals, options, {});
+  MotionStream stream(motion);
+  return audit(stream, normals, options);
 }
 
-Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options,
+Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options) {
+  return watched_audit(stream, normals, options, {});
+}
+
+Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                       const AuditWatch& watch) {
+  const Motion& motion = stream.motion();
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting.value_or(Weighting::kArea);
@@ -213,14 +232,14 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Result<NormalGroups> groups = audited_groups(motion, normals, options.weld);
+  const Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
   };
 
   const Topology& topology = motion.topology;
-  const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
   // Where a host computes the normals of keyframes, it does so by area, whatever the program did that made the first.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
@@ -231,6 +250,7 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
       const Vec3d normal = stored_normal(normals, 0, output);
       if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
     }
+    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
     const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), std::move(stored));
     result.offsets.push_back(authored_offset(authored, asked));
     weighting = result.offsets.back().weighting;
@@ -256,14 +276,18 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     subject.weighting = weighting;
     subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const JudgedPart part(topology, groups.value(), weighting, outputs_of(moving_vertices(motion, segments)));
+    const Result<std::vector<bool>> moves = moving_vertices(stream, segments);
+    if (!moves) return moves.error();
+    const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
     if (part.outputs().empty()) {
       ++result.still;
       for (std::size_t s = 0; s < subject.segments; ++s) progress();
       continue;
     }
+    if (const Status status = stream.hold(0, 0); !status) return status.error();
+    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
     const PartNormals first = normals_at_first_keyframe(part, base);
-    SequenceSource source(motion, normals, result.stored, part, result.rule, first, segments);
+    SequenceSource source(stream, normals, result.stored, part, result.rule, first, segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
                           static_cast<bool>(watch)};
     const auto tell = [&](const MeasuredSample& sample) {
@@ -281,7 +305,8 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
              {},
              {}});
     };
-    measure(source, part, result.rule, progress, subject, kept, tell);
+    const Status measured = measure(source, part, result.rule, progress, subject, kept, tell);
+    if (!measured) return measured.error();
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

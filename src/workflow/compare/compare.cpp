@@ -44,13 +44,21 @@ void add(CertifiedError& all, const CertifiedError& other) {
   all.to = other.to;
 }
 
+// The median, which a thread that was interrupted does not move.
+double median(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 // What one scheme did on one block, or on all blocks so far.
 struct Tally {
   Quality quality;
   std::vector<Quality> samples;  // of a block, where they are kept
   std::size_t fallbacks = 0, flagged = 0;
   double bytes = 0;
-  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
+  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block or segment
   CertifiedError certified;                    // where it is asked for
 
   void add(const Tally& other) {
@@ -62,15 +70,13 @@ struct Tally {
     prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
     evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
   }
+  // Adds all blocks of a segment, of whose times it keeps the medians: what it holds grows with segments and not with faces.
+  void add_segment(Tally& segment) {
+    segment.prepare_ns = {static_cast<float>(median(segment.prepare_ns))};
+    segment.evaluate_ns = {static_cast<float>(median(segment.evaluate_ns))};
+    add(segment);
+  }
 };
-
-// The median, which a thread that was interrupted does not move.
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double time_of_sample(std::size_t i, std::size_t samples) {
   return static_cast<double>(i) / static_cast<double>(samples - 1);
@@ -158,11 +164,12 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
   const auto outputs = all.element_of_output();
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    const Segment segment = motion.segment(s);
+    const double start_time = motion.keyframes[motion.segments[s].from].time;
+    const double end_time = motion.keyframes[motion.segments[s].to].time;
     const bool is_weight = motion.kind == MotionKind::kTargets;
     for (std::size_t i = 0; i < options.samples; ++i) {
       const double t = time_of_sample(i, options.samples);
-      const double at = is_weight ? t : (1 - t) * segment.start_time + t * segment.end_time;
+      const double at = is_weight ? t : (1 - t) * start_time + t * end_time;
       const std::span<float> row = add_row(table, s, is_weight, at);
       const float* const errors = of_elements.data() + (s * options.samples + i) * all.count();
       for (std::size_t o = 0; o < row.size(); ++o) row[o] = errors[outputs.empty() ? o : outputs[o]];
@@ -277,6 +284,12 @@ std::vector<std::string> default_schemes(ElementKind kind) {
 }
 
 Result<Comparison> compare(const Motion& motion, const CompareOptions& options) {
+  MotionStream stream(motion);
+  return compare(stream, options);
+}
+
+Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) {
+  const Motion& motion = stream.motion();
   if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
   const ElementKind kind = options.elements.kind;
   const bool certified = options.certify || options.tolerance;
@@ -309,7 +322,7 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
   if (kind == ElementKind::kFaces) {
     all.emplace(motion.topology);
   } else {
-    Result<NormalGroups> groups = make_groups(motion, options.elements);
+    Result<NormalGroups> groups = make_groups(stream, options.elements);
     if (!groups) return groups.error();
     all.emplace(std::move(groups).value());
   }
@@ -327,20 +340,32 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
   const std::size_t blocks = blocks_per_segment * motion.segments.size();
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
   std::vector<std::vector<Tally>> wave(std::min(blocks, blocks_per_wave));
-  for (std::size_t first = 0; first < blocks; first += blocks_per_wave) {
-    const std::size_t count = std::min(blocks_per_wave, blocks - first);
-    all->enter(motion, first / blocks_per_segment, (first + count - 1) / blocks_per_segment);
+  std::vector<Tally> of_segment(names.size());
+  for (std::size_t first = 0, count = 0; first < blocks; first += count) {
+    // A wave goes over the end of a segment only where segments have fewer blocks than it.
+    const std::size_t left = blocks_per_segment - first % blocks_per_segment;
+    count =
+        std::min({blocks_per_wave, blocks - first, std::max(left, blocks_per_segment < blocks_per_wave ? blocks : 0)});
+    const std::size_t first_segment = first / blocks_per_segment;
+    const std::size_t last_segment = (first + count - 1) / blocks_per_segment;
+    if (const Status status = stream.hold_segments(first_segment, last_segment); !status) return status.error();
+    all->enter(motion, first_segment, last_segment);
     parallel_for(count, [&](std::size_t i) {
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
       const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
       wave[i] = compare_block(segment, *all, range, names, options, each);
     });
-    // In order, so that sums do not depend on the threads.
+    // In order, and segment by segment, so that sums depend neither on threads nor on where a motion is divided.
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t first_sample = (first + i) / blocks_per_segment * options.samples;
+      const bool is_last = (first + i + 1) % blocks_per_segment == 0;
       for (std::size_t s = 0; s < names.size(); ++s) {
-        totals[s].add(wave[i][s]);
+        of_segment[s].add(wave[i][s]);
+        if (is_last) {
+          totals[s].add_segment(of_segment[s]);
+          of_segment[s] = {};
+        }
         if (s >= rows.size()) continue;
         for (std::size_t k = 0; k < wave[i][s].samples.size(); ++k)
           rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
@@ -375,6 +400,7 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
       row.certified->element = all->first_output(row.certified->element);
     }
     if (s < each.size()) {
+      if (const Status status = stream.hold(0, 0); !status) return status.error();
       comparison.errors.push_back(table_of(motion, *all, options, rows.size() > 1 ? row.scheme : "", each[s]));
       each[s] = {};
     }
