@@ -5,6 +5,7 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
+#include "chronormal/workflow/parts.h"
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
@@ -33,6 +34,7 @@ struct Options {
   bool certify = false;
   std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
+  ShardArgument shard;
   BlendArguments blend;
   TruthArguments truth;
 
@@ -62,6 +64,7 @@ std::string option_of_schemes(const Options& options) {
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
+  if (options.shard.text) return "--shard";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   return options.each ? "--each" : "";
@@ -95,6 +98,7 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
+  compare_options.shard = options.shard.read().value();
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
   return comparison;
@@ -166,6 +170,7 @@ std::string option_of_samples(const Options& options) {
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
+  if (options.shard.text) return "--shard";
   return options.each ? "--each" : "";
 }
 
@@ -203,6 +208,10 @@ Result<int> run(const Options& options) {
                   "it is about normals at random access: leave out --access sequential");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
+  const Result<Shard> shard = options.shard.read();
+  if (!shard) return shard.error();
+  if (options.shard.text && options.each) return misuse("--shard", "it divides one motion: leave out --each");
+  if (options.shard.text && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
     if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
@@ -221,7 +230,9 @@ Result<int> run(const Options& options) {
   }
   const bool with_times = !options.no_times;
   std::string text;
-  if (options.json)
+  if (options.shard.text)
+    text = compare_part(comparisons.value().front());
+  else if (options.json)
     text = compare_json(comparisons.value(), options.each, with_times);
   else if (options.csv)
     text = compare_csv(comparisons.value(), with_times);
@@ -233,7 +244,7 @@ Result<int> run(const Options& options) {
     return written.error();
   int exit = kExitDone;
   for (const NamedComparison& input : comparisons.value()) {
-    if (!options.tolerance || input.comparison.cheapest) continue;
+    if (!options.tolerance || input.comparison.cheapest || options.shard.text) continue;
     say("compare",
         formatted("{}: no scheme is within the tolerance of {:g} degrees at every time", printable(input.name),
                   *options.tolerance),
@@ -250,35 +261,38 @@ Command compare_command() {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
   auto options = std::make_shared<Options>();
-  return {"compare",
-          "Compare ways to interpolate normals with the exact normals, on your mesh",
-          {input_table(options->input),
-           {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
-            {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
-            {"--samples N",
-             &options->samples,
-             "how many moments of each segment are compared, its ends included (default 21)",
-             {.check = check_whole(2, kMostSamples)}}},
-           options->elements.table(),
-           {{"--access KIND",
-             &options->access,
-             "random (default): each moment on its own; sequential: each from the one before",
-             {.check = check_access}}},
-           {{"--certify", &options->certify,
-             "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
-            {"--tolerance DEG", &options->tolerance,
-             "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
-           options->blend.table(),
-           options->truth.table(),
-           {{"--errors FILE", &options->errors,
-             "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-             "scheme with the worst of each as its quality, for MeshLab and Blender"},
-            {"--json", &options->json, "print one JSON object, for programs"},
-            {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
-            {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
-           options->common.table(false)},
-          footer(),
-          [options] { return run(*options); }};
+  return {
+      "compare",
+      "Compare ways to interpolate normals with the exact normals, on your mesh",
+      {input_table(options->input),
+       {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
+        {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
+        {"--samples N",
+         &options->samples,
+         "how many moments of each segment are compared, its ends included (default 21)",
+         {.check = check_whole(2, kMostSamples)}}},
+       options->elements.table(),
+       {{"--access KIND",
+         &options->access,
+         "random (default): each moment on its own; sequential: each from the one before",
+         {.check = check_access}}},
+       {{"--certify", &options->certify,
+         "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+        {"--tolerance DEG", &options->tolerance,
+         "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+       options->blend.table(),
+       options->truth.table(),
+       {{"--errors FILE", &options->errors,
+         "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+         "scheme with the worst of each as its quality, for MeshLab and Blender"},
+        options->shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
+                              "merge"),
+        {"--json", &options->json, "print one JSON object, for programs"},
+        {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+        {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
+       options->common.table(false)},
+      footer(),
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

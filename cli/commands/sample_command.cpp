@@ -22,6 +22,7 @@ struct Options {
   std::string path = "linear";
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
+  ShardArgument shard;
 };
 
 std::string footer() {
@@ -94,8 +95,11 @@ Result<Request> understand(const Options& options) {
   if (!format) return format.error();
   Result<AskedMoments> asked = understand(options.moments);
   if (!asked) return asked.error();
-  Request request{
-      sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}};
+  const Result<Shard> shard = options.shard.read();
+  if (!shard) return shard.error();
+  Request request{sample.value(),
+                  std::move(asked).value(),
+                  {options.common.output, format.value(), options.common.force, shard.value()}};
   if (const Status status = check_input(options.input); !status) return status.error();
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();
@@ -178,25 +182,28 @@ Result<int> run(const Options& options) {
 
 Command sample_command() {
   auto options = std::make_shared<Options>();
-  return {"sample",
-          "Write the normals of a motion at chosen times, or of targets at chosen weights",
-          {input_table(options->input),
-           options->moments.table(),
-           options->elements.table(),
-           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-            {"--length KIND", &options->length,
-             "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-             "around a vertex (with --weighting area)"},
-            {"--path NAME", &options->path,
-             "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
-             "catmull-rom, on curves through them, with the normals of these"},
-            {"--hard-edges KIND", &options->hard_edges,
-             "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-             "file, by its smoothing groups (groups) or its own normals (normals)"},
-            {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"}},
-           options->common.table(true)},
-          footer(),
-          [options] { return run(*options); }};
+  return {
+      "sample",
+      "Write the normals of a motion at chosen times, or of targets at chosen weights",
+      {input_table(options->input),
+       options->moments.table(),
+       options->elements.table(),
+       {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+        {"--length KIND", &options->length,
+         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+         "around a vertex (with --weighting area)"},
+        {"--path NAME", &options->path,
+         "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
+         "catmull-rom, on curves through them, with the normals of these"},
+        {"--hard-edges KIND", &options->hard_edges,
+         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+         "file, by its smoothing groups (groups) or its own normals (normals)"},
+        {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"},
+        options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
+                              ".obj with the numbers that they have among all")},
+       options->common.table(true)},
+      footer(),
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -1,10 +1,13 @@
 #include "cli/options/command.h"
 
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/terminal/format.h"
+#include "core/charconv.h"
 
 namespace chronormal::cli {
 namespace {
@@ -44,6 +47,23 @@ Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<
     to_hosts = std::move(found).value();
   }
   return Success{};
+}
+
+Option ShardArgument::option(const std::string& of_what) { return {"--shard I/N", &text, of_what}; }
+
+Result<Shard> ShardArgument::read() const {
+  if (!text) return Shard{};
+  const std::string_view words = *text;
+  const std::size_t slash = words.find('/');
+  std::size_t index = 0, count = 0;
+  const auto is_number = [](std::string_view digits, std::size_t& value) {
+    const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
+    return code == std::errc{} && end == digits.data() + digits.size();
+  };
+  const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
+                        is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
+  if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
+  return Shard{index - 1, count};
 }
 
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {

@@ -14,6 +14,7 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/shard.h"
 #include "cli/options/options.h"
 #include "cli/terminal/progress.h"
 
@@ -63,6 +64,16 @@ struct JudgeArguments {
   [[nodiscard]] Status read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const;
 };
 
+/// The option that takes a share of the work: --shard I/N.
+struct ShardArgument {
+  std::optional<std::string> text;
+
+  /// of_what is what is divided, and what OUT is then, for the help.
+  [[nodiscard]] Option option(const std::string& of_what);
+  /// Errors: kUsage where it is no such share.
+  [[nodiscard]] Result<Shard> read() const;
+};
+
 /// Errors: kUsage where hosts are named and the input is no glTF file.
 [[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);
 
@@ -78,6 +89,7 @@ struct JudgeArguments {
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command inspect_command();
+[[nodiscard]] Command merge_command();
 [[nodiscard]] Command query_command();
 [[nodiscard]] Command report_command();
 [[nodiscard]] Command sample_command();

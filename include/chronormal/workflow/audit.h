@@ -42,6 +42,7 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -83,6 +84,9 @@ struct AuditOptions {
   std::vector<Host> hosts = {};  ///< glTF, by the rule gltf: these are judged too
   bool weld = true;              ///< sequences: vertices at one point in all keyframes are one
   bool keep_errors = false;      ///< every single one, in Audit::errors
+  /// Of a sequence: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
+  /// asked of the whole motion (which vertices move, how long a normal gets) is found anew by every shard.
+  Shard shard = {};
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -194,6 +198,12 @@ struct HostAudit {
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.is_within(degrees); }
 };
 
+/// What was found in one segment, and at its ends.
+struct SegmentErrors {
+  std::size_t segment = 0;
+  MotionError error, at_keys;
+};
+
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
   /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
@@ -210,6 +220,7 @@ struct Audit {
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
+  std::vector<SegmentErrors> measured;  ///< of a shard: of each of its segments; the rest is of them alone
 
   /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
   [[nodiscard]] bool is_within(double degrees) const noexcept {
@@ -243,6 +254,11 @@ struct Audit {
 /// The same of a stream, of which two keyframes are held at a time; it is read twice, and up to where all vertices have moved
 /// and none coincide any more once again for each of the two. Errors: those of the stream, too.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
+
+/// Puts the shards of one audit together, in any order: the audit that one run would have made. Errors: kUsage where they are
+/// not shards of the same audit, or not each segment is in one of them.
+/// There must be one at least
+[[nodiscard]] Result<Audit> merge(std::vector<Audit> shards);
 
 }  // namespace chronormal
 

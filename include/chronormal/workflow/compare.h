@@ -34,6 +34,7 @@
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -58,6 +59,8 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
+  /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared.
+  Shard shard = {};
 };
 
 /// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
@@ -89,6 +92,20 @@ struct SchemeComparison {
   std::optional<CertifiedError> certified = {};  ///< where it was asked for
 };
 
+/// What one scheme did in one segment.
+struct SchemeTally {
+  Quality quality;
+  std::size_t fallbacks = 0, flagged = 0;
+  double bytes = 0;  ///< of all elements together
+  CertifiedError certified = {};
+};
+
+/// What all schemes did in one segment: every row, and linear behind them where it is none of them.
+struct ComparedSegment {
+  std::size_t segment = 0;
+  std::vector<SchemeTally> schemes;
+};
+
 struct Comparison {
   ElementKind kind = ElementKind::kFaces;
   std::size_t vertices = 0;
@@ -101,6 +118,8 @@ struct Comparison {
   std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
   std::optional<double> tolerance = {};       ///< degrees, where it was given
   std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
+  std::vector<ComparedSegment> compared =
+      {};  ///< of a shard: of each of its segments; the rows are those of them alone
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
@@ -116,6 +135,11 @@ struct Comparison {
 /// The same of a stream, a few segments of which are held at a time: as many as have a few thousand elements for each
 /// thread, but at least one. Errors: those of the stream, too.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
+
+/// Puts the shards of one comparison together, in any order: the comparison that one run would have made, but that no times
+/// are measured. Errors: kUsage where they are not shards of the same comparison, or not each segment is in one of them.
+/// There must be one at least
+[[nodiscard]] Result<Comparison> merge(std::vector<Comparison> shards);
 
 /// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
 /// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.

@@ -47,6 +47,7 @@
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -156,10 +157,13 @@ struct SampleOutput {
   std::string path;  ///< "-" is the standard output; %d or %0Nd in a name of .ply or .obj is the number of the moment
   SampleFormat format = SampleFormat::kNpy;
   bool force = false;
+  /// Write this share of the moments only: .ply and .obj with the numbers that they have among all, .npy of as many rows
+  /// (workflow/parts.h puts them together). The bits are those of one run.
+  Shard shard = {};
 };
 
 /// The files that `count` moments will be written to. Asks before a long computation whether that can be. Errors:
-/// kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of check_output().
+/// kUsage for normals of corners in PLY, a shard of .npz, and for several moments in one .ply or .obj; those of check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 

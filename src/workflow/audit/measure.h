@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
@@ -46,7 +47,7 @@ void finish(Audit& result);
 //     enter(segment)                 makes ready what is asked about this segment; a Status
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
-//     begin(segment, start, end)     gets the normals at both ends before the samples (where kNeedsEnds)
+//     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
 //     shown(output)                  a normal of any length, zero for none
 //     right(output, n)               the direction for a normal of the geometry
 //     at(segment, t, output)         for people
@@ -131,7 +132,9 @@ template <class Source, class Shown>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
-  bool are_watched = false;  ///< each_sample looks at them
+  bool are_watched = false;                        ///< each_sample looks at them
+  Shard shard = {};                                ///< of the segments that are measured
+  std::vector<SegmentErrors>* segments = nullptr;  ///< what each of them gave; nullptr: nowhere
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
@@ -150,7 +153,7 @@ struct MeasuredSample {
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
+/// Measures all samples of the segments of a subject, or of a share of them, which says how many there are, and fills in its errors. progress
 /// is called after each segment, each_sample(measured sample) after each sample. Errors: those of source.enter().
 template <class Source, class EachSample>
 [[nodiscard]] Status measure(Source& source, const JudgedPart& part, AuditRule rule,
@@ -167,15 +170,16 @@ template <class Source, class EachSample>
   };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
-  for (std::size_t s = 0; s < subject.segments; ++s) {
+  const IndexRange share = kept.shard.of(subject.segments);
+  for (std::size_t s = share.first; s < share.end(); ++s) {
     if (const Status status = source.enter(s); !status) return status;
     MotionError of_segment,
         of_keys;  // added up segment by segment, so that sums do not depend on where a motion is divided
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
-      const PartNormals start = placed.normals;
+      std::vector<Vec3d> start = placed.normals.elements;
       placed.place(source, s, 1);
-      source.begin(s, start, placed.normals);
+      source.begin(std::move(start), placed.normals.elements);
       source.forget();
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
@@ -190,6 +194,7 @@ template <class Source, class EachSample>
     }
     subject.error.add(of_segment);
     subject.at_keys.add(of_keys);
+    if (kept.segments != nullptr) kept.segments->push_back({s, of_segment, of_keys});
     progress();
   }
   subject.vertices = part.outputs().size();

@@ -29,14 +29,14 @@ class SequenceSource {
   static constexpr bool kNeedsEnds = true;
 
   SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
-                 AuditRule rule, const PartNormals& first, std::span<const std::size_t> segments)
+                 AuditRule rule, std::vector<Vec3d> first, std::span<const std::size_t> segments)
       : stream_(stream),
         motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
         rule_(rule),
-        first_(first),
+        first_(std::move(first)),
         segments_(segments) {}
 
   [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
@@ -54,9 +54,9 @@ class SequenceSource {
   }
   void forget() { known_ = false; }
 
-  void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
-    start_ = start.elements;
-    end_ = end.elements;
+  void begin(std::vector<Vec3d> start, const std::vector<Vec3d>& end) {
+    start_ = std::move(start);
+    end_ = end;
   }
 
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
@@ -92,7 +92,7 @@ class SequenceSource {
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
-    const Vec3d first = first_.elements[output.element], first_stored = stored_at(0, output);
+    const Vec3d first = first_[output.element], first_stored = stored_at(0, output);
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
@@ -108,7 +108,7 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
-  const PartNormals& first_;  // of keyframe 0
+  std::vector<Vec3d> first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
   std::size_t segment_ = 0;
@@ -189,12 +189,12 @@ std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion)
   return subjects;
 }
 
-PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
+std::vector<Vec3d> normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
   std::vector<Vec3d> positions;
   for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
   PartNormals normals;
   part.normals(positions, normals);
-  return normals;
+  return std::move(normals.elements);
 }
 
 }  // namespace
@@ -231,8 +231,11 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (!options.hosts.empty())
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
+  if (!options.shard.is_all() && (motion.kind == MotionKind::kTargets || options.keep_errors))
+    return Error{ErrorCode::kUsage, "",
+                 "a shard is of the segments of a sequence, and keeps sums and no single errors"};
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
+  Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
@@ -263,7 +266,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   std::size_t done = 0;
   const auto progress = [&] {
-    if (options.progress) options.progress(++done, motion.segments.size());
+    if (options.progress) options.progress(++done, options.shard.of(motion.segments.size()).count);
   };
   const bool is_targets = motion.kind == MotionKind::kTargets;
   for (const std::vector<std::size_t>& segments : segments_of_subjects(motion)) {
@@ -279,17 +282,18 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const Result<std::vector<bool>> moves = moving_vertices(stream, segments);
     if (!moves) return moves.error();
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
+    if (!is_targets) groups = NormalGroups();  // the part has all that is needed of them
     if (part.outputs().empty()) {
       ++result.still;
-      for (std::size_t s = 0; s < subject.segments; ++s) progress();
+      for (std::size_t s = 0; s < options.shard.of(subject.segments).count; ++s) progress();
       continue;
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
     const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
-    const PartNormals first = normals_at_first_keyframe(part, base);
-    SequenceSource source(stream, normals, result.stored, part, result.rule, first, segments);
+    SequenceSource source(stream, normals, result.stored, part, result.rule, normals_at_first_keyframe(part, base),
+                          segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
-                          static_cast<bool>(watch)};
+                          static_cast<bool>(watch), options.shard, options.shard.is_all() ? nullptr : &result.measured};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "workflow/errors/error_rows.h"
+#include "workflow/errors/shards.h"
 
 namespace chronormal {
 namespace {
@@ -44,6 +46,15 @@ void add(CertifiedError& all, const CertifiedError& other) {
   all.to = other.to;
 }
 
+// Adds what was found after it. Adding the same parts in the same order gives the same bits.
+void add(SchemeTally& all, const SchemeTally& other) {
+  all.quality.add(other.quality);
+  add(all.certified, other.certified);
+  all.fallbacks += other.fallbacks;
+  all.flagged += other.flagged;
+  all.bytes += other.bytes;
+}
+
 // The median, which a thread that was interrupted does not move.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
@@ -52,30 +63,21 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-// What one scheme did on one block, or on all blocks so far.
-struct Tally {
-  Quality quality;
-  std::vector<Quality> samples;  // of a block, where they are kept
-  std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;
-  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block or segment
-  CertifiedError certified;                    // where it is asked for
+// What one scheme did on one block, or on all blocks of a segment so far.
+struct Tally : SchemeTally {
+  std::vector<Quality> samples;                // of a block, where they are kept
+  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
 
   void add(const Tally& other) {
-    quality.add(other.quality);
-    chronormal::add(certified, other.certified);
-    fallbacks += other.fallbacks;
-    flagged += other.flagged;
-    bytes += other.bytes;
+    chronormal::add(*this, other);
     prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
     evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
   }
-  // Adds all blocks of a segment, of whose times it keeps the medians: what it holds grows with segments and not with faces.
-  void add_segment(Tally& segment) {
-    segment.prepare_ns = {static_cast<float>(median(segment.prepare_ns))};
-    segment.evaluate_ns = {static_cast<float>(median(segment.evaluate_ns))};
-    add(segment);
-  }
+};
+
+// The times of one scheme, the median of each segment: what is held grows with segments and not with faces.
+struct SchemeTimes {
+  std::vector<float> prepare_ns, evaluate_ns;
 };
 
 double time_of_sample(std::size_t i, std::size_t samples) {
@@ -266,6 +268,38 @@ std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& 
   return cheapest;
 }
 
+// Fills in what follows from the sums over segments, of each row, and of linear.
+void conclude(const std::vector<SchemeTally>& totals, std::size_t segments, bool certified, Comparison& comparison) {
+  std::vector<SchemeComparison>& rows = comparison.schemes;
+  const auto linear_row =
+      std::find_if(rows.begin(), rows.end(), [](const auto& row) { return row.scheme == "linear"; });
+  const Quality& linear = totals[static_cast<std::size_t>(linear_row - rows.begin())].quality;
+  const double elements = static_cast<double>(comparison.elements * segments);
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    const SchemeTally& total = totals[s];
+    SchemeComparison& row = rows[s];
+    row.quality = total.quality;
+    row.relative_to_linear = {};
+    if (linear.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear.sum;
+    row.fallbacks = total.fallbacks;
+    row.flagged = total.flagged;
+    row.bytes = total.bytes / elements;
+    if (certified) row.certified = total.certified;
+  }
+  if (comparison.tolerance) comparison.cheapest = cheapest_within(rows, *comparison.tolerance);
+}
+
+// Whether two shards may be of one comparison: of the same elements at the same samples, by the same schemes.
+bool are_of_one(const Comparison& a, const Comparison& b) {
+  const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
+    return one.scheme == other.scheme && one.sequential == other.sequential &&
+           one.certified.has_value() == other.certified.has_value();
+  };
+  return a.kind == b.kind && a.vertices == b.vertices && a.faces == b.faces && a.elements == b.elements &&
+         a.segments == b.segments && a.samples == b.samples && a.motion == b.motion && a.tolerance == b.tolerance &&
+         std::equal(a.schemes.begin(), a.schemes.end(), b.schemes.begin(), b.schemes.end(), same_scheme);
+}
+
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -315,8 +349,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     row.operations = row.sequential ? *sequential : scheme.value()->operations();
     rows.push_back(std::move(row));
   }
-  std::size_t linear = static_cast<std::size_t>(std::find(names.begin(), names.end(), "linear") - names.begin());
-  if (linear == names.size()) names.emplace_back("linear");
+  if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   std::optional<Elements> all;
   if (kind == ElementKind::kFaces) {
@@ -333,15 +366,20 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
+  if (!options.shard.is_all() && (options.keep_errors || options.keep_samples))
+    return Error{ErrorCode::kUsage, "", "a shard keeps sums: single errors are of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
-  std::vector<Tally> totals(names.size());
+  std::vector<SchemeTally> totals(names.size());
+  std::vector<SchemeTimes> times(names.size());
+  std::vector<ComparedSegment> compared;
+  const IndexRange share = options.shard.of(motion.segments.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
-  const std::size_t blocks = blocks_per_segment * motion.segments.size();
+  const std::size_t first_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
-  std::vector<std::vector<Tally>> wave(std::min(blocks, blocks_per_wave));
+  std::vector<std::vector<Tally>> wave(std::min(blocks - first_block, blocks_per_wave));
   std::vector<Tally> of_segment(names.size());
-  for (std::size_t first = 0, count = 0; first < blocks; first += count) {
+  for (std::size_t first = first_block, count = 0; first < blocks; first += count) {
     // A wave goes over the end of a segment only where segments have fewer blocks than it.
     const std::size_t left = blocks_per_segment - first % blocks_per_segment;
     count =
@@ -358,20 +396,27 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     });
     // In order, and segment by segment, so that sums depend neither on threads nor on where a motion is divided.
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t first_sample = (first + i) / blocks_per_segment * options.samples;
-      const bool is_last = (first + i + 1) % blocks_per_segment == 0;
+      const std::size_t segment = (first + i) / blocks_per_segment, first_sample = segment * options.samples;
       for (std::size_t s = 0; s < names.size(); ++s) {
         of_segment[s].add(wave[i][s]);
-        if (is_last) {
-          totals[s].add_segment(of_segment[s]);
-          of_segment[s] = {};
-        }
         if (s >= rows.size()) continue;
         for (std::size_t k = 0; k < wave[i][s].samples.size(); ++k)
           rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
       }
+      if ((first + i + 1) % blocks_per_segment != 0) continue;
+      if (!options.shard.is_all()) compared.push_back({segment, {}});
+      for (std::size_t s = 0; s < names.size(); ++s) {
+        Tally& found = of_segment[s];
+        found.quality.max_at.element = all->first_output(found.quality.max_at.element);
+        found.certified.element = all->first_output(found.certified.element);
+        add(totals[s], found);
+        times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
+        times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
+        if (!options.shard.is_all()) compared.back().schemes.push_back(found);
+        found = {};
+      }
     }
-    if (options.progress) options.progress(first + count, blocks);
+    if (options.progress) options.progress(first + count - first_block, blocks - first_block);
   }
 
   Comparison comparison{kind,
@@ -382,35 +427,40 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         options.samples,
                         {},
                         motion.kind};
-  const double elements = static_cast<double>(all->count() * motion.segments.size());
-  const Quality& linear_quality = totals[linear].quality;
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    const Tally& total = totals[s];
-    SchemeComparison& row = rows[s];
-    row.quality = total.quality;
-    row.quality.max_at.element = all->first_output(total.quality.max_at.element);
-    if (linear_quality.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear_quality.sum;
-    row.fallbacks = total.fallbacks;
-    row.flagged = total.flagged;
-    row.prepare_ns = median(total.prepare_ns);
-    row.evaluate_ns = median(total.evaluate_ns);
-    row.bytes = total.bytes / elements;
-    if (certified) {
-      row.certified = total.certified;
-      row.certified->element = all->first_output(row.certified->element);
-    }
-    if (s < each.size()) {
-      if (const Status status = stream.hold(0, 0); !status) return status.error();
-      comparison.errors.push_back(table_of(motion, *all, options, rows.size() > 1 ? row.scheme : "", each[s]));
-      each[s] = {};
-    }
-    comparison.schemes.push_back(std::move(row));
+  comparison.schemes = std::move(rows);
+  comparison.tolerance = options.tolerance;
+  comparison.compared = std::move(compared);
+  for (std::size_t s = 0; s < comparison.schemes.size(); ++s) {
+    SchemeComparison& row = comparison.schemes[s];
+    row.prepare_ns = median(times[s].prepare_ns);
+    row.evaluate_ns = median(times[s].evaluate_ns);
+    if (s >= each.size()) continue;
+    if (const Status status = stream.hold(0, 0); !status) return status.error();
+    comparison.errors.push_back(
+        table_of(motion, *all, options, comparison.schemes.size() > 1 ? row.scheme : "", each[s]));
+    each[s] = {};
   }
-  if (options.tolerance) {
-    comparison.tolerance = options.tolerance;
-    comparison.cheapest = cheapest_within(comparison.schemes, *options.tolerance);
-  }
+  conclude(totals, share.count, certified, comparison);
   return comparison;
+}
+
+Result<Comparison> merge(std::vector<Comparison> shards) {
+  std::vector<ComparedSegment> compared;
+  for (Comparison& shard : shards) {
+    if (!are_of_one(shard, shards.front()))
+      return Error{ErrorCode::kUsage, "", "these are shards of two different comparisons"};
+    std::move(shard.compared.begin(), shard.compared.end(), std::back_inserter(compared));
+  }
+  Comparison all = std::move(shards.front());
+  if (const Status complete = put_in_order(all.segments, compared); !complete) return complete.error();
+  std::vector<SchemeTally> totals(compared.front().schemes.size());
+  for (const ComparedSegment& segment : compared)
+    for (std::size_t i = 0; i < totals.size(); ++i) add(totals[i], segment.schemes[i]);
+  const bool certified = all.schemes.front().certified.has_value();
+  for (SchemeComparison& row : all.schemes) row.prepare_ns = row.evaluate_ns = 0;
+  all.compared.clear();
+  conclude(totals, all.segments, certified, all);
+  return all;
 }
 
 double evaluation_cost(const SchemeComparison& scheme) noexcept {

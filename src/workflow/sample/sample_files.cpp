@@ -34,7 +34,12 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
-  if (!moments.times.empty()) return sampler.at_time(moments.times[i], in_a_row[i]);
+  if (!moments.times.empty()) {
+    // What a segment is prepared for does not depend on where a shard begins in it.
+    std::size_t first = i;
+    while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
+    return sampler.at_time(moments.times[i], in_a_row[first]);
+  }
   if (!moments.weights.empty()) return sampler.at_weights(moments.weights[i]);
   if (const Status status = stream.hold(0, 0); !status) return status.error();
   return sampler.at_rest();
@@ -70,8 +75,8 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t outputs) {
-    const std::vector<std::uint64_t> shape = {moments.count(), outputs, 3};
+  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t rows, std::size_t outputs) {
+    const std::vector<std::uint64_t> shape = {rows, outputs, 3};
     if (!npz_) return file_->append(npy::write_header("<f4", shape));
     std::vector<double> values = moments.times;
     std::vector<std::uint64_t> when_shape = {moments.count()};
@@ -166,6 +171,8 @@ std::optional<SampleFormat> find_sample_format(std::string_view path) {
 Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind, std::size_t count) {
   if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
     return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
+  if (output.format == SampleFormat::kNpz && !output.shard.is_all())
+    return Error{ErrorCode::kUsage, output.path, "a shard is an array of its own: write .npy"};
   std::vector<std::string> names = {output.path};
   if (!is_array(output.format) && output.path != "-") {
     Result<std::vector<std::string>> numbered = numbered_names(output.path, count);
@@ -203,6 +210,7 @@ Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& o
   const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
   if (!in_a_row) return in_a_row.error();
 
+  const IndexRange share = output.shard.of(count);
   std::optional<ArrayFile> arrays;
   if (is_array(output.format)) {
     const std::size_t per_moment = sampler.output_count() + vertices;
@@ -213,11 +221,12 @@ Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& o
     Result<OutputFile> file = OutputFile::create(output.path, output.force);
     if (!file) return file.error();
     arrays.emplace(std::move(file).value(), output.format);
-    if (Status status = arrays->begin(motion, moments, sampler.output_count()); !status) return status.error();
+    if (Status status = arrays->begin(motion, moments, share.count, sampler.output_count()); !status)
+      return status.error();
   }
 
   SampleSummary summary;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = share.first; i < share.end(); ++i) {
     const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
     if (!pose) return pose.error();
     const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
@@ -229,7 +238,7 @@ Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& o
       const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
       if (Status status = write_output(names.value()[i], bytes, output.force); !status) return status.error();
     }
-    if (progress) progress(i + 1, count);
+    if (progress) progress(i + 1 - share.first, share.count);
   }
   if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;
