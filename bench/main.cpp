@@ -80,11 +80,13 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
       if (!shuffled && size.elements <= kCertifiedUpTo) run_certificates(suite, size);
     }
   }
+  run_meshes(suite);
   report.accuracies = measure_accuracy(suite);
   if (suite.wants("quality", {"twist", 0, false}, "schemes")) {
     suite.say("quality of schemes");
     report.qualities = scheme_qualities();
   }
+  report.machine.emplace_back("prefetch", chosen_prefetch());
   report.rows = suite.rows();
   report.bandwidths = suite.bandwidths();
   suite.say("");

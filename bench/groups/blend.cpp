@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "chronormal/normals/blend_normals.h"
+#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
 #include "groups/groups.h"
@@ -17,7 +18,7 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr std::size_t kTargets = 100;
+constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // of the vertices, by each target: as the 102 of a face of 19,158 vertices
 constexpr double kDisplacement = 0.1;  // of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
@@ -25,7 +26,7 @@ constexpr double kExactError = 1e-6, kFloatError = 1e-3;
 constexpr double kLinearError = 3.2;
 
 // Targets around random vertices in the order of the mesh, which fall off smoothly.
-BlendSet make_set(const Mesh& mesh) {
+BlendSet make_sparse(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();
   set.base.assign(mesh.from().begin(), mesh.from().end());
@@ -58,11 +59,27 @@ BlendSet make_set(const Mesh& mesh) {
   return set;
 }
 
-std::vector<double> make_weights(std::size_t active) {
+// Each moves every vertex by a wave of its own.
+BlendSet make_dense(const Mesh& mesh) {
+  BlendSet set;
+  set.topology = mesh.topology();
+  set.base.assign(mesh.from().begin(), mesh.from().end());
+  for (std::size_t k = 0; k < kDenseTargets; ++k) {
+    std::vector<float> deltas(set.base.size());
+    for (std::size_t i = 0; i < deltas.size(); ++i) {
+      const double phase = (2 + static_cast<double>(k)) * double{set.base[i / 3 * 3 + (i + k) % 3]};
+      deltas[i] = static_cast<float>(kDisplacement * std::sin(phase + static_cast<double>(i % 3)));
+    }
+    set.targets.push_back(BlendTarget::from_dense(deltas));
+  }
+  return set;
+}
+
+std::vector<double> make_weights(std::size_t active, std::size_t targets) {
   std::mt19937_64 random(active);
-  std::vector<double> weights(kTargets);
+  std::vector<double> weights(targets);
   for (std::size_t done = 0; done < active;) {
-    double& weight = weights[random() % kTargets];
+    double& weight = weights[random() % targets];
     if (weight != 0) continue;
     weight = 0.05 + static_cast<double>(random() >> 11U) * 0x1p-53;
     ++done;
@@ -113,11 +130,11 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
 // And with normals: sparse deltas of unit normals between the base and each target, added up.
 class LinearSum {
  public:
-  LinearSum(BlendNormals& normals, std::size_t vertices) : base_(3 * vertices) {
+  LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {
     std::vector<float> end(3 * vertices);
-    std::vector<double> weights(kTargets);
+    std::vector<double> weights(targets);
     (void)normals.unit_normals(weights, VectorView<float>::packed(base_.data(), vertices));
-    for (std::size_t k = 0; k < kTargets; ++k) {
+    for (std::size_t k = 0; k < targets; ++k) {
       weights[k] = 1;
       (void)normals.unit_normals(weights, VectorView<float>::packed(end.data(), vertices));
       weights[k] = 0;
@@ -174,8 +191,8 @@ void plain_loop(const BlendSet& set, const NormalGroups& groups, std::span<const
 }
 
 struct Subject {
-  explicit Subject(const Mesh& mesh)
-      : set(make_set(mesh)),
+  explicit Subject(BlendSet made)
+      : set(std::move(made)),
         groups(NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()))),
         vertices(set.topology.vertex_count()),
         positions(set.base),
@@ -183,10 +200,11 @@ struct Subject {
         normals(BlendNormals::of_groups(set, groups)),
         terms(BlendNormals::of_groups(set, groups, {.forced = BlendPath::kTerms})),
         touched(BlendNormals::of_groups(set, groups, {0, BlendPath::kTouched})),
-        linear(normals, vertices),
+        linear(normals, vertices, set.targets.size()),
         segment{&set.topology, VectorView<const float>::packed(positions.data(), vertices),
                 VectorView<const float>::packed(positions.data(), vertices)},
         recompute(segment, groups),
+        in_float32(set.topology, groups),
         memory(3 * vertices),
         result(VectorView<float>::packed(memory.data(), vertices)) {}
 
@@ -198,27 +216,26 @@ struct Subject {
   LinearSum linear;
   Segment segment;
   NormalRecompute recompute;
+  FloatRecompute in_float32;
   AlignedArray<float> memory;
   VectorView<float> result;
 };
 
-}  // namespace
-
-void run_blend(Suite& suite, const Size& size) {
-  const std::string group = "blend";
+void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet (*make)(const Mesh&),
+             std::size_t targets, const std::vector<std::size_t>& actives) {
   CaseList list(suite, group, size);
   const Mesh mesh(Elements::kVertices, size.elements, size.shuffled);
   const Oracle oracle(mesh.segment(), Elements::kVertices);
   std::unique_ptr<Subject> made;
   const auto subject = [&]() -> Subject& {
-    if (made == nullptr) made = std::make_unique<Subject>(mesh);
+    if (made == nullptr) made = std::make_unique<Subject>(make(mesh));
     return *made;
   };
-  for (const std::size_t active : {1U, 2U, 4U, 8U, 16U, 100U}) {
-    const std::vector<double> weights = make_weights(active);
+  for (const std::size_t active : actives) {
+    const std::vector<double> weights = make_weights(active, targets);
     const auto add = [&](const std::string& name, double limit, const std::string& note,
                          const std::function<void(Subject&)>& run) {
-      list.add(fmt::format("{} of {}: {}", active, kTargets, name), [&] {
+      list.add(fmt::format("{} of {}: {}", active, targets, name), [&] {
         Case one;
         one.note = note;
         one.run = [&on = subject(), run] { run(on); };
@@ -238,6 +255,10 @@ void run_blend(Suite& suite, const Size& size) {
       blend(on.set, weights, on.positions);
       (void)on.recompute.unit_normals(0, on.result);
     });
+    add("recompute in float32", kFloatError, "the whole mesh", [weights](Subject& on) {
+      blend(on.set, weights, on.positions);
+      (void)on.in_float32.unit_normals(on.segment.from, on.result);
+    });
     add("plain C++ loop", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {
       blend(on.set, weights, on.positions);
       plain_loop(on.set, on.groups, on.positions, on.face_normals, on.memory.data());
@@ -246,6 +267,13 @@ void run_blend(Suite& suite, const Size& size) {
         [weights](Subject& on) { on.linear(weights, on.memory.data()); });
   }
   suite.run(group, size, mesh.topology().vertex_count(), oracle, list.take());
+}
+
+}  // namespace
+
+void run_blend(Suite& suite, const Size& size) {
+  run_set(suite, size, "blend", make_sparse, kTargets, {1, 2, 4, 8, 16, 52, 100});
+  run_set(suite, size, "dense blend", make_dense, kDenseTargets, {1, 2, 5});
 }
 
 }  // namespace chronormal::bench

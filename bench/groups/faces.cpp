@@ -15,10 +15,11 @@ void run_faces(Suite& suite, const Size& size) {
   const Mesh mesh(Elements::kFaces, size.elements, size.shuffled);
   const Oracle oracle(mesh.segment(), Elements::kFaces);
   const std::size_t faces = mesh.topology().face_count(), vertices = mesh.topology().vertex_count();
-  add_loops(list, mesh, Elements::kFaces);
+  const double limit = float_limit(mesh.count(Elements::kFaces));
+  add_loops(list, mesh, Elements::kFaces, limit);
   add_libraries(list, mesh, Elements::kFaces);
   // Positions at both ends once, and corners; in random order whole cache lines of them come again and again.
-  add_ours(list, mesh.segment(), nullptr, size.shuffled ? 0 : 24 * vertices + 12 * faces);
+  add_ours(list, mesh.segment(), nullptr, size.shuffled ? 0 : 24 * vertices + 12 * faces, limit);
   suite.run(group, size, faces, oracle, list.take());
 }
 

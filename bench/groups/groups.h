@@ -12,6 +12,9 @@ namespace chronormal::bench {
 
 void run_faces(Suite& suite, const Size& size);
 void run_vertices(Suite& suite, const Size& size);
+/// Meshes that are no torus: thin triangles, varied valence, a sphere that collapses, and those of other people that
+/// CHRONORMAL_DATA has (a dance, a face).
+void run_meshes(Suite& suite);
 /// Every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
@@ -21,7 +24,7 @@ void run_certificates(Suite& suite, const Size& size);
 /// Cones, bounds of clusters and means over a segment, beside samples.
 void run_cones(Suite& suite, const Size& size);
 
-/// Blend shapes, a few active at once.
+/// Blend shapes: many sparse ones, a few active at once, and few that move everything.
 void run_blend(Suite& suite, const Size& size);
 
 /// What holds over a whole segment: collapse, facing.

@@ -15,10 +15,11 @@ void run_vertices(Suite& suite, const Size& size) {
   const Mesh mesh(Elements::kVertices, size.elements, size.shuffled);
   const Oracle oracle(mesh.segment(), Elements::kVertices);
   const std::size_t faces = mesh.topology().face_count(), vertices = mesh.topology().vertex_count();
-  add_loops(list, mesh, Elements::kVertices);
+  const double limit = float_limit(mesh.count(Elements::kVertices));
+  add_loops(list, mesh, Elements::kVertices, limit);
   add_libraries(list, mesh, Elements::kVertices);
   const NormalGroups groups = NormalGroups::of_vertices(mesh.topology(), separate_points(vertices));
-  add_ours(list, mesh.segment(), &groups, size.shuffled ? 0 : 24 * vertices + 12 * faces);
+  add_ours(list, mesh.segment(), &groups, size.shuffled ? 0 : 24 * vertices + 12 * faces, limit);
   suite.run(group, size, vertices, oracle, list.take());
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <thread>
 
+#include "normals/curves/kernels/prefetch.h"
 #include "simd/targets.h"
 
 namespace chronormal::bench {
@@ -98,6 +99,12 @@ std::vector<std::pair<std::string, std::string>> describe_machine() {
           {"caches", caches()},         {"instruction_set", target_name(current_target())},
           {"huge_pages", huge_pages()}, {"compiler", compiler()},
           {"commit", commit()},         {"date", date()}};
+}
+
+std::string chosen_prefetch() {
+  const auto kibibytes = [](const PrefetchRule& rule) { return rule.best() / 1024; };
+  return fmt::format("{} KiB ahead in the shared cache, {} KiB in memory", kibibytes(prefetch_in_shared_cache()),
+                     kibibytes(prefetch_in_memory()));
 }
 
 void restart_with_huge_pages(char** argv) {

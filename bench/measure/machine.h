@@ -11,6 +11,9 @@ namespace chronormal::bench {
 /// Names and values, in the order in which they are shown: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
+/// How far ahead evaluations ask for curves (PrefetchRule), as this run has found out.
+[[nodiscard]] std::string chosen_prefetch();
+
 /// Makes every large allocation of this process come in huge pages, also those of libraries, by starting the program
 /// anew with a tunable of the C library. Does nothing where that has been done.
 void restart_with_huge_pages(char** argv);

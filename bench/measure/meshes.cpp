@@ -93,6 +93,12 @@ Mesh::Mesh(Elements elements, std::size_t element_count, bool shuffled) {
   topology_ = Topology::triangles(vertex_count, std::move(corners)).value();
 }
 
+Mesh::Mesh(Topology topology, std::span<const float> from, std::span<const float> to)
+    : topology_(std::move(topology)), from_(from.size()), to_(to.size()) {
+  std::copy(from.begin(), from.end(), from_.data());
+  std::copy(to.begin(), to.end(), to_.data());
+}
+
 Segment Mesh::segment() const noexcept {
   Segment segment;
   segment.topology = &topology_;

@@ -21,6 +21,8 @@ class Mesh {
  public:
   /// About element_count of the elements. Shuffled: vertices and faces in a random order, the same one on every run.
   Mesh(Elements elements, std::size_t element_count, bool shuffled);
+  /// Any triangles, with packed positions at both ends.
+  Mesh(Topology topology, std::span<const float> from, std::span<const float> to);
 
   /// Packed positions; the mesh must outlive it.
   [[nodiscard]] Segment segment() const noexcept;

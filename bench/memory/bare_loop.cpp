@@ -48,8 +48,12 @@ void ByWay(int way, const float* from, float* to, std::size_t blocks) {
       return Lines<kRead, true, 0>(from, to, blocks);
     case 3:
       return Lines<kRead, true, 8192>(from, to, blocks);
-    default:
+    case 4:
       return Lines<kRead, true, 16384>(from, to, blocks);
+    case 5:
+      return Lines<kRead, false, 2048>(from, to, blocks);
+    default:
+      return Lines<kRead, true, 2048>(from, to, blocks);
   }
 }
 
@@ -75,7 +79,7 @@ HWY_EXPORT(Lines0);
 HWY_EXPORT(Lines5);
 HWY_EXPORT(Lines9);
 
-constexpr int kWays = 5;
+constexpr int kWays = 7;
 constexpr std::size_t kBlock = 16;                    // elements
 constexpr std::size_t kPiece = 512;                   // blocks that a thread takes at a time
 constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // what prefetch asks for behind the end is memory of ours

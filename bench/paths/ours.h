@@ -10,7 +10,9 @@ namespace chronormal::bench {
 /// Adds all of them: preparing, evaluating, many t, playing, on one thread and on all. No groups: of faces. The segment
 /// and the groups must outlive the cases.
 /// recompute_bytes: what recomputing all normals has to read at least, 0 where it is not known
-void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes);
+/// float_limit: how far off normals from positions in float32 may be, in radians
+void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes,
+              double float_limit);
 
 /// Looks at a packed array (n, 3).
 [[nodiscard]] Check packed_check(double t, const float* normals);

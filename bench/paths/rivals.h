@@ -11,7 +11,9 @@
 namespace chronormal::bench {
 
 /// The mesh must outlive the cases. Loops interpolate the positions and compute normals.
-void add_loops(CaseList& list, const Mesh& mesh, Elements elements);
+void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
+/// How far off normals from float32 positions may be on the torus, in radians.
+[[nodiscard]] double float_limit(std::size_t elements);
 /// Libraries have the interpolated positions in their own structure already, and only compute normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 

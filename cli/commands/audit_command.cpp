@@ -27,6 +27,7 @@ struct Options {
   CommonOptions common;
   std::string rule;  // empty: what is usual for the input
   JudgeArguments judge;
+  PathArgument path;
   std::optional<double> tolerance;
   std::optional<std::string> errors;  // where to write every single one
   ShardArgument shard;
@@ -74,8 +75,11 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   if (document != nullptr && !how.shard.is_all())
     return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
+  if (const Status known = check_path(input, how.path); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
+  progress.clear();
+  warn_if_sparse("audit", found.value().path, found.value().bend);
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.tolerance,
                  can_be_baked ? words_of(options.input) : ""};
@@ -91,6 +95,9 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
   if (!how.hosts.empty() && how.rule && *how.rule != AuditRule::kGltf)
     return misuse("--host", "hosts go with the rule gltf, which they stand for");
+  const Result<PathKind> path = options.path.read();
+  if (!path) return path.error();
+  how.path = path.value();
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -225,6 +232,7 @@ Command audit_command() {
          "what a host makes of stored normals between keyframes: gltf (default for\n"
          "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
        options->judge.table("judge what these hosts show of a glTF file"),
+       options->path.table("the right normals are those of this path"),
        {{"--tolerance DEG", &options->tolerance,
          "exit with code 4 if the worst error is larger, in any host of --host"},
         {"--errors FILE", &options->errors,

@@ -36,7 +36,8 @@ struct Options {
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
   std::optional<std::string> drivers;  // where to write them beside the result
-  std::optional<std::string> poses;    // a file of what rigs are made for
+  PathArgument path;
+  std::optional<std::string> poses;  // a file of what rigs are made for
   bool json = false, no_audit = false;
 };
 
@@ -65,6 +66,9 @@ Result<BakeOptions> understand(const Options& options) {
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
   if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
     return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
+  const Result<PathKind> path = options.path.read();
+  if (!path) return path.error();
+  how.path = path.value();
   how.crease_angle = options.crease_angle;
   how.recompute_base = options.recompute_base;
   how.smooth = options.smooth;
@@ -155,6 +159,8 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   const GltfDocument& document = *input.document();
   if (options.input.frames_per_second != 1)
     return misuse("--fps", "the animations of a glTF file have times of their own");
+  if (how.path != PathKind::kLinear)
+    return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
   if (options.crease_angle != 180 && !options.smooth)
     return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
@@ -211,6 +217,12 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
   const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
                                    [](const Host& host) { return host.normals == NormalRule::kSum; });
+  const bool is_curved = how.path != PathKind::kLinear;
+  if (is_curved && how.encoding.value_or(BakeEncoding::kEndpoint) != BakeEncoding::kEndpoint)
+    return misuse("--encode", "on curved paths n(t) has degree 6, which weights cannot carry: endpoint fits it");
+  if (is_curved && how.weighting.value_or(Weighting::kArea) != Weighting::kArea)
+    return misuse("--weighting", "on curved paths normals are weighted by area, and by nothing else");
+  if (is_curved) how.encoding = BakeEncoding::kEndpoint;
   if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
     return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
@@ -221,6 +233,7 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence is written as .glb");
+  if (const Status status = check_path(input, how.path); !status) return status.error();
   const Motion& motion = *input.motion().value();
   if (motion.kind == MotionKind::kTargets)
     return invalid_input(input.name(),
@@ -241,11 +254,13 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   if (!baked) return baked.error();
   if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
   warn(baked.value().warnings);
+  warn_if_sparse("bake", how.path, baked.value().bend);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
     auto audited = audit_both(how, options, [&](AuditOptions asked) {
       asked.rule = AuditRule::kNlerp;
+      asked.path = how.path;
       return audit(motion, stored, asked);
     });
     if (!audited) return audited.error();
@@ -355,6 +370,7 @@ Command bake_command() {
          "extra targets as the file says; FILE has the poses that they are made for, as JSON:\n"
          "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: such meshes get no extra targets)"},
         {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
+        options->path.table("positions are exact then, by cubic weights, and normals fitted").front(),
         {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
         {"--tolerance DEG", &options->tolerance,
          "how far off normals may be at worst along the animations; with harmless and exact:\n"

@@ -37,6 +37,7 @@ struct Options {
   ShardArgument shard;
   BlendArguments blend;
   TruthArguments truth;
+  PathArgument path;
 
   [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
 };
@@ -67,6 +68,7 @@ std::string option_of_schemes(const Options& options) {
   if (options.shard.text) return "--shard";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
+  if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -99,8 +101,11 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
   compare_options.shard = options.shard.read().value();
+  compare_options.path = options.path.read().value();
+  if (const Status status = check_path(input, compare_options.path); !status) return status.error();
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
+  if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
   return comparison;
 }
 
@@ -171,6 +176,7 @@ std::string option_of_samples(const Options& options) {
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
+  if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -200,12 +206,17 @@ Result<int> run(const Options& options) {
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
+  const Result<PathKind> path = options.path.read();
+  if (!path) return path.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
                   "it is about normals at random access: leave out --access sequential");
+  if (path.value() != PathKind::kLinear && (options.certify || options.tolerance))
+    return misuse(options.certify ? "--certify" : "--tolerance",
+                  "certificates are of straight paths: leave out --path, or compare at samples");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   const Result<Shard> shard = options.shard.read();
@@ -261,38 +272,36 @@ Command compare_command() {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
   auto options = std::make_shared<Options>();
-  return {
-      "compare",
-      "Compare ways to interpolate normals with the exact normals, on your mesh",
-      {input_table(options->input),
-       {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
-        {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
-        {"--samples N",
-         &options->samples,
-         "how many moments of each segment are compared, its ends included (default 21)",
-         {.check = check_whole(2, kMostSamples)}}},
-       options->elements.table(),
-       {{"--access KIND",
-         &options->access,
-         "random (default): each moment on its own; sequential: each from the one before",
-         {.check = check_access}}},
-       {{"--certify", &options->certify,
-         "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
-        {"--tolerance DEG", &options->tolerance,
-         "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
-       options->blend.table(),
-       options->truth.table(),
-       {{"--errors FILE", &options->errors,
-         "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-         "scheme with the worst of each as its quality, for MeshLab and Blender"},
-        options->shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
-                              "merge"),
-        {"--json", &options->json, "print one JSON object, for programs"},
-        {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
-        {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
-       options->common.table(false)},
-      footer(),
-      [options] { return run(*options); }};
+  return {"compare",
+          "Compare ways to interpolate normals with the exact normals, on your mesh",
+          {input_table(options->input),
+           {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
+            {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
+            {"--samples N",
+             &options->samples,
+             "how many moments of each segment are compared, its ends included (default 21)",
+             {.check = check_whole(2, kMostSamples)}}},
+           options->elements.table(),
+           {{"--access KIND",
+             &options->access,
+             "random (default): each moment on its own; sequential: each from the one before",
+             {.check = check_access}}},
+           options->path.table("every scheme is held against the exact normals of this path"),
+           {{"--certify", &options->certify,
+             "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+            {"--tolerance DEG", &options->tolerance,
+             "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+           options->blend.table(),
+           options->truth.table(),
+           {{"--errors FILE", &options->errors,
+             "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+             "scheme with the worst of each as its quality, for MeshLab and Blender"},
+            {"--json", &options->json, "print one JSON object, for programs"},
+            {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+            {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
+           options->common.table(false)},
+          footer(),
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

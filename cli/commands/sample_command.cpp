@@ -19,7 +19,7 @@ struct Options {
   ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
-  std::string path = "linear";
+  PathArgument path;
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
   ShardArgument shard;
@@ -57,8 +57,8 @@ Result<SampleOptions> sample_options(const Options& options) {
   const auto weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
-  const auto path = make_path(options.path);
-  if (!path) return misuse("--path", path.error().message);
+  const Result<PathKind> path = options.path.read();
+  if (!path) return path.error();
   const bool by_area = weighting.value() == Weighting::kArea;
   if (options.length == "area" && !by_area) return misuse("--length", "the area is a length of --weighting area alone");
   if (kind == ElementKind::kFaces && !by_area)
@@ -157,8 +157,12 @@ Result<int> run(const Options& options) {
   const Result<MotionStream*> read = input.value().stream();
   if (!read) return read.error();
   const Motion& motion = read.value()->motion();
-  if (request.sample.path != PathKind::kLinear && motion.kind != MotionKind::kSequence)
-    return misuse("--path", "only a sequence has curved paths between its keyframes: weights move vertices straight");
+  if (request.sample.path != PathKind::kLinear) {
+    if (const Status status = check_path(input.value(), request.sample.path); !status) return status.error();
+    const Result<double> bend = bend_of(*read.value());
+    if (!bend) return bend.error();
+    warn_if_sparse("sample", request.sample.path, bend.value());
+  }
   const Result<Moments> moments = moments_of(input.value(), request.asked);
   if (!moments) return moments.error();
   if (!options.common.quiet) announce(motion.topology, request.sample.elements.kind, moments.value().count());
@@ -182,28 +186,23 @@ Result<int> run(const Options& options) {
 
 Command sample_command() {
   auto options = std::make_shared<Options>();
-  return {
-      "sample",
-      "Write the normals of a motion at chosen times, or of targets at chosen weights",
-      {input_table(options->input),
-       options->moments.table(),
-       options->elements.table(),
-       {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-        {"--length KIND", &options->length,
-         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-         "around a vertex (with --weighting area)"},
-        {"--path NAME", &options->path,
-         "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
-         "catmull-rom, on curves through them, with the normals of these"},
-        {"--hard-edges KIND", &options->hard_edges,
-         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-         "file, by its smoothing groups (groups) or its own normals (normals)"},
-        {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"},
-        options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
-                              ".obj with the numbers that they have among all")},
-       options->common.table(true)},
-      footer(),
-      [options] { return run(*options); }};
+  return {"sample",
+          "Write the normals of a motion at chosen times, or of targets at chosen weights",
+          {input_table(options->input),
+           options->moments.table(),
+           options->elements.table(),
+           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+            {"--length KIND", &options->length,
+             "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+             "around a vertex (with --weighting area)"}},
+           options->path.table("normals are exact on all of them"),
+           {{"--hard-edges KIND", &options->hard_edges,
+             "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+             "file, by its smoothing groups (groups) or its own normals (normals)"},
+            {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"}},
+           options->common.table(true)},
+          footer(),
+          [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -7,6 +7,7 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
 #include "core/charconv.h"
 
 namespace chronormal::cli {
@@ -64,6 +65,40 @@ Result<Shard> ShardArgument::read() const {
                         is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
   if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
   return Shard{index - 1, count};
+}
+
+std::vector<Option> PathArgument::table(const std::string& what) {
+  return {{"--path NAME", &name,
+           "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
+           "catmull-rom, on curves through them; hermite, with the velocities of the file;\n" +
+               what}};
+}
+
+Result<PathKind> PathArgument::read() const {
+  const Result<PathKind> path = make_path(name);
+  if (!path) return misuse("--path", path.error().message);
+  return path;
+}
+
+Status check_path(Input& input, PathKind path) {
+  if (path == PathKind::kLinear) return Success{};
+  if (input.document() != nullptr)
+    return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
+  const Result<MotionStream*> stream = input.stream();
+  if (!stream) return stream.error();
+  if (const Status status = chronormal::check_path(stream.value()->motion(), path); !status)
+    return misuse("--path", status.error().message);
+  return Success{};
+}
+
+void warn_if_sparse(const std::string& command, PathKind path, double bend) {
+  if (!(path != PathKind::kLinear && bend > kTooSparse)) return;
+  say(command,
+      formatted(
+          "the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and "
+          "above {:.2f} nothing tells what happened between",
+          bend, kTooSparse),
+      Tone::kWarning);
 }
 
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {

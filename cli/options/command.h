@@ -11,6 +11,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/sample.h"
@@ -73,6 +74,20 @@ struct ShardArgument {
   /// Errors: kUsage where it is no such share.
   [[nodiscard]] Result<Shard> read() const;
 };
+
+/// The option --path: how vertices move between the keyframes of a sequence.
+struct PathArgument {
+  std::string name = "linear";
+
+  /// `what` is the end of the help.
+  [[nodiscard]] std::vector<Option> table(const std::string& what);
+  /// Errors: kUsage for a path that does not exist.
+  [[nodiscard]] Result<PathKind> read() const;
+};
+/// Errors: kUsage where an input has no such paths (normals/paths.h), or cannot be read.
+[[nodiscard]] Status check_path(Input& input, PathKind path);
+/// Warns where keyframes are too far apart for curves through them.
+void warn_if_sparse(const std::string& command, PathKind path, double bend);
 
 /// Errors: kUsage where hosts are named and the input is no glTF file.
 [[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);

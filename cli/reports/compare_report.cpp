@@ -27,7 +27,11 @@ std::string headline(const NamedComparison& input) {
          (c.kind == ElementKind::kFaces
               ? std::string()
               : formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
-                          element_kind_name(c.kind)));
+                          element_kind_name(c.kind))) +
+         (c.path == PathKind::kLinear
+              ? std::string()
+              : formatted("held against the exact normals of {} paths, which bend by {:.2f} of their length\n",
+                          path_name(c.path), c.bend));
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
@@ -190,6 +194,8 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
     text +=
         ",certified_lower_degrees,certified_upper_degrees,certified_segment,certified_element,certified_from,"
         "certified_to,unbounded";
+  const bool is_curved = inputs.front().comparison.path != PathKind::kLinear;
+  if (is_curved) text += ",path,bend";
   text += '\n';
   for (const NamedComparison& input : inputs) {
     const Comparison& c = input.comparison;
@@ -209,6 +215,7 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
         text += formatted(",{},{},{},{},{},{},{}", degrees(e.lower), degrees(e.upper), e.segment, e.element, e.from,
                           e.to, e.unbounded);
       }
+      if (is_curved) text += formatted(",{},{}", path_name(c.path), c.bend);
       text += '\n';
     }
   }

@@ -20,8 +20,10 @@
 #include "chronormal/normals/element_curves.h"   // the normals of a segment for every face, vertex or corner
 #include "chronormal/normals/elements.h"         // faces, vertices, corners, and who shares a normal
 #include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
+#include "chronormal/normals/float_recompute.h"  // the fastest rival: in float32, without a promise
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/normal_groups.h"    // which corners share a normal, and the sums of those that do
+#include "chronormal/normals/path_curves.h"      // normals of degree 6, prepared once, evaluated in float32
 #include "chronormal/normals/paths.h"            // vertices on curves: normals of degree 4 and 6
 #include "chronormal/normals/playback.h"         // curves of normals, played at equal steps
 #include "chronormal/normals/recompute.h"        // the rival: the cross product anew at every t

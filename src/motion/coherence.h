@@ -3,31 +3,52 @@
 #define CHRONORMAL_MOTION_COHERENCE_H_
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "chronormal/motion/topology.h"
 
 namespace chronormal::inline internal {
 
+/// A small set of numbers below 2^32 - 1.
+class SmallSet {
+ public:
+  SmallSet() { slots_.fill(kEmpty); }
+
+  /// Whether the number was not in the set. There must be room: up to kMost numbers.
+  bool add(std::uint32_t number) {
+    for (std::size_t slot = number * 2654435761U >> 22;; slot = (slot + 1) % slots_.size()) {
+      if (slots_[slot] == number) return false;
+      if (slots_[slot] != kEmpty) continue;
+      slots_[slot] = number;
+      return true;
+    }
+  }
+
+  static constexpr std::size_t kMost = 512;
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFF;
+  std::array<std::uint32_t, 2 * kMost> slots_;
+};
+
 /// How many cache lines of packed positions a face brings in that the faces just before it did not: about 0.2 on a mesh
-/// in grid order, 3 where vertices lie in no order. A pure function of the topology; less than 0.1 ms.
+/// in grid order, 3 where vertices lie in no order. A pure function of the topology; less than 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {
   constexpr std::size_t kSamples = 16, kRun = 64, kVerticesOfLine = 5;
   const std::size_t count = topology.face_count();
   if (count == 0) return 0;
   std::size_t lines = 0, faces = 0;
-  std::vector<std::uint32_t> run;
   for (std::size_t i = 0; i < kSamples; ++i) {
     const std::size_t first = count / kSamples * i, end = std::min(first + kRun, count);
-    run.clear();
-    for (std::size_t f = first; f < end; ++f) {
-      for (const std::uint32_t vertex : topology.face(f)) run.push_back(vertex / kVerticesOfLine);
+    SmallSet seen;
+    std::size_t corners = 0;
+    for (std::size_t f = first; f < end && corners < SmallSet::kMost; ++f, ++faces) {
+      for (const std::uint32_t vertex : topology.face(f)) {
+        if (corners++ < SmallSet::kMost && seen.add(vertex / kVerticesOfLine)) ++lines;
+      }
     }
-    std::sort(run.begin(), run.end());
-    lines += static_cast<std::size_t>(std::unique(run.begin(), run.end()) - run.begin());
-    faces += end - first;
   }
   return static_cast<double>(lines) / static_cast<double>(faces);
 }

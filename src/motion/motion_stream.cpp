@@ -116,6 +116,8 @@ MotionStream::~MotionStream() = default;
 
 const Motion& MotionStream::motion() const noexcept { return state_->whole ? *state_->whole : state_->outline; }
 
+bool MotionStream::keeps_all() const noexcept { return state_->whole != nullptr || state_->keeps_all; }
+
 Status MotionStream::hold(std::size_t first, std::size_t last) {
   State& state = *state_;
   assert(first <= last && last < motion().keyframes.size());

@@ -37,7 +37,16 @@ Status check_mesh(const Motion& motion) {
   return Success{};
 }
 
-Status check_time(const Motion& motion, std::size_t k) {
+// What a keyframe has beside its positions.
+Status check_rest(const Motion& motion, std::size_t k) {
+  const Motion::Keyframe& keyframe = motion.keyframes[k];
+  if (!keyframe.velocities.empty() && keyframe.velocities.size() != 3 * motion.topology.vertex_count())
+    return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
+  for (std::size_t i = 0; i < keyframe.velocities.size(); ++i) {
+    if (!std::isfinite(keyframe.velocities[i]))
+      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                           "the velocity is not a finite number");
+  }
   if (!std::isfinite(motion.keyframes[k].time))
     return invalid_input(keyframe_place(motion, k), "the time is not finite");
   return Success{};
@@ -79,7 +88,7 @@ Status internal::validate_positions(const Motion& motion, std::size_t k, std::sp
 Status internal::validate_outline(const Motion& motion) {
   if (Status status = check_mesh(motion); !status) return status;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
-    if (Status status = check_time(motion, k); !status) return status;
+    if (Status status = check_rest(motion, k); !status) return status;
   return check_segments(motion);
 }
 
@@ -87,7 +96,7 @@ Status validate(const Motion& motion) {
   if (Status status = check_mesh(motion); !status) return status;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = validate_positions(motion, k, motion.keyframes[k].positions); !status) return status;
-    if (Status status = check_time(motion, k); !status) return status;
+    if (Status status = check_rest(motion, k); !status) return status;
   }
   return check_segments(motion);
 }

@@ -36,7 +36,7 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
   }
   // A turn that float32 cannot show is no loss; every other case is a stated fallback.
   constexpr double kInvisibleTurn = 1e-7;
-  if (std::fmax(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
+  if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);
   return {circles.great_arc(), 0.5};
 }

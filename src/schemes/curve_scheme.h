@@ -12,6 +12,10 @@
 ///
 ///     bool needs_faces = true
 ///
+/// where elements are fitted faster together,
+///
+///     void begin(const ElementBlock& block)              looks at all elements before they are fitted
+///
 /// and, where the scheme can be played step by step,
 ///
 ///     std::size_t state_planes() const                   how many floats the state of an element has; 0: not played
@@ -179,6 +183,7 @@ class CurveScheme final : public Scheme {
     without_direction_ = 0;
     values_.assign(policy_.plane_count(), count_);
 
+    if constexpr (requires { policy_.begin(block); }) policy_.begin(block);
     std::vector<double> c(policy_.plane_count());
     for (std::size_t i = 0; i < count_; ++i) {
       ElementMotion element(block, i);

@@ -18,7 +18,7 @@ class Rational {
 
   void fit(ElementMotion& element, double* c) const {
     const ControlNormals& exact = element.control_normals();
-    const double largest = std::fmax(length(exact.n0), std::fmax(length(exact.m), length(exact.n1)));
+    const double largest = maximum_number(length(exact.n0), maximum_number(length(exact.m), length(exact.n1)));
     const double scale = 1 / largest;
     // An end that (almost) vanishes keeps its direction, at a length that only counts where nothing else does.
     const auto end = [scale](const Vec3d& n, const UnitNormal& u) {

@@ -30,7 +30,7 @@ const std::vector<Floor> kFloors = {
     {"motion", {}},
     {"normals", {"control", "groups", "curves", "recompute", "blend", "weighting", "elements"}},
     {"schemes", {}},
-    {"analysis", {}},
+    {"analysis", {"fits", "quality", "certificates", "signs", "cones", "containment"}},
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow",
      {"hosts", "shading", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json", "report"}},
@@ -199,8 +199,8 @@ TEST(Layers, public_headers_include_only_public_headers) {
 }
 
 TEST(Layers, the_reference_includes_no_scheme_and_no_control_normals) {
-  for (const char* file :
-       {"src/analysis/reference_normals.cpp", "include/chronormal/analysis/quality.h", "src/analysis/quality.cpp"}) {
+  for (const char* file : {"src/analysis/quality/reference_normals.cpp", "include/chronormal/analysis/quality.h",
+                           "src/analysis/quality/quality.cpp"}) {
     const std::string text = read(kRoot / file);
     EXPECT_FALSE(text.empty()) << file;
     EXPECT_EQ(text.find("/schemes/"), std::string::npos) << file;

@@ -53,6 +53,21 @@ TEST(Vec3, unit_survives_lengths_whose_squares_do_not) {
   EXPECT_EQ(unit(Vec3d{}), Vec3d{});
 }
 
+TEST(Vec3, largest_components_are_those_of_fmax_where_some_are_no_numbers) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const double values[] = {0, -0.0, 1, -2, 3e300, -infinity, nan};
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (const double x : values) {
+    for (const double y : values) {
+      EXPECT_TRUE(same(maximum_number(x, y), std::fmax(x, y))) << x << " " << y;
+      for (const double z : values) {
+        const double expected = std::fmax(std::fabs(x), std::fmax(std::fabs(y), std::fabs(z)));
+        EXPECT_TRUE(same(max_abs({x, y, z}), expected)) << x << " " << y << " " << z;
+      }
+    }
+  }
+}
+
 TEST(Vec3, tiny_angles_are_not_lost) {
   EXPECT_NEAR(angle_between({1, 0, 0}, {1, 1e-12, 0}), 1e-12, 1e-20);
   EXPECT_NEAR(angle_between({1, 0, 0}, {-1, 1e-12, 0}), 3.14159265358979, 1e-11);

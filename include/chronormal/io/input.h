@@ -70,6 +70,8 @@ struct InputOptions {
   /// in C order. Who sets it asks for Input::stream(); other inputs are read at once, and so are meshes where the normals
   /// of all of them are kept. What is wrong in a keyframe is found when that is read.
   bool stream = false;
+  /// Keyframes that take no more bytes together than this stay in memory, once they were read.
+  std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1; }
 };

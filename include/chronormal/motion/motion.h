@@ -47,9 +47,10 @@ enum class MotionKind {
 
 struct Motion {
   struct Keyframe {
-    std::vector<float> positions;  ///< (V, 3)
-    double time = 0;               ///< seconds; of targets, the weight
-    std::string name;              ///< for messages: the file that it came from, or empty
+    std::vector<float> positions;        ///< (V, 3)
+    double time = 0;                     ///< seconds; of targets, the weight
+    std::string name;                    ///< for messages: the file that it came from, or empty
+    std::vector<float> velocities = {};  ///< (V, 3) per second, of a sequence whose file has them; or empty
   };
   struct SegmentKeys {
     std::size_t from = 0;  ///< index of the keyframe at t = 0
@@ -75,7 +76,7 @@ struct Motion {
 };
 
 /// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
-/// granted: at least one face and one segment, every keyframe with 3 x vertex_count finite coordinates, a body for each
+/// granted: at least one face and one segment, every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none, a body for each
 /// vertex or none, segments between keyframes that exist, finite times that ascend along every segment, and segments as
 /// the kind of the motion has them. (A Topology checks its own indices when it is built.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).

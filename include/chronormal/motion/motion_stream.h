@@ -56,6 +56,9 @@ class MotionStream {
   /// The same of all keyframes: the motion is in memory then.
   [[nodiscard]] Status hold_all();
 
+  /// Whether keyframes stay where they are once they were held: to hold all is no more than to read them.
+  [[nodiscard]] bool keeps_all() const noexcept;
+
  private:
   struct State;
   std::unique_ptr<State> state_;

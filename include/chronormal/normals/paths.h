@@ -27,6 +27,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 
@@ -59,16 +60,20 @@ using PolynomialNormals = Bernstein<Vec3d, 2 * K>;
                                                    VectorView<const float> to_velocities, double start_time,
                                                    double end_time);
 
-/// How the vertices of a sequence move between its keyframes, which say where they are there and nothing else.
+/// How the vertices of a sequence move between its keyframes.
 enum class PathKind {
   kLinear,      ///< straight, as players do
   kCatmullRom,  ///< on cubics whose velocities follow from the keyframes: catmull_rom_segment()
+  kHermite,     ///< on cubics with the velocities of the keyframes, and of kCatmullRom where a keyframe has none
 };
 
-/// "linear" or "catmull-rom".
+/// "linear", "catmull-rom" or "hermite".
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Finds a path by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<PathKind> make_path(std::string_view name);
+/// Whether a motion has such paths. Errors: kUsage for curves of a motion that is no sequence, and for kHermite where no
+/// keyframe has velocities.
+[[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
 /// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two neighbours
 /// (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the nearest four: of as
@@ -76,6 +81,30 @@ enum class PathKind {
 /// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);
+
+/// The path from keys[i] to keys[i + 1], straight ones as cubics too. Preconditions: those of catmull_rom_segment()
+[[nodiscard]] PolynomialSegment<3> path_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
+                                                std::size_t i, PathKind kind);
+/// The same of segment i of a sequence.
+[[nodiscard]] PolynomialSegment<3> path_segment(const Motion& motion, std::size_t i, PathKind kind);
+
+/// What the keyframes say about the velocity at keyframe `at`, as kCatmullRom has it: sum of share_j p_j over those of the
+/// keyframes first, first + 1, ... that it follows from.
+struct VelocityShares {
+  std::size_t first = 0;
+  std::vector<double> share;  ///< per second
+};
+/// times must ascend; at < times.size()
+[[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
+
+/// How far a sequence of keyframes is from a straight way, every `every`-th of them: of every three that follow each other,
+/// the second difference of a vertex against the way that it went, added up over all. A rigid turn by an angle a
+/// from keyframe to keyframe has sin(a / 2).
+[[nodiscard]] double bend_of(const Motion& motion, std::size_t every = 1);
+/// The same of a stream, of which three keyframes are held at a time. Errors: those of the stream.
+[[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
+/// Above this bend, a curve through the keyframes means little.
+inline constexpr double kTooSparse = 0.5;
 
 /// Where the vertices are at a local t.
 template <std::size_t K>
@@ -86,6 +115,12 @@ template <std::size_t K>
 template <std::size_t K>
 void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange faces,
                              std::span<PolynomialNormals<K>> result) noexcept;
+
+/// The normals of a range of faces at t, from the positions there: cross products of edges, and no control normals. What is
+/// nothing but rounding is zero. result must have faces.count elements
+template <std::size_t K>
+void polynomial_face_normals_at(const PolynomialSegment<K>& segment, double t, IndexRange faces,
+                                std::span<Vec3d> result) noexcept;
 
 /// Writes the control normals of a range of elements, sums of those of the faces, in the order of NormalGroups.
 /// of_faces must have those of all faces, result as many elements as the range

@@ -11,8 +11,10 @@
 /// Model      a pure function of what it is given: no clock, no thread count, nothing read from the machine. Its
 ///            constants were measured on one core of the machine of docs/benchmarks.md; on others both ways get faster
 ///            or slower together, and the choice is wrong only where both cost nearly the same.
+/// Shading    where no accuracy is promised (FloatRecompute), making normals anew is two to four times cheaper, and curves
+///            have to be asked for more often before they pay: a caller for whom float32 is enough says so.
 /// Accuracy   recompute within 1e-6 rad of exact arithmetic, curves within the tolerance that is asked for; both for
-///            every element, at every t.
+///            every element, at every t. A FloatRecompute promises none.
 /// Ownership  the segment's positions and topology, and the groups, must outlive the object.
 /// Forms      float vectors at one t; for others, and many t, choose_strategy() and NormalCurves.
 /// Moves      what was moved from may only be destroyed or assigned to.
@@ -29,6 +31,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
@@ -48,6 +51,9 @@ struct StrategyOptions {
   double evaluations = 1;
   /// Of curves, in radians; see CurveOptions.
   double tolerance = kExactTolerance;
+  /// Makes normals anew with this one, in float32, where that is cheaper than curves. It must be of the topology and the
+  /// groups, and outlive the object. nullptr: with a NormalRecompute, within 1e-6 rad.
+  FloatRecompute* float_recompute = nullptr;
   /// Takes this one whatever it costs.
   std::optional<NormalStrategy> forced = {};
 };
@@ -76,11 +82,17 @@ inline constexpr double kModelledSharedCache = 32 << 20;
 struct StrategyCosts {
   double prepare = 0;      ///< of curves, once; nanoseconds for each element, on one thread
   double evaluate = 0;     ///< of curves, each time; likewise
-  double recompute = 0;    ///< each time; likewise
+  double recompute = 0;    ///< within 1e-6 rad, each time; likewise
+  double in_float32 = 0;   ///< by a FloatRecompute, each time; likewise
   double curve_bytes = 0;  ///< kept by curves, all together
 
-  /// From how many evaluations on curves are cheaper; infinity where they never are.
-  [[nodiscard]] double break_even() const noexcept;
+  /// From how many evaluations on curves are cheaper than making normals anew, within 1e-6 rad or in float32; infinity
+  /// where they never are.
+  [[nodiscard]] double break_even() const noexcept { return break_even_with(recompute); }
+  [[nodiscard]] double break_even_in_float32() const noexcept { return break_even_with(in_float32); }
+
+ private:
+  [[nodiscard]] double break_even_with(double rival) const noexcept;
 };
 
 /// The model. Pure.
@@ -90,7 +102,7 @@ struct StrategyChoice {
   NormalStrategy strategy = NormalStrategy::kRecompute;
   StrategyCosts costs;
   double polynomial_cost = 0;  ///< of all evaluations, nanoseconds for each element
-  double recompute_cost = 0;   ///< likewise
+  double recompute_cost = 0;   ///< likewise, in the way that the options allow
   std::string reason;          ///< one line, for people
 };
 
@@ -116,8 +128,20 @@ class SegmentNormals {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  // Another's recompute, and what it is asked about.
+  struct InFloat32 {
+    FloatRecompute* recompute;
+    Segment segment;
+
+    std::size_t unit_normals(double t, VectorView<float> result, Threads threads) {
+      return recompute->unit_normals(segment, t, result, threads);
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return recompute->size(); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return recompute->bytes(); }
+  };
+
   StrategyChoice choice_;
-  std::variant<NormalRecompute, NormalCurves> normals_;
+  std::variant<NormalRecompute, NormalCurves, InFloat32> normals_;
 };
 
 }  // namespace chronormal

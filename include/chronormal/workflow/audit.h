@@ -39,6 +39,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
@@ -81,10 +82,11 @@ struct AuditOptions {
   /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
   /// one that its stored base normals follow clearly, or else area.
   std::optional<Weighting> weighting = {};
-  std::vector<Host> hosts = {};  ///< glTF, by the rule gltf: these are judged too
-  bool weld = true;              ///< sequences: vertices at one point in all keyframes are one
-  bool keep_errors = false;      ///< every single one, in Audit::errors
-  /// Of a sequence: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
+  std::vector<Host> hosts = {};       ///< glTF, by the rule gltf: these are judged too
+  PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
+  bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
+  bool keep_errors = false;           ///< every single one, in Audit::errors
+  /// Of a sequence of straight paths: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
   /// asked of the whole motion (which vertices move, how long a normal gets) is found anew by every shard.
   Shard shard = {};
   /// Called with the number of segments.
@@ -210,6 +212,8 @@ struct Audit {
   std::optional<Weighting> weighting = Weighting::kArea;
   /// Whether normals are stored for every keyframe; else a host computes them there.
   bool stored = true;
+  PathKind path = PathKind::kLinear;  ///< of a sequence
+  double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
   std::vector<AuditSubject> subjects;
   std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
   MotionError error;      ///< of all subjects
@@ -241,14 +245,14 @@ struct Audit {
 /// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, hosts with another rule than gltf, fewer than 2 samples, and errors to keep that take more
+/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to keep that take more
 /// than kMostErrorBytes.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
 /// then. Without stored
 /// normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
-/// between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; kInvalidInput for normals that do not fit.
+/// between. Errors: kUsage for the rule gltf, for hosts, for fewer than 2 samples, and of check_path(); kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 /// The same of a stream, of which two keyframes are held at a time; it is read twice, and up to where all vertices have moved

@@ -9,7 +9,7 @@
 ///                that is named, and in none of them worse than before (docs/theory.md, section 16)
 ///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
 ///                at every instant in every host that adds up targets
-///     endpoint   the best single delta per target (analysis/end_delta.h): right at the ends, with a stated error
+///     endpoint   the best single delta per target (analysis/fits/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
 ///
@@ -34,6 +34,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 
@@ -76,6 +77,9 @@ struct BakeOptions {
   /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
   std::vector<RigPose> poses = {};
+  /// Of sequences, how vertices move between keyframes. On curved paths positions are exact, by weights that are cubic
+  /// splines, and normals are fitted to the tolerance, with a stated error: endpoint alone does that, by area.
+  PathKind path = PathKind::kLinear;
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -175,6 +179,8 @@ struct SequenceBake {
   std::size_t bytes = 0;            ///< of the file
   double largest_error = 0;         ///< degrees, of endpoint and harmless; of a weighting that is fitted
   std::size_t without_normals = 0;  ///< elements that have no area in the whole motion
+  bool is_curved = false;           ///< the vertices move on curves
+  double bend = 0;                  ///< of a curved path: bend_of(), to hold against kTooSparse
   std::vector<std::string> warnings;
   /// The numbers that --encode keys reports.
   struct Keys {
@@ -194,7 +200,8 @@ struct SequenceBake {
 /// glb gets the bytes of the file.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
 /// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area or a
-/// tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a
+/// tolerance below kLeastKeyTolerance, of curved paths for another encoding than endpoint or other weights, and those of
+/// check_path(). Precondition: the motion is valid and a
 /// sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 

@@ -3,7 +3,7 @@
 ///
 /// A host that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
 /// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
-/// each target alone at weight 1), those that are best by least squares (analysis/blend_quality.h), and the exact
+/// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the exact
 /// normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended positions
 /// in double.
 ///
@@ -31,6 +31,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
@@ -59,8 +60,11 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
-  /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared.
+  /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared. Of straight paths.
   Shard shard = {};
+  /// How the vertices of a sequence move: on curved paths every scheme is held against the exact normals of these curves,
+  /// and one more row, "exact", is PathCurves (normals/path_curves.h).
+  PathKind path = PathKind::kLinear;
 };
 
 /// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
@@ -117,6 +121,8 @@ struct Comparison {
   MotionKind motion = MotionKind::kSequence;  ///< what the segments are
   std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
   std::optional<double> tolerance = {};       ///< degrees, where it was given
+  PathKind path = PathKind::kLinear;          ///< that all of them are held against
+  double bend = 0;                            ///< of a curved path: bend_of(), to hold against kTooSparse
   std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
   std::vector<ComparedSegment> compared =
       {};  ///< of a shard: of each of its segments; the rows are those of them alone
@@ -125,7 +131,7 @@ struct Comparison {
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes.
+///            tolerance, certificates of sequential access or of curved paths, those of check_path(), and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

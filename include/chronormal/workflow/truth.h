@@ -8,10 +8,8 @@
 /// Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex moves on
 ///            cubics through the kept keyframes. Its velocity at each of them is that of the parabola through it and its
 ///            two neighbours, and at an end of the motion that of the cubic through the nearest four. Its normals are
-///            exact on that path.
-/// Bend       how far a path is from a straight one: of every three kept keyframes that follow each other, the second
-///            difference of a vertex against the way that it went, added up over all. A rigid turn by an angle a from keyframe to
-///            keyframe has sin(a / 2). Above kTooSparse the curve through the keyframes means little.
+///            exact on that path. "hermite": the same with the velocities of the keyframes, where they have them.
+/// Bend       bend_of() the kept keyframes, in normals/paths.h
 /// Source     docs/truth.md.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_H_
@@ -24,12 +22,10 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/workflow/sample.h"
 
 namespace chronormal {
-
-/// Where keyframes turn by more than that between two samples, no curve through them is to be trusted.
-inline constexpr double kTooSparse = 0.5;
 
 struct TruthOptions {
   std::size_t every = 2;             ///< which keyframes are kept: 0, N, 2 N, ...; 2 or more
@@ -40,7 +36,7 @@ struct TruthOptions {
 
 /// One way to make normals between the kept keyframes.
 struct TruthRow {
-  std::string path;    ///< "linear" or "catmull-rom"
+  std::string path;    ///< "linear", "catmull-rom" or "hermite"
   std::string scheme;  ///< of a linear path; "exact" on a curved one
   Quality quality;     ///< max_at: the kept segment, the face or the first vertex or corner, and the local t
 };
@@ -55,7 +51,7 @@ struct TruthComparison {
 };
 
 /// Holds schemes on straight paths, and exact normals on curved ones, against the keyframes that were left out. A row
-/// for each scheme, then one for "catmull-rom".
+/// for each scheme, then one for "catmull-rom", and one for "hermite" where keyframes have velocities.
 ///
 /// Errors     kUsage for a motion that is no sequence (targets and animations of weights are straight: there is no
 ///            other truth), fewer than two kept keyframes, and what compare() refuses in schemes and elements.
@@ -63,9 +59,6 @@ struct TruthComparison {
 /// Memory     the control normals of one segment: 72 bytes for each face and element, and of a curved one 168.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOptions& options);
-
-/// The bend of a sequence of keyframes, every `every`-th of them.
-[[nodiscard]] double bend_of(const Motion& motion, std::size_t every = 1);
 
 }  // namespace chronormal
 

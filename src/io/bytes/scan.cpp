@@ -4,6 +4,7 @@
 #include <limits>
 #include <system_error>
 
+#include "core/bits.h"
 #include "core/charconv.h"
 
 namespace chronormal::inline internal::scan {
@@ -58,6 +59,54 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
   if (std::isfinite(value)) return NumberFault::kNone;
   const bool spelt = word.find_first_of("nN") != std::string_view::npos;  // nan, inf, infinity
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
+}
+
+// With a whole number w of at most 53 bits and p up to 22, w / 10^p or w 10^p is one correctly rounded double (Clinger
+// 1990). Rounded again to float it is right unless it lies in the middle between two floats, to which it may itself have
+// been rounded.
+bool take_plain_float(std::string_view& line, float& value) noexcept {
+  static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                       1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  constexpr std::uint64_t kLargestExact = std::uint64_t{1} << 53;
+  constexpr int kMostDigits = 19, kMostPower = 22;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  while (at != end && is_blank(*at)) ++at;
+  const bool negative = at != end && *at == '-';
+  if (negative) ++at;
+  std::uint64_t whole = 0;
+  int digits = 0, power = 0;
+  const auto take_digits = [&] {
+    for (; at != end && is_digit(*at); ++at, ++digits) whole = 10 * whole + static_cast<std::uint64_t>(*at - '0');
+  };
+  take_digits();
+  if (at != end && *at == '.') {
+    ++at;
+    const int before = digits;
+    take_digits();
+    power = before - digits;
+  }
+  if (digits == 0 || digits > kMostDigits || whole > kLargestExact) return false;
+  if (at != end && (*at == 'e' || *at == 'E')) {
+    ++at;
+    const bool is_small = at != end && *at == '-';
+    if (at != end && (*at == '-' || *at == '+')) ++at;
+    int exponent = 0, exponent_digits = 0;
+    for (; at != end && is_digit(*at) && exponent_digits < 4; ++at, ++exponent_digits)
+      exponent = 10 * exponent + (*at - '0');
+    if (exponent_digits == 0) return false;
+    power += is_small ? -exponent : exponent;
+  }
+  if ((at != end && !is_blank(*at)) || power < -kMostPower || power > kMostPower) return false;
+  double magnitude = static_cast<double>(whole);
+  magnitude = power < 0 ? magnitude / kPowers[-power] : magnitude * kPowers[power];
+  constexpr std::uint64_t kBelowFloat = (std::uint64_t{1} << 29) - 1, kMiddle = std::uint64_t{1} << 28;
+  const bool is_normal =
+      magnitude >= double{std::numeric_limits<float>::min()} && magnitude < double{std::numeric_limits<float>::max()};
+  if (whole != 0 && (!is_normal || (bit_cast<std::uint64_t>(magnitude) & kBelowFloat) == kMiddle)) return false;
+  value = static_cast<float>(negative ? -magnitude : magnitude);
+  line.remove_prefix(static_cast<std::size_t>(at - line.data()));
+  return true;
 }
 
 NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept {

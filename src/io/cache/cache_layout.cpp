@@ -17,11 +17,11 @@ Status decode_coordinates(const CacheLayout& layout, const std::string& name, st
   const char* const wrong = bytes.data() + read * layout.item_size;
   const double value =
       is_double ? binary::load<double>(wrong, layout.order) : double{binary::load<float>(wrong, layout.order)};
-  const std::string place = layout.is_array
-                                ? name + ", positions[" + std::to_string(k) + ", " + std::to_string(at / 3) + ", " +
-                                      std::to_string(at % 3) + "]"
-                                : binary::place(name, layout.sample_begin(k) + at * layout.item_size) + ", sample " +
-                                      std::to_string(k) + ", vertex " + std::to_string(at / 3);
+  const std::string vertex = std::to_string(at / 3), sample = std::to_string(k);
+  const std::string place = layout.array.empty() ? binary::place(name, layout.sample_begin(k) + at * layout.item_size) +
+                                                       ", sample " + sample + ", vertex " + vertex
+                                                 : name + ", " + layout.array + "[" + sample + ", " + vertex + ", " +
+                                                       std::to_string(at % 3) + "]";
   return invalid_input(place, binary::coordinate_fault(value));
 }
 

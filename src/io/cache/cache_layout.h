@@ -32,7 +32,7 @@ struct CacheLayout {
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< 4 or 8
   std::endian order = std::endian::little;
-  bool is_array = false;  ///< of NumPy: errors name an element, and not a byte
+  std::string array = {};  ///< what NumPy calls it: errors name an element of it, and not a byte
 
   [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }
   [[nodiscard]] std::uint64_t sample_begin(std::size_t k) const noexcept {

@@ -31,31 +31,31 @@ std::string element_place(const std::string& place, std::initializer_list<std::s
   return text + "]";
 }
 
-Status check_positions(const Array& array, const std::string& place) {
+Status check_positions(const Array& array, const std::string& place, const std::string& what) {
   if (array.kind == Kind::kFloat && array.shape.size() == 3 && array.shape[2] == 3 && array.element_count() > 0)
     return Success{};
   return invalid_input(place,
-                       "positions must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+                       what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
 // Where positions in C order are, in a file that has the array from byte `begin` on.
-CacheLayout layout_of(const Array& array, std::uint64_t begin) {
+CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
   layout.times.resize(static_cast<std::size_t>(array.shape[0]));
   layout.begin = begin + array.data_begin;
   layout.item_size = array.item_size;
   layout.order = array.order;
-  layout.is_array = true;
+  layout.array = what;
   return layout;
 }
 
-// The samples of an array (T, V, 3); name is that of the file.
-Result<PositionCache> read_positions(const Array& array, const std::string& name) {
-  const std::string place = name + ", positions";
-  if (Status status = check_positions(array, place); !status) return status.error();
+// The samples of an array (T, V, 3) of the file of this name.
+Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what) {
+  const std::string place = name + ", " + what;
+  if (Status status = check_positions(array, place, what); !status) return status.error();
   if (!array.is_fortran) {
-    CacheLayout layout = layout_of(array, 0);
+    CacheLayout layout = layout_of(array, 0, what);
     layout.begin = 0;
     return read_all_samples(layout, array.data, name);
   }
@@ -109,6 +109,17 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
     if (array.kind == Kind::kUnsigned) time = static_cast<double>(array.vertex(k));
     if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is not a finite number");
   }
+  return Success{};
+}
+
+// Velocities per second, of the shape of the positions.
+Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
+  Result<PositionCache> read = read_positions(array, name, "velocities");
+  if (!read) return read.error();
+  std::vector<PositionCache::Sample>& samples = read.value().samples;
+  if (samples.size() != motion.keyframes.size() || read.value().vertex_count != motion.topology.vertex_count())
+    return invalid_input(name + ", velocities", "velocities must be as many as positions, but are " + array.text());
+  for (std::size_t k = 0; k < samples.size(); ++k) motion.keyframes[k].velocities = std::move(samples[k].positions);
   return Success{};
 }
 
@@ -168,9 +179,11 @@ class Archive {
     if (!start) return start.error();
     const Result<Array> found = npy::read_header(start.value(), member->size, place(array));
     if (!found) return found.error();
-    if (Status status = check_positions(found.value(), place(array)); !status) return status.error();
+    if (Status status = check_positions(found.value(), place(array), std::string(array)); !status)
+      return status.error();
     if (found.value().is_fortran) return std::optional<CacheLayout>();
-    return std::optional(layout_of(found.value(), static_cast<std::uint64_t>(start.value().data() - bytes_.data())));
+    return std::optional(
+        layout_of(found.value(), static_cast<std::uint64_t>(start.value().data() - bytes_.data()), std::string(array)));
   }
 
  private:
@@ -217,7 +230,7 @@ Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, 
   if (!members) return members.error();
   Archive archive(bytes, name, std::move(members).value(), max_expansion);
 
-  if (layout != nullptr) {
+  if (layout != nullptr && !archive.has("velocities")) {
     const Result<std::optional<CacheLayout>> found = archive.find_stored("positions");
     if (!found) return found.error();
     *layout = found.value();
@@ -229,7 +242,7 @@ Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, 
   } else {
     const Result<Array> positions = archive.read("positions");
     if (!positions) return positions.error();
-    cache = read_positions(positions.value(), name);
+    cache = read_positions(positions.value(), name, "positions");
     if (!cache) return cache.error();
   }
 
@@ -257,6 +270,11 @@ Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, 
   for (std::size_t k = 0; k < cache.value().samples.size() && kind == MotionKind::kTargets; ++k)
     cache.value().samples[k].time = k == 0 ? 0 : 1;
   Result<Motion> motion = motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name, kind);
+  if (motion && kind == MotionKind::kSequence && archive.has("velocities")) {
+    const Result<Array> velocities = archive.read("velocities");
+    if (!velocities) return velocities.error();
+    if (Status status = take_velocities(velocities.value(), name, motion.value()); !status) return status.error();
+  }
   for (std::size_t k = 0; motion && kind == MotionKind::kTargets && k < motion.value().keyframes.size(); ++k)
     motion.value().keyframes[k].name = k == 0 ? "base" : "target " + std::to_string(k - 1);
   return motion;
@@ -268,9 +286,9 @@ Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, 
                                     const CacheOptions& options) {
   const Result<Array> array = npy::read_header(bytes, size, name + ", header");
   if (!array) return array.error();
-  if (Status status = check_positions(array.value(), name + ", positions"); !status) return status.error();
+  if (Status status = check_positions(array.value(), name + ", positions", "positions"); !status) return status.error();
   if (array.value().is_fortran) return invalid_input(name + ", positions", "they are in the order of Fortran");
-  CacheLayout layout = layout_of(array.value(), 0);
+  CacheLayout layout = layout_of(array.value(), 0, "positions");
   for (std::size_t k = 0; k < layout.times.size(); ++k)
     layout.times[k] = static_cast<double>(k) / options.frames_per_second;
   return layout;
@@ -280,7 +298,7 @@ Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, 
   Result<Array> array = npy::read_header(bytes, bytes.size(), name + ", header");
   if (!array) return array.error();
   array.value().data = bytes.substr(array.value().data_begin);
-  Result<PositionCache> cache = read_positions(array.value(), name);
+  Result<PositionCache> cache = read_positions(array.value(), name, "positions");
   if (cache) set_regular_times(cache.value(), options.frames_per_second);
   return cache;
 }
@@ -355,6 +373,13 @@ Status write_npz(MotionStream& stream, OutputFile& file) {
   std::vector<NpzMember> whole = {{"faces", faces.value()}};
   if (motion.kind != MotionKind::kTargets) whole.push_back({"times", time_array.bytes()});
   if (motion.kind != MotionKind::kSequence) whole.push_back({"kind", kind});
+  const bool has_velocities = std::none_of(motion.keyframes.begin(), motion.keyframes.end(),
+                                           [](const Motion::Keyframe& key) { return key.velocities.empty(); });
+  NpyBytes velocities({has_velocities ? motion.keyframes.size() : 0, motion.topology.vertex_count(), 3});
+  if (has_velocities) {
+    for (const Motion::Keyframe& keyframe : motion.keyframes) velocities.append(keyframe.velocities);
+    whole.push_back({"velocities", velocities.bytes()});
+  }
   NpzOutput npz(file);
   const std::size_t positions =
       npz.add_growing("positions", {motion.keyframes.size(), motion.topology.vertex_count(), 3});

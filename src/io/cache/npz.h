@@ -7,6 +7,8 @@
 ///     times       (T,)        any float or integer type  seconds; optional, else k / frames_per_second
 ///     kind        ()          a string                   sequence (where it is missing), targets or animation
 ///
+///     velocities  (T, V, 3)   float32 or float64         per second, of a sequence; optional: what hermite paths need
+///
 /// Targets are a base, keyframe 0, and a keyframe for each target; they have no times. In an animation, two keyframes
 /// that follow each other at one time are a jump.
 ///
@@ -40,7 +42,7 @@ namespace chronormal::inline internal {
 ///
 /// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
-/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, times that
+/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, velocities of another shape than the positions, times that
 /// do not ascend, an unknown kind. Sizes that disagree between directory, member and array header are refused before
 /// memory is taken.
 /// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so expansion
@@ -63,8 +65,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Writes, as they come, positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what has any,
-/// and the kind of what is no sequence, stored, so that the arrays can be mapped. The same motion gives the same bytes.
+/// Writes, as they come, positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what
+/// has any, velocities where all keyframes have them, and the kind of what is no sequence, stored, so that the arrays can
+/// be mapped. The same motion gives the same bytes.
 /// Errors: kUsage without a place: a mesh that does not move, and faces of different numbers of corners, which no (F,
 /// k) array holds; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);

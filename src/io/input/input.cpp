@@ -118,10 +118,10 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   }
   layout.times = {};
   const auto shared = std::make_shared<const PositionedFile>(std::move(file));
-  return MotionStream(std::move(outline),
-                      [shared, layout, name, frames](const Motion&, std::size_t keyframe, std::span<float> positions) {
-                        return read_sample(layout, *shared, name, frames[keyframe], positions);
-                      });
+  const auto read = [shared, layout, name, frames](const Motion&, std::size_t keyframe, std::span<float> positions) {
+    return read_sample(layout, *shared, name, frames[keyframe], positions);
+  };
+  return MotionStream(std::move(outline), read, options.kept_bytes);
 }
 
 // The cache that has this layout, without positions.

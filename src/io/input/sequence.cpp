@@ -2,14 +2,21 @@
 #include "io/input/sequence.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
+#include "io/bytes/file.h"
 #include "io/input/formats.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/obj_faces.h"
 #include "motion/outline.h"
 
 namespace chronormal::inline internal {
@@ -47,6 +54,61 @@ std::string frame_name(std::size_t k) { return "frame " + std::to_string(k); }
 
 std::string frame_place(std::size_t k, const std::string& name) { return frame_name(k) + " (" + name + ")"; }
 
+Result<FileBytes> open_frame(const InputOptions& options, const std::string& path, const std::string& place) {
+  Result<FileBytes> file = FileBytes::open(path, options.resolve);
+  if (file) return file;
+  Error error = file.error();
+  error.place = place;
+  return error;
+}
+
+// A frame that is not the first.
+struct ReadFrame {
+  Result<std::vector<float>> positions = std::vector<float>();
+  std::uint64_t bytes = 0;  // of its file, where nobody has counted them
+};
+
+// faces: those of the first frame, where their text can be compared. shaded: gets the normals of the frame, where they
+// are wanted.
+ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
+                     const ObjFaces* faces, ReadMotion* shaded, const Topology& topology,
+                     const std::string& first_name) {
+  const Result<FileBytes> file = open_frame(options, path, place);
+  if (!file) return {file.error()};
+  const std::string_view bytes = file.value().bytes();
+  const std::uint64_t counted = shaded != nullptr ? 0 : bytes.size();
+  if (faces != nullptr) {
+    const Format* const format = find_format(file_name_of(path), bytes);
+    if (format != nullptr && format->read_mesh == read_obj)
+      if (std::optional<std::vector<float>> positions = faces->positions_of(bytes))
+        return {std::move(*positions), counted};
+  }
+  Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
+                                             : read_mesh(bytes, file_name_of(path), place);
+  if (!mesh) return {mesh.error()};
+  if (const Status same = check_same_topology(topology, first_name, mesh.value().topology, place); !same)
+    return {same.error()};
+  return {std::move(mesh.value().positions), counted};
+}
+
+// The faces of a file whose text can be compared with that of others; nothing for other formats than OBJ.
+std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
+  const Format* const format = find_format(file_name_of(path), bytes);
+  if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
+  return ObjFaces(bytes, positions);
+}
+
+// Of files that can be found; who reads the others will say what is wrong.
+std::uint64_t bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
+  std::uint64_t bytes = 0;
+  for (const std::size_t k : frames) {
+    std::error_code code;
+    const std::uintmax_t size = std::filesystem::file_size(files[k], code);
+    if (!code) bytes += size;
+  }
+  return bytes;
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> find_frames(const InputOptions& options) {
@@ -73,21 +135,42 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   if (!frames) return frames.error();
   ReadMotion read;
   Motion& motion = read.motion;
-  motion.keyframes.reserve(frames.value().size());
-  for (const std::size_t k : frames.value()) {
-    const std::string name = file_name_of(files[k]), place = frame_place(k, name);
-    Result<MeshFrame> frame = read_mesh_file(options, files[k], place, read);
-    if (!frame) return frame.error();
-    if (motion.keyframes.empty()) {
-      motion.topology = std::move(frame.value().topology);
-    } else if (Status status = check_same_topology(motion.topology, frame_name(frames.value().front()),
-                                                   frame.value().topology, place);
-               !status) {
-      return status.error();
+  const std::size_t total = frames.value().size();
+  motion.keyframes.reserve(total);
+  const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
+  const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
+  const auto keep = [&](std::vector<float> positions) {
+    const std::size_t i = motion.keyframes.size();
+    const double time = static_cast<double>(frames.value()[i]) / options.frames_per_second;
+    motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i))});
+    if (options.progress) options.progress(i + 1, total);
+  };
+
+  const Result<FileBytes> first_file = open_frame(options, file_of(0), place(0));
+  if (!first_file) return first_file.error();
+  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), file_of(0), place(0), read);
+  if (!first) return first.error();
+  motion.topology = std::move(first.value().topology);
+  keep(std::move(first.value().positions));
+
+  // The frames that follow, as many at a time as there are threads, but for those of a resolver, which may not be ready
+  // for that, and where the normals of one depend on whether the frame before had some.
+  const bool keeps_normals = options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty();
+  const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
+  std::optional<ObjFaces> faces;
+  if (!keeps_normals) faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
+  while (motion.keyframes.size() < total) {
+    const std::size_t begin = motion.keyframes.size(), count = std::min(at_once, total - begin);
+    std::vector<ReadFrame> next(count);
+    parallel_for(count, [&](std::size_t i) {
+      next[i] = read_frame(options, file_of(begin + i), place(begin + i), faces ? &*faces : nullptr,
+                           keeps_normals ? &read : nullptr, motion.topology, frame_name(frames.value()[0]));
+    });
+    for (ReadFrame& frame : next) {
+      if (!frame.positions) return frame.positions.error();
+      read.bytes_read += frame.bytes;
+      keep(std::move(frame.positions).value());
     }
-    const double time = static_cast<double>(k) / options.frames_per_second;
-    motion.keyframes.push_back({std::move(frame.value().positions), time, name});
-    if (options.progress) options.progress(motion.keyframes.size(), frames.value().size());
   }
   motion.connect_as_sequence();
   if (Status status = validate(motion); !status) return status.error();
@@ -97,40 +180,50 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
 Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options) {
   Result<std::vector<std::size_t>> chosen = choose_files(files, options);
   if (!chosen) return chosen.error();
-  const std::vector<std::size_t>& frames = chosen.value();
-  ReadMotion read;
+  const std::vector<std::size_t> frames = std::move(chosen).value();
+  const std::uint64_t bytes = bytes_of(files, frames);
+  if (bytes <= options.kept_bytes) return read_sequence(files, options);
+
   Motion outline;
   for (const std::size_t k : frames)
     outline.keyframes.push_back({{}, static_cast<double>(k) / options.frames_per_second, file_name_of(files[k])});
   outline.connect_as_sequence();
+  const std::string& first_path = files[frames[0]];
   const std::string place = frame_place(frames[0], outline.keyframes[0].name);
-  Result<MeshFrame> first = read_mesh_file(options, files[frames[0]], place, read);
+  ReadMotion read;
+  Result<FileBytes> first_file = open_frame(options, first_path, place);
+  if (!first_file) return first_file.error();
+  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), first_path, place, read);
   if (!first) return first.error();
   if (options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty()) return read_sequence(files, options);
+  read.bytes_read = bytes;
   outline.topology = std::move(first.value().topology);
-  outline.keyframes[0].positions = std::move(first.value().positions);
-  if (Status status = validate_positions(outline, 0, outline.keyframes[0].positions); !status) return status.error();
-  if (Status status = validate_outline(outline); !status) return status.error();
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    std::error_code ignored;  // who reads it will say what is wrong
-    const std::uintmax_t size = std::filesystem::file_size(files[frames[i]], ignored);
-    if (!ignored) read.bytes_read += size;
-  }
-  const auto read_frame = [files, frames, options](const Motion& motion, std::size_t keyframe,
-                                                   std::span<float> positions) -> Status {
+  std::vector<float>& positions = outline.keyframes[0].positions;
+  positions = std::move(first.value().positions);
+  Status valid = validate_positions(outline, 0, positions);
+  if (valid) valid = validate_outline(outline);
+  if (!valid) return valid.error();
+
+  // The first file stays mapped, so that the text of its faces can be compared with that of the others.
+  struct First {
+    FileBytes file;
+    std::optional<ObjFaces> faces;
+  };
+  const auto kept = std::make_shared<First>(First{std::move(first_file).value(), std::nullopt});
+  kept->faces = faces_of(first_path, kept->file.bytes(), positions);
+  const auto read_one = [files, frames, options, kept](const Motion& motion, std::size_t keyframe,
+                                                       std::span<float> result) -> Status {
     const std::size_t k = frames[keyframe];
-    const std::string own_place = frame_place(k, motion.keyframes[keyframe].name);
-    ReadMotion beside;  // shading is that of the first one
-    InputOptions plain = options;
-    plain.shading = KeepShading::kNone;
-    const Result<MeshFrame> frame = read_mesh_file(plain, files[k], own_place, beside);
-    if (!frame) return frame.error();
-    Status status = check_same_topology(motion.topology, frame_name(frames[0]), frame.value().topology, own_place);
-    if (status) status = validate_positions(motion, keyframe, frame.value().positions);
-    if (status) std::copy(frame.value().positions.begin(), frame.value().positions.end(), positions.begin());
+    const ReadFrame frame =
+        read_frame(options, files[k], frame_place(k, motion.keyframes[keyframe].name),
+                   kept->faces ? &*kept->faces : nullptr, nullptr, motion.topology, frame_name(frames[0]));
+    if (!frame.positions) return frame.positions.error();
+    const std::vector<float>& found = frame.positions.value();
+    Status status = validate_positions(motion, keyframe, found);
+    if (status) std::copy(found.begin(), found.end(), result.begin());
     return status;
   };
-  read.stream.emplace(std::move(outline), read_frame);
+  read.stream.emplace(std::move(outline), read_one, options.kept_bytes);
   return read;
 }
 

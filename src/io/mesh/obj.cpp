@@ -1,5 +1,6 @@
 #include "io/mesh/obj.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -160,8 +161,17 @@ Status ObjReader::read_statement(std::string_view line) {
   return Success{};
 }
 
+// Whether nothing but blanks is left of a statement.
+bool is_over(std::string_view rest) { return std::all_of(rest.begin(), rest.end(), scan::is_blank); }
+
 Status ObjReader::read_vertex(std::string_view numbers) {
   std::array<float, 3> position{};
+  std::string_view rest = numbers;
+  if (scan::take_plain_float(rest, position[0]) && scan::take_plain_float(rest, position[1]) &&
+      scan::take_plain_float(rest, position[2]) && is_over(rest)) {
+    positions_.insert(positions_.end(), position.begin(), position.end());
+    return Success{};
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string_view word = take_word(numbers);
     const NumberFault fault = scan::parse_float(word, position[axis]);
@@ -180,7 +190,31 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   return Success{};
 }
 
+// Takes a corner that counts its vertex from the first of the file, in digits alone; 0 where it is none, and the line
+// stays as it is.
+std::int64_t take_plain_corner(std::string_view& line) {
+  constexpr std::ptrdiff_t kMostDigits = 9;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (at != end && scan::is_blank(*at)) ++at;
+  const char* const first = at;
+  std::int64_t index = 0;
+  for (; at != end && is_digit(*at) && at - first < kMostDigits; ++at) index = 10 * index + (*at - '0');
+  for (int slashes = 0; at != first && at != end && *at == '/' && slashes < 2; ++slashes) {
+    ++at;
+    while (at != end && is_digit(*at)) ++at;
+  }
+  if (at != end && !scan::is_blank(*at)) return 0;
+  if (index > 0) line.remove_prefix(static_cast<std::size_t>(at - line.data()));
+  return index;
+}
+
 Status ObjReader::read_face(std::string_view corners) {
+  if (shading_ == nullptr) {
+    for (std::int64_t index = take_plain_corner(corners); index > 0; index = take_plain_corner(corners))
+      if (Status status = resolve(index, {}); !status) return status;
+  }
   for (std::string_view word = take_word(corners); !word.empty(); word = take_word(corners)) {
     if (Status status = read_corner(word); !status) return status;
   }

@@ -65,7 +65,7 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
   PolygonNormals result;
   result.normals = {n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()};
   result.errors = {n0.error(), 0.5 * m.error(), n1.error()};
-  result.magnitude = std::fmax(max_abs(n0.magnitude()), std::fmax(max_abs(m.magnitude()), max_abs(n1.magnitude())));
+  result.magnitude = maximum_number(max_abs(n0.magnitude()), maximum_number(max_abs(m.magnitude()), max_abs(n1.magnitude())));
   if (!(result.largest_share() <= kLargestRounding)) settle_rounding(segment, face, result);
   return result;
 }
@@ -86,7 +86,7 @@ void face_control_normals(const Segment& segment, IndexRange faces, std::span<Co
 
 int degree(const ControlNormals& normals) noexcept {
   const auto& [n0, m, n1] = normals;
-  const double size = std::fmax(max_abs(n0), std::fmax(max_abs(m), max_abs(n1)));
+  const double size = maximum_number(max_abs(n0), maximum_number(max_abs(m), max_abs(n1)));
   const double tolerance = kDegreeTolerance * size;
   if (max_abs((n0 - m) + (n1 - m)) > tolerance) return 2;
   if (max_abs(n1 - n0) > tolerance) return 1;
@@ -110,7 +110,7 @@ UnitNormal unit_normal_at(const ControlNormals& normals, double time) noexcept {
   if (max_abs(n) > kEvaluationError * size) return {unit(n), Direction::kRegular};
 
   // n(t) = 0: near t the curve is (x - t) n'(t) + (x - t)^2 c2.
-  const double largest = std::fmax(max_abs(n0), std::fmax(max_abs(m), max_abs(n1)));
+  const double largest = maximum_number(max_abs(n0), maximum_number(max_abs(m), max_abs(n1)));
   const Vec3d half_derivative = s * (m - n0) + t * (n1 - m);
   if (max_abs(half_derivative) > kEvaluationError * largest) {
     return {unit(-half_derivative), Direction::kDiscontinuous};

@@ -27,8 +27,8 @@ struct BoundedNormals {
   /// The largest error against its own control normal.
   [[nodiscard]] double largest_share() const noexcept {
     const auto share = [](double error, const Vec3d& v) { return error == 0 ? 0 : error / max_abs(v); };
-    return std::fmax(share(errors[0], normals.n0),
-                     std::fmax(share(errors[1], normals.m), share(errors[2], normals.n1)));
+    return maximum_number(share(errors[0], normals.n0),
+                     maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
 };
 

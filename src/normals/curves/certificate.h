@@ -3,6 +3,7 @@
 #define CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -15,7 +16,8 @@ namespace chronormal::inline internal {
 inline constexpr int kCertificateDepth = 4;
 
 /// Whether p >= 0 on [0, 1] can be shown by its Bernstein coefficients after a few subdivisions.
-[[nodiscard]] inline bool certainly_not_negative(const Bernstein<double, 4>& p, int depth = kCertificateDepth) {
+template <std::size_t M>
+[[nodiscard]] bool certainly_not_negative(const std::array<double, M>& p, int depth = kCertificateDepth) {
   if (std::all_of(p.begin(), p.end(), [](double b) { return b >= 0; })) return true;
   if (depth == 0 || p.front() < 0 || p.back() < 0) return false;
   const auto [before, after] = split(p, 0.5);

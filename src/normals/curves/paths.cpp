@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/rounding.h"
 #include "core/vector_area.h"
@@ -32,32 +33,29 @@ Bernstein<Vec3d, K> edge(const PolynomialSegment<K>& segment, std::uint32_t from
   return result;
 }
 
-// The velocities of all vertices at keys[at]: the derivative there of the polynomial through all of these keyframes.
-std::vector<float> velocities_at(std::span<const Motion::Keyframe* const> keys, std::size_t at) {
-  std::vector<double> share(keys.size(), 0.0);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (i == at) continue;
-    const double apart = keys[at]->time - keys[i]->time;
-    share[at] += 1 / apart;
-    share[i] = -1 / apart;
-    for (std::size_t k = 0; k < keys.size(); ++k)
-      if (k != i && k != at) share[i] *= (keys[at]->time - keys[k]->time) / (keys[i]->time - keys[k]->time);
-  }
+VectorView<const float> packed(const std::vector<float>& numbers) {
+  return VectorView<const float>::packed(std::span(numbers));
+}
+
+// The velocities of all vertices at key i, as Catmull and Rom have them.
+std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> keys, std::size_t i) {
+  std::vector<double> times;
+  for (const Motion::Keyframe* key : keys) times.push_back(key->time);
+  const VelocityShares velocity = velocity_shares(times, i);
   std::vector<float> result(keys[0]->positions.size());
   for (std::size_t c = 0; c < result.size(); ++c) {
     double sum = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) sum += share[i] * static_cast<double>(keys[i]->positions[c]);
+    for (std::size_t k = 0; k < velocity.share.size(); ++k)
+      sum += velocity.share[k] * static_cast<double>(keys[velocity.first + k]->positions[c]);
     result[c] = static_cast<float>(sum);
   }
   return result;
 }
 
-// Those of the curve through all keys, at key i.
-std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> keys, std::size_t i) {
-  const bool is_end = i == 0 || i + 1 == keys.size();
-  const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size());
-  const std::size_t first = i == 0 ? 0 : is_end ? keys.size() - used : i - 1;
-  return velocities_at(keys.subspan(first, used), i - first);
+std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyframe>& keyframes) {
+  std::vector<const Motion::Keyframe*> keys;
+  for (const Motion::Keyframe& keyframe : keyframes) keys.push_back(&keyframe);
+  return keys;
 }
 
 // The first of the control normals, from the end that is asked for, that is not rounding; zero if there is none.
@@ -102,23 +100,102 @@ PolynomialSegment<3> hermite_segment(const Topology& topology, VectorView<const 
   return segment;
 }
 
-std::string_view path_name(PathKind kind) noexcept { return kind == PathKind::kLinear ? "linear" : "catmull-rom"; }
+std::string_view path_name(PathKind kind) noexcept {
+  return kind == PathKind::kLinear ? "linear" : kind == PathKind::kCatmullRom ? "catmull-rom" : "hermite";
+}
 
 Result<PathKind> make_path(std::string_view name) {
-  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom})
+  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom, PathKind::kHermite})
     if (name == path_name(kind)) return kind;
-  return Error{ErrorCode::kUsage, "", "there is no such path; there are linear and catmull-rom"};
+  return Error{ErrorCode::kUsage, "", "there is no such path; there are linear, catmull-rom and hermite"};
+}
+
+Status check_path(const Motion& motion, PathKind kind) {
+  if (kind == PathKind::kLinear) return Success{};
+  const auto refuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
+  if (motion.kind != MotionKind::kSequence)
+    return refuse(
+        "only the keyframes of a sequence have curved paths between them: weights of targets move vertices straight");
+  const bool has_velocities =
+      std::any_of(motion.keyframes.begin(), motion.keyframes.end(),
+                  [](const Motion::Keyframe& keyframe) { return !keyframe.velocities.empty(); });
+  if (kind == PathKind::kHermite && !has_velocities)
+    return refuse("no keyframe has velocities, which hermite paths need: catmull-rom takes them from the positions");
+  return Success{};
+}
+
+// The derivative at a key of the polynomial through it and its neighbours, of Lagrange's form.
+VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
+  const bool is_end = at == 0 || at + 1 == times.size();
+  const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());
+  const std::size_t first = at == 0 ? 0 : is_end ? times.size() - used : at - 1;
+  const std::span<const double> nodes = times.subspan(first, used);
+  const std::size_t here = at - first;
+  VelocityShares result{first, std::vector<double>(used, 0.0)};
+  for (std::size_t i = 0; i < used; ++i) {
+    if (i == here) continue;
+    const double apart = nodes[here] - nodes[i];
+    result.share[here] += 1 / apart;
+    result.share[i] = -1 / apart;
+    for (std::size_t k = 0; k < used; ++k)
+      if (k != i && k != here) result.share[i] *= (nodes[here] - nodes[k]) / (nodes[i] - nodes[k]);
+  }
+  return result;
+}
+
+double bend_of(const Motion& motion, std::size_t every) {
+  MotionStream stream(motion);
+  return bend_of(stream, every).value();
+}
+
+Result<double> bend_of(MotionStream& stream, std::size_t every) {
+  const Motion& motion = stream.motion();
+  double bent = 0, way = 0;
+  for (std::size_t i = every; i + every < motion.keyframes.size(); i += every) {
+    if (const Status status = stream.hold(i - every, i + every); !status) return status.error();
+    const Motion::Keyframe &from = motion.keyframes[i - every], &middle = motion.keyframes[i],
+                           &to = motion.keyframes[i + every];
+    const auto before = packed(from.positions), at = packed(middle.positions), after = packed(to.positions);
+    // Times may be uneven: what counts is the place on the straight way at the time of the middle one.
+    const double part = (middle.time - from.time) / (to.time - from.time);
+    for (std::size_t v = 0; v < at.count; ++v) {
+      const Vec3d p = to_double(before[v]), q = to_double(at[v]), r = to_double(after[v]);
+      // Of even times, twice the distance from the middle is the second difference.
+      bent += 2 * length(q - ((1 - part) * p + part * r));
+      way += length(q - p) + length(r - q);
+    }
+  }
+  return way > 0 ? bent / way : 0;
 }
 
 PolynomialSegment<3> catmull_rom_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
                                          std::size_t i) {
+  return path_segment(topology, keys, i, PathKind::kCatmullRom);
+}
+
+PolynomialSegment<3> path_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
+                                  std::size_t i, PathKind kind) {
   assert(i + 1 < keys.size());
-  const auto packed = [](const std::vector<float>& numbers) {
-    return VectorView<const float>::packed(std::span(numbers));
+  const Motion::Keyframe &from = *keys[i], &to = *keys[i + 1];
+  if (kind == PathKind::kLinear) {
+    PolynomialSegment<3> segment = empty_segment<3>(topology, from.time, to.time);
+    const auto start = packed(from.positions), end = packed(to.positions);
+    for (std::size_t k = 0; k <= 3; ++k)
+      for (std::size_t v = 0; v < start.count; ++v)
+        segment.control[k][v] = lerp(to_double(start[v]), to_double(end[v]), static_cast<double>(k) / 3);
+    return segment;
+  }
+  const auto velocities = [&](std::size_t at) {
+    const std::vector<float>& given = keys[at]->velocities;
+    return kind == PathKind::kHermite && !given.empty() ? given : curve_velocities(keys, at);
   };
-  const std::vector<float> start = curve_velocities(keys, i), end = curve_velocities(keys, i + 1);
-  return hermite_segment(topology, packed(keys[i]->positions), packed(start), packed(keys[i + 1]->positions),
-                         packed(end), keys[i]->time, keys[i + 1]->time);
+  const std::vector<float> start = velocities(i), end = velocities(i + 1);
+  return hermite_segment(topology, packed(from.positions), packed(start), packed(to.positions), packed(end), from.time,
+                         to.time);
+}
+
+PolynomialSegment<3> path_segment(const Motion& motion, std::size_t i, PathKind kind) {
+  return path_segment(motion.topology, pointers_to(motion.keyframes), i, kind);
 }
 
 template <std::size_t K>
@@ -153,6 +230,29 @@ void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange fac
     });
     for (std::size_t k = 0; k < sum.size(); ++k)
       result[i][k] = without_rounding(sum[k], kError * static_cast<double>(face.size()) * size[k].x);
+  }
+}
+
+template <std::size_t K>
+void polynomial_face_normals_at(const PolynomialSegment<K>& segment, double t, IndexRange faces,
+                                std::span<Vec3d> result) noexcept {
+  assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const auto face = segment.topology->face(faces.first + i);
+    Vec3d sum;
+    double size = 0;
+    const auto edge_to = [&](std::size_t c) {
+      const Bernstein<Vec3d, K> e = edge(segment, face[0], face[c]);
+      Bernstein<double, K> sizes;
+      for (std::size_t k = 0; k <= K; ++k) sizes[k] = max_abs(e[k]);
+      return std::pair{evaluate(e, t), evaluate(sizes, t)};
+    };
+    using Edge = std::pair<Vec3d, double>;
+    for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& f) {
+      sum = sum + cross(e.first, f.first);
+      size += e.second * f.second;
+    });
+    result[i] = without_rounding(sum, kError * static_cast<double>(face.size()) * size);
   }
 }
 
@@ -229,6 +329,8 @@ Result<Motion> cut_into_segments(const PolynomialSegment<K>& segment, double dis
 #define CHRONORMAL_INSTANTIATE(K)                                                                           \
   template void polynomial_face_normals<(K)>(const PolynomialSegment<(K)>&, IndexRange,                     \
                                              std::span<PolynomialNormals<(K)>>) noexcept;                   \
+  template void polynomial_face_normals_at<(K)>(const PolynomialSegment<(K)>&, double, IndexRange,          \
+                                                std::span<Vec3d>) noexcept;                                 \
   template void polynomial_group_normals<(K)>(const NormalGroups&, std::span<const PolynomialNormals<(K)>>, \
                                               IndexRange, std::span<PolynomialNormals<(K)>>) noexcept;      \
   template std::vector<Vec3d> positions_at(const PolynomialSegment<(K)>&, double);                          \

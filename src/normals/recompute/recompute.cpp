@@ -80,12 +80,30 @@ FaceNormal rounded(const NormalAtTime& normal) {
 
 // What the kernel makes of a triangle, to the last bit.
 struct QuickNormal {
-  Vec3f n;
+  Vec3f n, unit;
   float error = 0;
   bool is_trusted = false;
 };
 
 bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && largest <= 0x1p100f; }
+
+// From exact edges, where those in float32 are not precise enough: thin triangles. a and b are those of quick_normal().
+QuickNormal thin_normal(const Segment& segment, std::size_t f, double t, float a, float b) {
+  const auto face = segment.topology->face(f);
+  const auto edge_to = [&](std::size_t c) {
+    return (1 - t) * (to_double(segment.from[face[c]]) - to_double(segment.from[face[0]])) +
+           t * (to_double(segment.to[face[c]]) - to_double(segment.to[face[0]]));
+  };
+  const Vec3d exact = cross(edge_to(1), edge_to(2));
+  if (!(max_abs(exact) <= kLargestNormal)) return {};
+  const Vec3f n = to_float(exact);
+  const float product = a * b, square = dot(n, n);
+  if (!(product <= kMaxThinProduct * square && in_range(std::min({square, a, b}), square))) return {};
+  const double half_square = 0.5 * dot(exact, exact);
+  double y = 1 / std::sqrt(square);
+  for (int step = 0; step < 2; ++step) y = y * (1.5 - half_square * y * y);
+  return {n, to_float(y * exact), 1.01f * (std::sqrt(square) + kThinError * std::sqrt(product)), true};
+}
 
 QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
@@ -96,14 +114,16 @@ QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
   const Vec3f e0 = edge(segment.from, 1), e1 = edge(segment.to, 1), f0 = edge(segment.from, 2),
               f1 = edge(segment.to, 2);
   const Vec3d exact = cross(at(e0, e1), at(f0, f1));
-  if (!(max_abs(exact) <= kLargestNormal)) return {};
-  const Vec3f n = to_float(exact);
   const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
   const float a = start_weight * dot(e0, e0) + end_weight * dot(e1, e1);
   const float b = start_weight * dot(f0, f0) + end_weight * dot(f1, f1);
-  const float product = a * b, square = dot(n, n);
-  const bool is_precise = product <= 40 * square;
-  return {n, 3.32f * std::sqrt(product), is_precise && in_range(std::min({square, a, b}), square)};
+  if (max_abs(exact) <= kLargestNormal) {
+    const Vec3f n = to_float(exact);
+    const float product = a * b, square = dot(n, n);
+    if (product <= 40 * square && in_range(std::min({square, a, b}), square))
+      return {n, normalized(n), 3.32f * std::sqrt(product), true};
+  }
+  return thin_normal(segment, f, t, a, b);
 }
 
 FaceNormal face_normal(const Segment& segment, std::size_t f, double t) {
@@ -131,7 +151,7 @@ UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, double t) {
 UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) {
   if (segment.topology->all_triangles()) {
     const QuickNormal quick = quick_normal(segment, f, t);
-    if (quick.is_trusted) return {to_double(normalized(quick.n)), Direction::kRegular};
+    if (quick.is_trusted) return {to_double(quick.unit), Direction::kRegular};
   }
   return fine_unit_normal(segment, f, t);
 }

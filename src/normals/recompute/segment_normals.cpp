@@ -85,16 +85,18 @@ std::string text_of(const char* format, Values... values) {
 
 std::string reason_of(const StrategyChoice& choice, const MeshShape& shape, const StrategyOptions& options,
                       double evaluations) {
-  const char* const name = choice.strategy == NormalStrategy::kPolynomial ? "polynomial" : "recompute";
-  if (shape.elements == 0) return "recompute: there is nothing to do";
-  if (options.forced) return std::string(name).append(" because it was asked for");
+  const std::string anew = options.float_recompute != nullptr ? "recompute in float32" : "recompute";
+  const std::string name = choice.strategy == NormalStrategy::kPolynomial ? "polynomial" : anew;
+  if (shape.elements == 0) return anew + ": there is nothing to do";
+  if (options.forced) return name + std::string(" because it was asked for");
   const std::string costs =
       text_of("%.3g ns an element for %.6g evaluation%s, ", std::min(choice.polynomial_cost, choice.recompute_cost),
               evaluations, evaluations == 1 ? "" : "s");
-  const double break_even = choice.costs.break_even();
-  std::string reason = std::string(name).append(": ").append(costs);
+  const double break_even =
+      options.float_recompute != nullptr ? choice.costs.break_even_in_float32() : choice.costs.break_even();
+  std::string reason = name + ": " + costs;
   if (choice.strategy == NormalStrategy::kPolynomial)
-    reason.append(text_of("%.3g by recompute", choice.recompute_cost));
+    reason.append(text_of("%.3g by %s", choice.recompute_cost, anew.c_str()));
   else
     reason.append(text_of("%.3g by polynomial", choice.polynomial_cost));
   if (std::isfinite(break_even))
@@ -133,8 +135,8 @@ MeshShape shape_of(const Segment& segment, const NormalGroups& groups) {
   return shape;
 }
 
-double StrategyCosts::break_even() const noexcept {
-  return recompute > evaluate ? prepare / (recompute - evaluate) : std::numeric_limits<double>::infinity();
+double StrategyCosts::break_even_with(double rival) const noexcept {
+  return rival > evaluate ? prepare / (rival - evaluate) : std::numeric_limits<double>::infinity();
 }
 
 StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
@@ -183,10 +185,11 @@ StrategyChoice choose_strategy(const MeshShape& shape, const StrategyOptions& op
   StrategyChoice choice;
   choice.costs = model_costs(shape, options.tolerance);
   choice.polynomial_cost = choice.costs.prepare + evaluations * choice.costs.evaluate;
-  choice.recompute_cost = evaluations * choice.costs.recompute;
+  const double anew = options.float_recompute != nullptr ? choice.costs.in_float32 : choice.costs.recompute;
+  choice.recompute_cost = evaluations * anew;
   // Recompute where they are even: it keeps no curves. An infinite number asks for the cheaper evaluation.
-  const bool is_cheaper = std::isfinite(evaluations) ? choice.polynomial_cost < choice.recompute_cost
-                                                     : choice.costs.evaluate < choice.costs.recompute;
+  const bool is_cheaper =
+      std::isfinite(evaluations) ? choice.polynomial_cost < choice.recompute_cost : choice.costs.evaluate < anew;
   choice.strategy = is_cheaper ? NormalStrategy::kPolynomial : NormalStrategy::kRecompute;
   if (options.forced) choice.strategy = *options.forced;
   choice.reason = reason_of(choice, shape, options, evaluations);
@@ -197,6 +200,8 @@ SegmentNormals::SegmentNormals(const Segment& segment, const StrategyOptions& op
     : choice_(choose_strategy(shape_of(segment), options)) {
   if (choice_.strategy == NormalStrategy::kPolynomial)
     normals_ = NormalCurves::of_faces(segment, {.tolerance = options.tolerance}, threads);
+  else if (options.float_recompute != nullptr)
+    normals_ = InFloat32{options.float_recompute, segment};
   else
     normals_ = NormalRecompute(segment);
 }
@@ -206,6 +211,8 @@ SegmentNormals::SegmentNormals(const Segment& segment, const NormalGroups& group
     : choice_(choose_strategy(shape_of(segment, groups), options)) {
   if (choice_.strategy == NormalStrategy::kPolynomial)
     normals_ = NormalCurves::of_groups(segment, groups, {.tolerance = options.tolerance}, threads);
+  else if (options.float_recompute != nullptr)
+    normals_ = InFloat32{options.float_recompute, segment};
   else
     normals_ = NormalRecompute(segment, groups);
 }
@@ -215,13 +222,15 @@ std::size_t SegmentNormals::unit_normals(double t, VectorView<float> result, Thr
 }
 
 std::size_t SegmentNormals::size() const noexcept {
-  const auto* const curves = std::get_if<NormalCurves>(&normals_);
-  return curves != nullptr ? curves->size() : std::get_if<NormalRecompute>(&normals_)->size();
+  if (const auto* const curves = std::get_if<NormalCurves>(&normals_)) return curves->size();
+  if (const auto* const in_float32 = std::get_if<InFloat32>(&normals_)) return in_float32->size();
+  return std::get_if<NormalRecompute>(&normals_)->size();
 }
 
 std::size_t SegmentNormals::bytes() const noexcept {
-  const auto* const curves = std::get_if<NormalCurves>(&normals_);
-  return curves != nullptr ? curves->bytes() : std::get_if<NormalRecompute>(&normals_)->bytes();
+  if (const auto* const curves = std::get_if<NormalCurves>(&normals_)) return curves->bytes();
+  if (const auto* const in_float32 = std::get_if<InFloat32>(&normals_)) return in_float32->bytes();
+  return std::get_if<NormalRecompute>(&normals_)->bytes();
 }
 
 }  // namespace chronormal

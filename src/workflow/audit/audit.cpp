@@ -15,15 +15,6 @@
 namespace chronormal {
 namespace {
 
-// The bin of an angle of [0, 180] degrees among kAuditFineBins.
-std::size_t fine_bin(double degrees) noexcept {
-  if (!(degrees >= std::ldexp(1, kAuditLeastExponent))) return 0;
-  int exponent = 0;
-  const double digits = std::frexp(degrees, &exponent);  // of [1/2, 1)
-  const int of_doubling = static_cast<int>((2 * digits - 1) * kAuditBinsOfDoubling);
-  return static_cast<std::size_t>(1 + (exponent - 1 - kAuditLeastExponent) * kAuditBinsOfDoubling + of_doubling);
-}
-
 // Where such a bin ends, in degrees.
 double end_of_fine_bin(std::size_t bin) noexcept {
   const int doubling = static_cast<int>(bin) / kAuditBinsOfDoubling,
@@ -96,9 +87,7 @@ void MotionError::add(double degrees, const AuditPlace& place) noexcept {
   ++judged;
   sum += degrees;
   sum_of_squares += degrees * degrees;
-  const auto* const bin = std::upper_bound(kAuditBinEdges.begin(), kAuditBinEdges.end(), degrees);
-  ++histogram[static_cast<std::size_t>(bin - kAuditBinEdges.begin())];
-  ++counts[fine_bin(degrees)];
+  count_in_bins(degrees, *this);
   if (degrees > worst) {
     worst = degrees;
     worst_at = place;

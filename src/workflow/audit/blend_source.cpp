@@ -1,6 +1,7 @@
 #include "workflow/audit/blend_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/blocks.h"
@@ -27,7 +28,8 @@ BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, Aud
       rule_(rule),
       weights_at_(std::move(weights)),
       moment_(std::move(moment)),
-      moved_(shading.set.targets.size()) {
+      moved_(shading.set.targets.size()),
+      turned_(shading.set.targets.size()) {
   std::vector<Vec3d> positions(part.vertices().size());
   place_base(positions);
   PartNormals normals;
@@ -51,13 +53,16 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   if (same) return false;
   now_ = std::move(now);
   place_at(now_, positions);
+  return true;
+}
+
+void BlendSource::show() {
   if (rule_ == AuditRule::kGltf) {
     add_up(now_, shown_now_);
   } else if (rule_ != AuditRule::kFlat) {
     add_up(start_, shown_start_);
     add_up(end_, shown_end_);
   }
-  return true;
 }
 
 void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> positions) {
@@ -128,30 +133,67 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// N + sum w D in float32, target after target, as hosts add. Where outputs are one run of vertices, so are their deltas.
-void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) const {
+// The deltas of the normals of a target, in runs of outputs. Runs have few zeros between them, and none around them.
+const BlendSource::TurnedRuns& BlendSource::turned(std::size_t k) {
+  if (turned_[k]) return *turned_[k];
+  constexpr std::size_t kMostZeros = 4;
+  TurnedRuns& result = turned_[k].emplace();
+  const std::span<const JudgedOutput> outputs = part_.outputs();
+  const std::vector<float>& all = shading_.normal_deltas[k];
+  if (all.empty()) return result;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const Vec3f delta = vector_at(all, outputs[i].vertex);
+    if (delta == Vec3f{}) continue;
+    std::size_t from = i;
+    if (!result.runs.empty() && i - result.runs.back().end() <= kMostZeros) {
+      from = result.runs.back().end();
+    } else {
+      result.runs.push_back({i, 0});
+    }
+    for (; from <= i; ++from) {
+      const Vec3f d = vector_at(all, outputs[from].vertex);
+      result.deltas.insert(result.deltas.end(), {d.x, d.y, d.z});
+    }
+    result.runs.back().count = i + 1 - result.runs.back().first;
+  }
+  return result;
+}
+
+// N + sum w D in float32, target after target, as hosts add. A delta of zero changes no sum and is left out; a weight that is
+// not finite makes no sum a finite one, whatever the delta is.
+void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) {
   const std::span<const JudgedOutput> outputs = part_.outputs();
   sums.resize(3 * outputs.size());
+  std::vector<std::size_t> active;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    if (weights[k] != 0 && !shading_.normal_deltas[k].empty()) active.push_back(k);
+  for (const std::size_t k : active) (void)turned(k);
   parallel_blocks(outputs.size(), kBlock, [&](IndexRange range) {
-    const std::size_t first = outputs[range.first].vertex;
-    const std::span<float> here = std::span(sums).subspan(3 * range.first, 3 * range.count);
-    const bool is_run = outputs[range.first + range.count - 1].vertex == first + range.count - 1;
-    const auto add = [&](const std::vector<float>& vectors, float weight) {
-      if (is_run) {
-        const float* const from = vectors.data() + 3 * first;
-        for (std::size_t n = 0; n < here.size(); ++n) here[n] += weight * from[n];
-        return;
+    for (std::size_t i = range.first; i < range.end(); ++i) {
+      const Vec3f normal = vector_at(shading_.normals, outputs[i].vertex);
+      sums[3 * i] = normal.x;
+      sums[3 * i + 1] = normal.y;
+      sums[3 * i + 2] = normal.z;
+    }
+    for (const std::size_t k : active) {
+      const TurnedRuns& turns = *turned_[k];
+      const auto weight = static_cast<float>(weights[k]);
+      if (!std::isfinite(weight)) {
+        for (std::size_t i = 3 * range.first; i < 3 * range.end(); ++i) sums[i] = weight - weight;
+        continue;
       }
-      for (std::size_t i = 0; i < range.count; ++i) {
-        const float* const from = vectors.data() + 3 * std::size_t{outputs[range.first + i].vertex};
-        for (std::size_t c = 0; c < 3; ++c) here[3 * i + c] += weight * from[c];
+      std::size_t before = 0;  // deltas of the runs before
+      for (const IndexRange& run : turns.runs) {
+        if (run.first >= range.end()) break;
+        if (run.end() > range.first) {
+          const std::size_t first = std::max(run.first, range.first), end = std::min(run.end(), range.end());
+          const float* const from = turns.deltas.data() + 3 * (before + first - run.first);
+          float* const to = sums.data() + 3 * first;
+          for (std::size_t n = 0; n < 3 * (end - first); ++n) to[n] += weight * from[n];
+        }
+        before += run.count;
       }
-    };
-    std::fill(here.begin(), here.end(), 0.0F);
-    add(shading_.normals, 1);
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      if (weights[k] != 0 && !shading_.normal_deltas[k].empty())
-        add(shading_.normal_deltas[k], static_cast<float>(weights[k]));
+    }
   });
 }
 

@@ -44,18 +44,25 @@ class BlendSource {
   /// The weights of the moment that was placed.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
   void forget() { known_ = false; }
+  /// Adds up what the moment that was placed shows.
+  void show();
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const;
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
+  struct TurnedRuns {
+    std::vector<IndexRange> runs;  // of outputs, ascending
+    std::vector<float> deltas;     // three for each output of a run
+  };
 
   [[nodiscard]] std::vector<double> weights(std::size_t segment, double t) const;
   void place_base(std::span<Vec3d> positions) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
-  void add_up(const std::vector<double>& weights, std::vector<float>& sums) const;
+  const TurnedRuns& turned(std::size_t k);
+  void add_up(const std::vector<double>& weights, std::vector<float>& sums);
 
   const GltfShading& shading_;
   const JudgedPart& part_;
@@ -63,6 +70,7 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
+  std::vector<std::optional<TurnedRuns>> turned_;         // likewise
   std::vector<ShownTurn> turns_;                          // of outputs
   bool known_ = false;
   double t_ = 0;

@@ -284,6 +284,8 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
 Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditOptions& options,
                                       const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
+  if (options.path != PathKind::kLinear)
+    return Error{ErrorCode::kUsage, "", "the weights of a glTF file say how its vertices move; paths are of sequences"};
   std::optional<std::size_t> only;
   if (!options.animation.empty()) {
     const Result<std::size_t> animation = document.find_animation(options.animation);

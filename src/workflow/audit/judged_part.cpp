@@ -90,9 +90,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
       size += max_abs(added);
     }
     result.sizes[e] = size;
-    // What is left of terms that cancel is their rounding, and no direction.
-    constexpr double kRounding = 1e-13;
-    result.elements[e] = without_rounding(sum, kRounding * size);
+    result.elements[e] = without_rounding(sum, kRoundingOfTerms * size);
   });
 }
 

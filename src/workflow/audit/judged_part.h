@@ -17,6 +17,9 @@ namespace chronormal::inline internal {
 /// What one task takes.
 inline constexpr std::size_t kRange = 4096;
 
+/// What is left of terms that cancel, as a share of their size, is their rounding and no direction.
+inline constexpr double kRoundingOfTerms = 1e-13;
+
 /// Something that shows a normal: a vertex, or a corner where a vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
@@ -40,6 +43,16 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
+
+  /// The faces of an element, and the corners of a face as vertices() counts them.
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t element) const noexcept {
+    return std::span(faces_of_element_)
+        .subspan(element_offsets_[element], element_offsets_[element + 1] - element_offsets_[element]);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> corners_of(std::size_t face) const noexcept {
+    return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
+  }
+  [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
 
   /// Computes the normals of its faces and elements from positions of vertices(): cross products, and for elements
   /// their weighted sums (normals/weighting.h), without a look at what is rounding.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/workflow/audit.h"
+#include "core/bits.h"
 #include "core/blocks.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/shading/authored_weighting.h"
@@ -24,6 +26,19 @@ namespace chronormal::inline internal {
 inline constexpr double kVanished = 1e-4;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
+
+/// Counts an error of [0, 180] degrees in both histograms.
+inline void count_in_bins(double degrees, MotionError& errors) noexcept {
+  std::size_t bin = 0;
+  for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
+  ++errors.histogram[bin];
+  // A doubling is an exponent of double, and its bins are the first bits of the fraction: both together are one number.
+  static_assert(kAuditBinsOfDoubling == 128);
+  constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
+  constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
+  const std::uint64_t number = bit_cast<std::uint64_t>(degrees) >> kFractionBits;
+  ++errors.counts[number >= kFirst ? static_cast<std::size_t>(number - kFirst + 1) : 0];
+}
 
 /// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
@@ -48,6 +63,7 @@ void finish(Audit& result);
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
 //     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
+//     show()                         is called where something was placed, before shown()
 //     shown(output)                  a normal of any length, zero for none
 //     right(output, n)               the direction for a normal of the geometry
 //     at(segment, t, output)         for people
@@ -139,6 +155,13 @@ struct KeptErrors {
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
+/// Adds up segment by segment, so that sums do not depend on where a motion is divided.
+inline void add_segment(SegmentErrors found, const KeptErrors& kept, AuditSubject& subject) {
+  subject.error.add(found.error);
+  subject.at_keys.add(found.at_keys);
+  if (kept.segments != nullptr) kept.segments->push_back(std::move(found));
+}
+
 /// A sample that was measured.
 struct MeasuredSample {
   std::size_t segment = 0;
@@ -173,8 +196,7 @@ template <class Source, class EachSample>
   const IndexRange share = kept.shard.of(subject.segments);
   for (std::size_t s = share.first; s < share.end(); ++s) {
     if (const Status status = source.enter(s); !status) return status;
-    MotionError of_segment,
-        of_keys;  // added up segment by segment, so that sums do not depend on where a motion is divided
+    SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
       std::vector<Vec3d> start = placed.normals.elements;
@@ -184,17 +206,18 @@ template <class Source, class EachSample>
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
       const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
-      if (placed.place(source, s, t)) error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+      if (placed.place(source, s, t)) {
+        source.show();
+        error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+      }
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
                     source.at(s, t, part.outputs().front()).at);
-      of_segment.add(error);
-      if (i == 0 || i + 1 == subject.samples) of_keys.add(error);
+      found.error.add(error);
+      if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
-    subject.error.add(of_segment);
-    subject.at_keys.add(of_keys);
-    if (kept.segments != nullptr) kept.segments->push_back({s, of_segment, of_keys});
+    add_segment(std::move(found), kept, subject);
     progress();
   }
   subject.vertices = part.outputs().size();

@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/shading/authored_weighting.h"
@@ -29,13 +30,14 @@ class SequenceSource {
   static constexpr bool kNeedsEnds = true;
 
   SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
-                 AuditRule rule, std::vector<Vec3d> first, std::span<const std::size_t> segments)
+                 AuditRule rule, PathKind path, std::vector<Vec3d> first, std::span<const std::size_t> segments)
       : stream_(stream),
         motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
         rule_(rule),
+        path_(path),
         first_(std::move(first)),
         segments_(segments) {}
 
@@ -47,12 +49,20 @@ class SequenceSource {
     t_ = t;
     const Segment s = motion_.segment(segments_[segment]);
     const auto vertices = part_.vertices();
+    if (path_ != PathKind::kLinear) {
+      if (curve_index_ != s.index) curve_ = path_segment(motion_, s.index, path_);
+      curve_index_ = s.index;
+      const std::vector<Vec3d> all = positions_at(curve_, t);
+      for (std::size_t i = 0; i < vertices.size(); ++i) positions[i] = all[vertices[i]];
+      return true;
+    }
     parallel_each(vertices.size(), kRange, [&](std::size_t i) {
       positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
     });
     return true;
   }
   void forget() { known_ = false; }
+  void show() {}
 
   void begin(std::vector<Vec3d> start, const std::vector<Vec3d>& end) {
     start_ = std::move(start);
@@ -108,6 +118,9 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
+  PathKind path_;
+  PolynomialSegment<3> curve_;  // of the segment below, on curved paths
+  std::size_t curve_index_ = static_cast<std::size_t>(-1);
   std::vector<Vec3d> first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
@@ -230,10 +243,17 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
   if (!options.hosts.empty())
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
+  if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
-  if (!options.shard.is_all() && (motion.kind == MotionKind::kTargets || options.keep_errors))
+  const bool is_straight = options.path == PathKind::kLinear;
+  if (!options.shard.is_all() && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
     return Error{ErrorCode::kUsage, "",
-                 "a shard is of the segments of a sequence, and keeps sums and no single errors"};
+                 "a shard is of the segments of a sequence of straight paths, and keeps sums and no single errors"};
+  if (!is_straight) {
+    if (const Status status = stream.hold_all(); !status) return status.error();
+  }
+  result.path = options.path;
+  if (!is_straight) result.bend = bend_of(motion);
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
@@ -290,8 +310,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
     const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
-    SequenceSource source(stream, normals, result.stored, part, result.rule, normals_at_first_keyframe(part, base),
-                          segments);
+    SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
+                          normals_at_first_keyframe(part, base), segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
                           static_cast<bool>(watch), options.shard, options.shard.is_all() ? nullptr : &result.measured};
     const auto tell = [&](const MeasuredSample& sample) {
@@ -309,7 +329,13 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
              {},
              {}});
     };
-    const Status measured = measure(source, part, result.rule, progress, subject, kept, tell);
+    const bool in_blocks = is_straight && !kept.any() && !result.stored &&
+                           can_measure_blocks(part, result.rule, weighting, subject.samples);
+    const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
+      return source.at(segment, t, output);
+    };
+    const Status measured = in_blocks ? measure_blocks(stream, segments, part, result.rule, at, progress, subject, kept)
+                                      : measure(source, part, result.rule, progress, subject, kept, tell);
     if (!measured) return measured.error();
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));

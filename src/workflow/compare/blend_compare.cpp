@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "analysis/blend_quality.h"
+#include "analysis/quality/blend_quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"

@@ -11,10 +11,12 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/quality/kernels/reference_angles.h"
 #include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/errors/shards.h"
 
@@ -104,8 +106,15 @@ class Elements {
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
+  // Holds everything against the exact normals of curved paths. This must stay where it is from now on.
+  void follow(const Motion& motion, PathKind path) { curved_.emplace(motion, path, groups_ ? &*groups_ : nullptr); }
+  [[nodiscard]] std::unique_ptr<Scheme> make(const std::string& name) const {
+    return curved_ && name == kExactCurve ? curved_->scheme() : make_scheme(name).value();
+  }
+
   // Makes ready for segments first to last: the control normals of faces are shared by many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
+    if (curved_) curved_->enter(first, last);
     if (!groups_) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
     for (std::size_t s = first; s <= last; ++s) {
@@ -117,6 +126,9 @@ class Elements {
   }
   // What the faces of a segment cost one thread, for each of the elements that share them.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
+  [[nodiscard]] double shared_ns_of_curves() const noexcept {
+    return curved_ ? curved_->shared_ns() / static_cast<double>(count_) : 0;
+  }
 
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
     if (groups_)
@@ -141,7 +153,16 @@ class Elements {
     }
     return errors;
   }
-  void exact_normals(const Segment& segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept {
+  // For exact_normals(); nothing where these are not of triangles on straight lines.
+  [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
+    if (groups_ || curved_ || !segment.topology->all_triangles()) return std::nullopt;
+    return ReferenceTriangles(segment, range);
+  }
+  // Of any length.
+  void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
+                     double t, std::span<Vec3d> result) const noexcept {
+    if (curved_) return curved_->exact_normals(segment.index, range, t, result);
+    if (triangles) return triangles->normals(t, result);
     if (!groups_) return reference_normals(segment, range, t, result);
     for (std::size_t i = 0; i < range.count; ++i)
       result[i] = reference_normal(segment, groups_->faces(range.first + i), t);
@@ -151,6 +172,7 @@ class Elements {
   std::optional<NormalGroups> groups_;
   std::size_t count_;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
+  std::optional<CurvedSegments> curved_;                         // where vertices move on curves
   double shared_ns_ = 0;
 };
 
@@ -210,11 +232,12 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   std::vector<std::unique_ptr<Scheme>> schemes;
   std::vector<Tally> tallies(names.size());
   for (std::size_t s = 0; s < names.size(); ++s) {
-    schemes.push_back(make_scheme(names[s]).value());
+    schemes.push_back(all.make(names[s]));
     Scheme& scheme = *schemes[s];
     const auto start = Clock::now();
     scheme.prepare({&segment, range, control_normals, all.are_faces()});
-    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
+    const double shared_ns = names[s] == kExactCurve ? all.shared_ns_of_curves() * elements : 0;
+    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : shared_ns);
     tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
     tallies[s].fallbacks = scheme.fallback_count();
     tallies[s].flagged = scheme.flagged_count();
@@ -226,6 +249,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
       tallies[s].certified = certified_error(*schemes[s], {&segment, range, control_normals, all.are_faces()}, errors);
   }
 
+  const std::optional<ReferenceTriangles> triangles = all.triangles(segment, range);
   std::vector<Vec3d> exact(range.count);
   std::vector<float> planes(3 * range.count);
   float* const first = planes.data();
@@ -238,7 +262,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   std::vector<double> evaluate_ns(schemes.size(), 0);
   for (std::size_t i = 0; i < samples; ++i) {
     const double t = time_of_sample(i, samples);
-    all.exact_normals(segment, range, t, exact);
+    all.exact_normals(segment, range, triangles, t, exact);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
       const auto start = Clock::now();
       if (playbacks[s])
@@ -331,6 +355,10 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, 0 or more"};
   if (certified && options.access == Access::kSequential)
     return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
+  const bool curved = options.path != PathKind::kLinear;
+  if (certified && curved)
+    return Error{ErrorCode::kUsage, "", "certificates are of straight paths: of curved ones there are samples"};
+  if (const Status status = check_path(motion, options.path); !status) return status.error();
 
   // Linear is the measure of the others, so it takes part even where it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
@@ -349,6 +377,10 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     row.operations = row.sequential ? *sequential : scheme.value()->operations();
     rows.push_back(std::move(row));
   }
+  if (curved) {
+    names.emplace_back(kExactCurve);
+    rows.emplace_back().scheme = names.back();
+  }
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   std::optional<Elements> all;
@@ -359,6 +391,11 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (!groups) return groups.error();
     all.emplace(std::move(groups).value());
   }
+  if (curved) {
+    if (const Status status = stream.hold_all(); !status) return status.error();
+    all->follow(motion, options.path);
+    rows.back().operations = all->make(rows.back().scheme)->operations();
+  }
   std::vector<std::vector<float>> each;  // of every row, the errors of all elements at all samples
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;
@@ -366,8 +403,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
-  if (!options.shard.is_all() && (options.keep_errors || options.keep_samples))
-    return Error{ErrorCode::kUsage, "", "a shard keeps sums: single errors are of a whole motion"};
+  if (!options.shard.is_all() && (options.keep_errors || options.keep_samples || curved))
+    return Error{ErrorCode::kUsage, "", "a shard keeps sums, of straight paths: the rest is of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());
@@ -427,6 +464,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         options.samples,
                         {},
                         motion.kind};
+  comparison.path = options.path;
+  if (curved) comparison.bend = bend_of(motion);
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;
   comparison.compared = std::move(compared);

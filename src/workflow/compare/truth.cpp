@@ -9,6 +9,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/path_curves.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/compare.h"
@@ -69,16 +70,7 @@ class Elements {
     return result;
   }
   [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(const PolynomialSegment<3>& segment) const {
-    std::vector<PolynomialNormals<3>> of_faces(segment.topology->face_count());
-    parallel_blocks_of(of_faces.size(), [&](IndexRange range) {
-      polynomial_face_normals(segment, range, std::span(of_faces).subspan(range.first, range.count));
-    });
-    if (!groups_) return of_faces;
-    std::vector<PolynomialNormals<3>> result(count_);
-    parallel_blocks_of(count_, [&](IndexRange range) {
-      polynomial_group_normals<3>(*groups_, of_faces, range, std::span(result).subspan(range.first, range.count));
-    });
-    return result;
+    return groups_ ? all_path_normals(segment, *groups_) : all_path_normals(segment);
   }
   // The exact normals of a mesh that stands still.
   void exact_normals(const Segment& still, IndexRange range, std::span<Vec3d> result) const {
@@ -104,14 +96,14 @@ struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<PolynomialNormals<3>> curved;  // none where there are too few keyframes for a curve
+  std::vector<std::vector<PolynomialNormals<3>>> curved;  // of each curved path
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);
   }
 };
 
-// The errors of all rows on one block of elements, the curved path last.
+// The errors of all rows on one block of elements, curved paths last.
 std::vector<Quality> errors_of_block(const Piece& piece, const Elements& elements, IndexRange range,
                                      const std::vector<std::string>& names) {
   std::vector<std::unique_ptr<Scheme>> schemes;
@@ -120,7 +112,7 @@ std::vector<Quality> errors_of_block(const Piece& piece, const Elements& element
     schemes.back()->prepare(
         {&piece.segment, range, std::span(piece.straight).subspan(range.first, range.count), elements.are_faces()});
   }
-  std::vector<Quality> result(names.size() + (piece.curved.empty() ? 0 : 1));
+  std::vector<Quality> result(names.size() + piece.curved.size());
   std::vector<Vec3d> exact(range.count);
   std::vector<float> packed(3 * range.count);
   const auto shown = VectorView<float>::packed(packed);
@@ -134,10 +126,11 @@ std::vector<Quality> errors_of_block(const Piece& piece, const Elements& element
       schemes[s]->evaluate(t, shown);
       result[s].add(exact, shown, first);
     }
-    if (piece.curved.empty()) continue;
-    for (std::size_t i = 0; i < range.count; ++i)
-      shown.set(i, to_float(unit_normal_at(piece.curved[range.first + i], t).vector));
-    result.back().add(exact, shown, first);
+    for (std::size_t c = 0; c < piece.curved.size(); ++c) {
+      for (std::size_t i = 0; i < range.count; ++i)
+        shown.set(i, to_float(unit_normal_at(piece.curved[c][range.first + i], t).vector));
+      result[names.size() + c].add(exact, shown, first);
+    }
   }
   return result;
 }
@@ -157,23 +150,6 @@ Status check(const Motion& motion, const TruthOptions& options) {
 }
 
 }  // namespace
-
-double bend_of(const Motion& motion, std::size_t every) {
-  const KeptKeys keys(motion, every);
-  double bent = 0, way = 0;
-  for (std::size_t i = 1; i + 1 < keys.count(); ++i) {
-    const auto before = positions_of(keys[i - 1]), at = positions_of(keys[i]), after = positions_of(keys[i + 1]);
-    // Times may be uneven: what counts is the place on the straight way at the time of the middle one.
-    const double part = (keys[i].time - keys[i - 1].time) / (keys[i + 1].time - keys[i - 1].time);
-    for (std::size_t v = 0; v < at.count; ++v) {
-      const Vec3d p = to_double(before[v]), q = to_double(at[v]), r = to_double(after[v]);
-      // Of even times, twice the distance from the middle is the second difference.
-      bent += 2 * length(q - ((1 - part) * p + part * r));
-      way += length(q - p) + length(r - q);
-    }
-  }
-  return way > 0 ? bent / way : 0;
-}
 
 Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOptions& options) {
   if (const Status status = check(motion, options); !status) return status.error();
@@ -195,7 +171,9 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   }
   const Elements elements(motion.topology, std::move(groups));
   const KeptKeys keys(motion, options.every);
-  const bool has_curve = keys.count() >= 3;
+  std::vector<PathKind> curves;
+  if (keys.count() >= 3) curves.push_back(PathKind::kCatmullRom);
+  if (check_path(motion, PathKind::kHermite)) curves.push_back(PathKind::kHermite);
 
   TruthComparison result;
   result.kind = kind;
@@ -206,13 +184,14 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   result.left_out = (keys.count() - 1) * (options.every - 1);
   result.bend = bend_of(motion, options.every);
   for (const std::string& name : names) result.rows.push_back({std::string(path_name(PathKind::kLinear)), name, {}});
-  if (has_curve) result.rows.push_back({std::string(path_name(PathKind::kCatmullRom)), "exact", {}});
+  for (const PathKind curve : curves) result.rows.push_back({std::string(path_name(curve)), "exact", {}});
 
   const std::size_t blocks = (elements.count() + kBlockSize - 1) / kBlockSize;
   std::vector<std::vector<Quality>> found(blocks);
   for (std::size_t i = 0; i + 1 < keys.count(); ++i) {
     Piece piece{keys.segment(i), keys.between(i), elements.control_normals(keys.segment(i)), {}};
-    if (has_curve) piece.curved = elements.control_normals(catmull_rom_segment(motion.topology, keys.all(), i));
+    for (const PathKind curve : curves)
+      piece.curved.push_back(elements.control_normals(path_segment(motion.topology, keys.all(), i, curve)));
     Elements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
       found[range.first / kBlockSize] = errors_of_block(piece, elements, range, names);
     });

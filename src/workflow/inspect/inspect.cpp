@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "analysis/near_collapse.h"
+#include "analysis/signs/near_collapse.h"
 #include "chronormal/analysis/collapse.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
@@ -84,8 +84,8 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   const Vec3d origin = to_double(positions[face[0]]);
   for (const std::uint32_t vertex : face) {
     const Vec3d p = to_double(positions[vertex]);
-    coordinate = std::fmax(coordinate, max_abs(p));
-    edge = std::fmax(edge, max_abs(p - origin));
+    coordinate = maximum_number(coordinate, max_abs(p));
+    edge = maximum_number(edge, max_abs(p - origin));
   }
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }

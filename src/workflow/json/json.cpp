@@ -12,4 +12,10 @@ std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
+void put_path(Json& json, PathKind path, double bend) {
+  json["path"] = path_name(path);
+  json["bend"] = bend;
+  json["is_too_sparse"] = bend > kTooSparse;
+}
+
 }  // namespace chronormal::inline internal

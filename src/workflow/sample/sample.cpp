@@ -102,9 +102,7 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
-  if (options.path != PathKind::kLinear && motion.kind != MotionKind::kSequence)
-    return misuse(
-        "only the keyframes of a sequence have curved paths between them: weights of targets move vertices straight");
+  if (const Status status = check_path(motion, options.path); !status) return status.error();
   NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
     if (!by_area) return misuse("faces are not weighted: they have one normal");
@@ -175,9 +173,7 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   if (const Status status = hold_around(*stream_, instant.value().segment, options_.path); !status)
     return status.error();
   if (options_.path != PathKind::kLinear) {
-    std::vector<const Motion::Keyframe*> keys;
-    for (const Motion::Keyframe& keyframe : motion_->keyframes) keys.push_back(&keyframe);
-    const auto curve = catmull_rom_segment(motion_->topology, keys, instant.value().segment);
+    const auto curve = path_segment(*motion_, instant.value().segment, options_.path);
     return pose_at(positions_at(curve, t), "this path moves");
   }
   const Segment segment = motion_->segment(instant.value().segment);

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <string>
@@ -89,6 +90,30 @@ TEST(ReadObj, numbers_are_rounded_to_the_nearest_float_and_tiny_ones_to_zero) {
   EXPECT_TRUE(test::same_bits(frame.positions,
                               {0.5F, -1.0F, 100.0F, 0.0F, -0.0F, 0.0F, std::numeric_limits<float>::denorm_min(), 1e-40F,
                                std::numeric_limits<float>::max(), 0.0F, 0.1F, 1.0F}));
+}
+
+TEST(ReadObj, numbers_of_any_length_are_those_of_strtof) {
+  std::mt19937_64 random(9);
+  std::string bytes;
+  std::vector<float> expected;
+  const auto digits = [&](std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) text += static_cast<char>('0' + random() % 10);
+    return text;
+  };
+  for (int i = 0; i < 30000; ++i) {
+    std::string number = random() % 2 == 0 ? "-" : "";
+    number += digits(random() % 12) + "." + digits(1 + random() % 12);
+    if (random() % 3 == 0) number += (random() % 2 == 0 ? "e-" : "e") + std::to_string(random() % 20);
+    // The middle between two floats, and a little beside it.
+    if (i % 5 == 0) {
+      const auto odd = static_cast<double>((random() % (1U << 24U)) * 2 + 1);
+      number = std::to_string(static_cast<long long>(odd)) + (i % 10 == 0 ? "" : ".00000000001");
+    }
+    bytes += (i % 3 == 0 ? "\nv " : " ") + number;
+    expected.push_back(std::strtof(number.c_str(), nullptr));
+  }
+  EXPECT_TRUE(test::same_bits(read_good(bytes + "\nf 1 2 3\n").positions, expected));
 }
 
 TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {

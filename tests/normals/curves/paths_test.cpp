@@ -14,6 +14,7 @@
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
+#include "tests/support/curved_motion.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
@@ -317,9 +318,69 @@ TEST(CatmullRom, leaves_an_end_as_the_cubic_through_four_keys) {
 }
 
 TEST(PathKind, is_found_by_its_name) {
-  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom})
+  for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom, PathKind::kHermite})
     EXPECT_EQ(make_path(path_name(kind)).value(), kind);
   EXPECT_EQ(make_path("hermit").error().code, ErrorCode::kUsage);
+}
+
+// Where all vertices are at local t of a segment, in the order of positions.
+std::vector<double> places(const Motion& motion, std::size_t s, PathKind kind, double t) {
+  std::vector<double> result;
+  for (const Vec3d& p : positions_at(path_segment(motion, s, kind), t))
+    for (const double c : {p.x, p.y, p.z}) result.push_back(c);
+  return result;
+}
+
+TEST(PathSegment, is_the_curve_of_the_textbook_with_or_without_velocities) {
+  Motion motion = test::curved_motion({0, 0.2, 0.5, 0.6, 1}, 2, 6, 4);
+  for (Motion::Keyframe& key : motion.keyframes)
+    for (const float p : key.positions) key.velocities.push_back(3 * p - 0.5F);
+  motion.keyframes[2].velocities.clear();
+  for (std::size_t s = 0; s < 4; ++s) {
+    for (const double t : {0.0, 0.3, 0.75, 1.0}) {
+      for (const PathKind kind : {PathKind::kCatmullRom, PathKind::kHermite}) {
+        const auto right = test::on_curve(motion, s, t, kind == PathKind::kHermite);
+        const std::vector<double> found = places(motion, s, kind, t);
+        for (std::size_t c = 0; c < found.size(); ++c)
+          EXPECT_NEAR(found[c], static_cast<double>(right[c]), 1e-6) << s << ' ' << t << ' ' << path_name(kind);
+      }
+      const std::vector<double> straight = places(motion, s, PathKind::kLinear, t);
+      for (std::size_t c = 0; c < straight.size(); ++c)
+        EXPECT_NEAR(
+            straight[c],
+            (1 - t) * double{motion.keyframes[s].positions[c]} + t * double{motion.keyframes[s + 1].positions[c]},
+            1e-12);
+    }
+  }
+}
+
+TEST(PathSegment, hermite_needs_a_velocity_and_curves_a_sequence) {
+  Motion motion = test::curved_motion({0, 0.5, 1}, 1, 5, 3);
+  EXPECT_TRUE(check_path(motion, PathKind::kLinear).ok());
+  EXPECT_TRUE(check_path(motion, PathKind::kCatmullRom).ok());
+  EXPECT_EQ(check_path(motion, PathKind::kHermite).error().code, ErrorCode::kUsage);
+  motion.keyframes[1].velocities = motion.keyframes[1].positions;
+  EXPECT_TRUE(check_path(motion, PathKind::kHermite).ok());
+  motion.keyframes[1].velocities.pop_back();
+  EXPECT_EQ(validate(motion).error().code, ErrorCode::kInvalidInput);
+  motion.keyframes[1].velocities.push_back(std::nanf(""));
+  EXPECT_EQ(validate(motion).error().code, ErrorCode::kInvalidInput);
+  motion.keyframes[1].velocities.clear();
+  for (Motion::Keyframe& key : motion.keyframes) key.time = key.time > 0 ? 1 : 0;
+  motion.connect_as_targets();
+  EXPECT_EQ(check_path(motion, PathKind::kCatmullRom).error().code, ErrorCode::kUsage);
+}
+
+TEST(PolynomialMotion, normals_at_a_time_are_those_of_the_control_normals) {
+  const Moving moving(5);
+  const PolynomialSegment<3> segment = moving.hermite();
+  const auto controls = face_normals(segment);
+  std::vector<Vec3d> found(controls.size());
+  for (const double t : {0.0, 0.2, 0.9, 1.0}) {
+    polynomial_face_normals_at(segment, t, {0, found.size()}, std::span(found));
+    for (std::size_t f = 0; f < found.size(); ++f)
+      EXPECT_LT(length(found[f] - evaluate(controls[f], t)), 1e-12 * (1 + length(found[f])));
+  }
 }
 
 }  // namespace

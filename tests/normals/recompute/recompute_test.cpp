@@ -268,7 +268,7 @@ TEST(Recompute, every_layout_of_the_result_has_the_same_bits_and_nothing_else_is
 
 TEST(Recompute, results_past_the_caches_have_the_same_bits) {
   // Only large ones go there (kStreamFrom): ask the kernel.
-  const Motion motion = fixtures::needle_soup(203);
+  const Motion motion = fixtures::soup({.face_count = 203, .seed = 47, .size = 1e-20});
   const Segment segment = motion.segment(0);
   const MovingTriangles triangles{.corners = motion.topology.corners().data(),
                                   .face_count = 203,
@@ -308,6 +308,49 @@ TEST(Recompute, every_layout_of_the_positions_has_the_same_bits) {
   other.to = {wide.data(), wide.data() + 1, wide.data() + 2, n, 4};
   EXPECT_EQ(of_faces(packed, 0.3), of_faces(other, 0.3));
   EXPECT_EQ(of_groups(packed, groups, 0.3), of_groups(other, groups, 0.3));
+}
+
+MovingTriangles triangles_of(const Motion& motion) {
+  const Segment segment = motion.segment(0);
+  return {.corners = motion.topology.corners().data(),
+          .face_count = motion.topology.face_count(),
+          .from = segment.from.x,
+          .to = segment.to.x,
+          .vertex_count = segment.from.count};
+}
+
+TEST(Recompute, thin_triangles_are_left_to_nobody) {
+  // Heights of 0.05 to 1e-6 of the sides: all of them are beyond edges in float32.
+  for (const double needle : {0.05, 1e-3, 1e-6}) {
+    const Motion motion = fixtures::soup({.face_count = 203, .seed = 43, .needle = needle});
+    std::vector<float> result(3 * 203);
+    std::vector<std::uint32_t> doubtful(203);
+    for (const auto target : supported_targets()) {
+      const ScopedTarget scope(target);
+      EXPECT_LE(recompute_unit_normals(triangles_of(motion), {0, 203}, 0.3,
+                                       VectorView<float>::packed(result.data(), 203), false, doubtful.data()),
+                3U)
+          << needle << ", " << target_name(target);
+    }
+  }
+}
+
+TEST(Recompute, triangles_one_by_one_have_the_bits_of_those_in_lanes) {
+  for (const Family& family : kFamilies) {
+    const Motion motion = family.make();
+    const Segment packed = motion.segment(0);
+    const std::size_t n = packed.from.count;
+    std::vector<float> planes(3 * n);
+    const auto view = VectorView<float>::planes(planes.data(), planes.data() + n, planes.data() + 2 * n, n);
+    for (std::size_t v = 0; v < n; ++v) view.set(v, packed.from[v]);
+    Segment other = packed;
+    other.from = view;
+    for (const double t : kTimes) {
+      std::vector<float> one_by_one(3 * kFaces);
+      unit_normals_at(other, {0, kFaces}, t, VectorView<float>::packed(one_by_one.data(), kFaces));
+      EXPECT_EQ(vectors(VectorView<float>::packed(one_by_one.data(), kFaces)), of_faces(packed, t)) << family.name;
+    }
+  }
 }
 
 std::vector<std::size_t> as_it_is(std::size_t count) {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/blend_quality.h"
+#include "analysis/quality/blend_quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/io/builtin_morphs.h"
 #include "tests/support/blend_oracle.h"

@@ -30,7 +30,7 @@ void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, Exa
   const PolygonNormals polygon = polygon_control_normals(segment, segment.topology->face(face));
   set_normals(polygon.normals, lane, tile);
   // A long fan rounds more often than a triangle.
-  tile.magnitude[lane] = magnitude_above(std::fmax(
+  tile.magnitude[lane] = magnitude_above(maximum_number(
       polygon.magnitude, *std::max_element(polygon.errors.begin(), polygon.errors.end()) / (12 * kUnitRoundoff)));
 }
 

@@ -1,6 +1,10 @@
 #include "normals/curves/kernels/evaluate.h"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "normals/curves/kernels/prefetch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
@@ -189,19 +193,15 @@ struct Quadratic11 {
 
 // Where results go, kLanes vectors at a time.
 
-template <MemoryAccess kAccess>
+template <bool kPastCaches>
 struct Accesses {
-  static constexpr bool kStream = kAccess.stream;
-  // How many bytes ahead of itself a kernel asks for blocks; measured where a core has 1 MiB of its own and 32 MiB are
-  // shared.
-  static constexpr std::size_t kAhead = kAccess.working_set == WorkingSet::kSmall         ? 2048
-                                        : kAccess.working_set == WorkingSet::kSharedCache ? 16384
-                                                                                          : 8192;
+  static constexpr bool kStream = kPastCaches;
+  std::size_t ahead;  // bytes that a kernel asks for blocks ahead of itself
 };
 
-template <MemoryAccess kAccess>
-struct ToPacked : Accesses<kAccess> {
-  using Accesses<kAccess>::kStream;
+template <bool kPastCaches>
+struct ToPacked : Accesses<kPastCaches> {
+  using Accesses<kPastCaches>::kStream;
   float* xyz;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -213,9 +213,9 @@ struct ToPacked : Accesses<kAccess> {
   }
 };
 
-template <MemoryAccess kAccess>
-struct ToPlanes : Accesses<kAccess> {
-  using Accesses<kAccess>::kStream;
+template <bool kPastCaches>
+struct ToPlanes : Accesses<kPastCaches> {
+  using Accesses<kPastCaches>::kStream;
   float *x, *y, *z;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -226,9 +226,9 @@ struct ToPlanes : Accesses<kAccess> {
   }
 };
 
-template <MemoryAccess kAccess>
-struct ToOctahedral : Accesses<kAccess> {
-  using Accesses<kAccess>::kStream;
+template <bool kPastCaches>
+struct ToOctahedral : Accesses<kPastCaches> {
+  using Accesses<kPastCaches>::kStream;
   std::uint32_t* bits;
   // The octahedron needs no length of 1, and no square root.
   template <class Kind>
@@ -248,9 +248,9 @@ struct ToOctahedral : Accesses<kAccess> {
   }
 };
 
-template <MemoryAccess kAccess>
-struct ToRgb10A2 : Accesses<kAccess> {
-  using Accesses<kAccess>::kStream;
+template <bool kPastCaches>
+struct ToRgb10A2 : Accesses<kPastCaches> {
+  using Accesses<kPastCaches>::kStream;
   std::uint32_t* bits;
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
@@ -269,12 +269,12 @@ struct ToRgb10A2 : Accesses<kAccess> {
 template <class Kind, class To>
 HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
   const Kind kind(weights);
+  const std::size_t ahead = to.ahead;
   const std::byte* const blocks = span.blocks;  // stores might change what is behind a reference
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
     const std::byte* const block = blocks + b * kTile * Kind::kBytes;
-    for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine)
-      hwy::Prefetch(block + To::kAhead + line);
+    for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine) hwy::Prefetch(block + ahead + line);
     for (std::size_t lane = 0; lane < kTile; lane += kLanes)
       to.template Put<Kind>(kind.direction(block, lane), b * kTile + lane);
   }
@@ -302,20 +302,10 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
   }
 }
 
-template <template <MemoryAccess> class To, class... Pointer>
+template <template <bool> class To, class... Pointer>
 void ByAccess(const BlockSpan& span, const CurveWeights& w, MemoryAccess access, Pointer... to) {
-  constexpr MemoryAccess kShared{WorkingSet::kSharedCache, false}, kSharedStream{WorkingSet::kSharedCache, true};
-  constexpr MemoryAccess kMemory{WorkingSet::kMemory, false}, kMemoryStream{WorkingSet::kMemory, true};
-  switch (access.working_set) {
-    case WorkingSet::kSmall:  // nobody streams these
-      return ByKind(span, w, To<MemoryAccess{}>{{}, to...});
-    case WorkingSet::kSharedCache:
-      if (access.stream) return ByKind(span, w, To<kSharedStream>{{}, to...});
-      return ByKind(span, w, To<kShared>{{}, to...});
-    case WorkingSet::kMemory:
-      if (access.stream) return ByKind(span, w, To<kMemoryStream>{{}, to...});
-      return ByKind(span, w, To<kMemory>{{}, to...});
-  }
+  if (access.stream) return ByKind(span, w, To<true>{{access.ahead}, to...});
+  return ByKind(span, w, To<false>{{access.ahead}, to...});
 }
 
 // The elements of the last block, if it is filled in part: `part` says how many.
@@ -334,7 +324,7 @@ void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult r
   ByAccess<ToPacked>(span, w, result.access, result.xyz);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPacked<MemoryAccess{}>{{}, last});
+  ByKind(tail.block, w, ToPacked<false>{{kNearAhead}, last});
   std::copy_n(last, 3 * tail.part, result.xyz + 3 * tail.first);
 }
 
@@ -343,7 +333,7 @@ void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult r
   ByAccess<ToPlanes>(span, w, result.access, result.x, result.y, result.z);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPlanes<MemoryAccess{}>{{}, last, last + kTile, last + 2 * kTile});
+  ByKind(tail.block, w, ToPlanes<false>{{kNearAhead}, last, last + kTile, last + 2 * kTile});
   std::copy_n(last, tail.part, result.x + tail.first);
   std::copy_n(last + kTile, tail.part, result.y + tail.first);
   std::copy_n(last + 2 * kTile, tail.part, result.z + tail.first);
@@ -354,7 +344,7 @@ void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, Octahedral
   ByAccess<ToOctahedral>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToOctahedral<MemoryAccess{}>{{}, last});
+  ByKind(tail.block, w, ToOctahedral<false>{{kNearAhead}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
@@ -363,7 +353,7 @@ void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result
   ByAccess<ToRgb10A2>(span, w, result.access, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToRgb10A2<MemoryAccess{}>{{}, last});
+  ByKind(tail.block, w, ToRgb10A2<false>{{kNearAhead}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
@@ -378,23 +368,69 @@ HWY_EXPORT(EvaluatePlanes);
 HWY_EXPORT(EvaluateOctahedral);
 HWY_EXPORT(EvaluateRgb10A2);
 
+namespace {
+
+PackedResult behind(const PackedResult& result, std::size_t count) { return {result.xyz + 3 * count, result.access}; }
+PlanesResult behind(const PlanesResult& result, std::size_t count) {
+  return {result.x + count, result.y + count, result.z + count, result.access};
+}
+OctahedralResult behind(const OctahedralResult& result, std::size_t count) {
+  return {result.bits + count, result.access};
+}
+Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) { return {result.bits + count, result.access}; }
+
+// Calls evaluate(span, result) with the distance at which to ask for blocks: of all, or first of some parts, which try
+// the distances that there are.
+template <class Result, class Evaluate>
+void at_distance(BlockSpan span, Result result, const Evaluate& evaluate) {
+  using Clock = std::chrono::steady_clock;
+  if (result.access.working_set == WorkingSet::kSmall) return evaluate(span, result);
+  PrefetchRule& rule = result.access.working_set == WorkingSet::kMemory ? prefetch_in_memory()  //
+                                                                        : prefetch_in_shared_cache();
+  const std::size_t bytes = bytes_of(span.kind), part = PrefetchRule::kTrialBytes / bytes / kTile * kTile;
+  for (std::size_t i = 0; i < PrefetchRule::kDistances.size() && span.elements >= part; ++i) {
+    const std::optional<std::size_t> trial = rule.next();
+    if (!trial) break;
+    result.access.ahead = PrefetchRule::kDistances[*trial];
+    const Clock::time_point start = Clock::now();
+    evaluate({span.blocks, span.kind, part}, result);
+    const std::chrono::duration<float, std::nano> taken = Clock::now() - start;
+    rule.take(*trial, std::max(taken.count(), 1.0f) / static_cast<float>(part * bytes));
+    span = {span.blocks + part * bytes, span.kind, span.elements - part};
+    result = behind(result, part);
+  }
+  if (span.elements == 0) return;
+  result.access.ahead = rule.best();
+  evaluate(span, result);
+}
+
+}  // namespace
+
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept {
-  HWY_DYNAMIC_DISPATCH(EvaluatePacked)(span, weights, result);
+  at_distance(span, result, [&weights](const BlockSpan& some, const PackedResult& to) {
+    HWY_DYNAMIC_DISPATCH(EvaluatePacked)(some, weights, to);
+  });
 }
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept {
-  HWY_DYNAMIC_DISPATCH(EvaluatePlanes)(span, weights, result);
+  at_distance(span, result, [&weights](const BlockSpan& some, const PlanesResult& to) {
+    HWY_DYNAMIC_DISPATCH(EvaluatePlanes)(some, weights, to);
+  });
 }
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept {
-  HWY_DYNAMIC_DISPATCH(EvaluateOctahedral)(span, weights, result);
+  at_distance(span, result, [&weights](const BlockSpan& some, const OctahedralResult& to) {
+    HWY_DYNAMIC_DISPATCH(EvaluateOctahedral)(some, weights, to);
+  });
+}
+
+void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept {
+  at_distance(span, result, [&weights](const BlockSpan& some, const Rgb10A2Result& to) {
+    HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(some, weights, to);
+  });
 }
 
 void flush_stream() noexcept { hwy::FlushStream(); }
-
-void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept {
-  HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(span, weights, result);
-}
 
 }  // namespace chronormal::inline internal
 #endif  // HWY_ONCE

@@ -20,11 +20,15 @@ struct BlockSpan {
 /// Where all fits that a pass reads and writes; small: 8 MiB.
 enum class WorkingSet { kSmall, kSharedCache, kMemory };
 
+/// Bytes that a kernel asks for blocks ahead of itself where all is near; else PrefetchRule decides (prefetch.h).
+inline constexpr std::size_t kNearAhead = 2048;
+
 /// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
 /// results go past the caches, for which all their arrays must be aligned to 64 bytes.
 struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
+  std::size_t ahead = kNearAhead;
 };
 
 /// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.

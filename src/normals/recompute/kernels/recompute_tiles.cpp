@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/recompute/kernels/recompute_tiles.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "normals/recompute/kernels/results-inl.h"
 #include "simd/index_range-inl.h"
 #include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
@@ -83,9 +83,12 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 
 #endif
 
-// Edges from the first corner of the faces of a block, at both ends.
+// Edges from the first corner of the faces of a block, at both ends; and the corners that they were made of.
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
+  const std::uint32_t* corners;
+  std::uint32_t padded[3 * kBlock];  // where corners points to if there are fewer faces than 16
+  bool has_last;                     // whether one of the corners is the last vertex, behind which nothing may be read
 };
 
 HWY_INLINE void StorePlanes(const Lanes4& v, float (*planes)[kBlock], std::size_t lane) {
@@ -186,7 +189,8 @@ HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
 
 struct Normals {
   Lanes3 n;
-  Floats product;  // A B of recompute.h
+  Floats product;  // A B of recompute_tiles.h
+  Floats smaller;  // of A and B
   hn::Mask<FloatTag> trusted;
 };
 
@@ -204,7 +208,89 @@ HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, double t)
   const Floats product = hn::Mul(a, b), square = Dot(n, n);
   constexpr float kMaxProduct = 40;  // 2.31 sqrt(40) <= 14.7
   const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMaxProduct), square));
-  return {n, product, hn::And(precise, InRange(hn::Min(square, hn::Min(a, b)), square))};
+  const Floats smaller = hn::Min(a, b);
+  return {n, product, smaller, hn::And(precise, InRange(hn::Min(square, smaller), square))};
+}
+
+// The positions of corner c of kLanes faces of a block, at one end.
+template <std::size_t kStride>
+HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::size_t lane, std::size_t c) {
+  const std::uint32_t* const corners = block.corners + 3 * lane + c;
+#if HWY_TARGET != HWY_SCALAR
+  if (HWY_LIKELY(!block.has_last)) {
+    Floats rows[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      rows[k] = LoadBlocks([&](std::size_t b) HWY_ATTR { return points + kStride * corners[3 * (4 * b + k)]; });
+    }
+    return Transposed(rows).xyz();
+  }
+#endif
+  alignas(64) float planes[3][kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) planes[k][i] = points[kStride * corners[3 * i] + k];
+  }
+  return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
+}
+
+// What exact edges make of kLanes faces of a block: see "thin" in recompute_tiles.h.
+struct FineNormals {
+  Lanes3 n, unit;
+  Floats square;  // of n
+  hn::Mask<FloatTag> trusted;
+};
+
+struct CornersAtEnd {
+  Lanes3 a, b, c;
+};
+
+// n(t) of half of the lanes, and its multiple of length 1; scale is 1 / |n| in float32.
+template <int kHalf>
+HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to, double t) {
+  const Doubles s1 = hn::Set(kDoubles, 1 - t), t1 = hn::Set(kDoubles, t);
+  const Doubles3 a0 = ToDouble<kHalf>(from.a), a1 = ToDouble<kHalf>(to.a);
+  const Doubles3 e = Scale(s1, ToDouble<kHalf>(from.b) - a0) + Scale(t1, ToDouble<kHalf>(to.b) - a1);
+  const Doubles3 f = Scale(s1, ToDouble<kHalf>(from.c) - a0) + Scale(t1, ToDouble<kHalf>(to.c) - a1);
+  return Cross(e, f);
+}
+template <int kHalf>
+HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
+  // Two steps of Newton's method double the digits twice.
+  const Doubles half_square = hn::Mul(hn::Set(kDoubles, 0.5), Dot(n, n)), three_halves = hn::Set(kDoubles, 1.5);
+  Doubles y = ToDouble<kHalf>(scale);
+  for (int step = 0; step < 2; ++step) y = hn::Mul(y, hn::Sub(three_halves, hn::Mul(hn::Mul(half_square, y), y)));
+  return Scale(y, n);
+}
+
+template <std::size_t kStride>
+HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const EdgeBlock& block, std::size_t lane,
+                                       double t, Floats product, Floats smaller) {
+  const auto corners = [&](const float* points) HWY_ATTR {
+    return CornersAtEnd{PointsOf<kStride>(points, block, lane, 0), PointsOf<kStride>(points, block, lane, 1),
+                        PointsOf<kStride>(points, block, lane, 2)};
+  };
+  const CornersAtEnd from = corners(triangles.from), to = corners(triangles.to);
+  const auto joined = [](const Doubles3& lower, [[maybe_unused]] const Doubles3& upper) HWY_ATTR {
+#if HWY_TARGET == HWY_SCALAR
+    return Lanes3{hn::DemoteTo(kFloats, lower.x), hn::DemoteTo(kFloats, lower.y), hn::DemoteTo(kFloats, lower.z)};
+#else
+    return Lanes3{Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
+#endif
+  };
+  constexpr int kUpper = HWY_TARGET == HWY_SCALAR ? 0 : 1;
+  const Doubles3 lower = ExactNormal<0>(from, to, t), upper = ExactNormal<kUpper>(from, to, t);
+  FineNormals fine;
+  fine.n = joined(lower, upper);
+  fine.square = Dot(fine.n, fine.n);
+  const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMaxThinProduct), fine.square));
+  fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
+  const Floats one = hn::Set(kFloats, 1.0f);
+  const Floats scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(fine.trusted, fine.square, one)));
+  fine.unit = joined(ExactUnit<0>(lower, scale), ExactUnit<kUpper>(upper, scale));
+  return fine;
+}
+
+HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
 // Appends the places of lanes that are not to be trusted.
@@ -217,40 +303,6 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
     if (flags[i] == 0) doubtful[count++] = static_cast<std::uint32_t>(first + i);
   }
   return count;
-}
-
-enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
-
-// Writes kLanes vectors from the first-th on, but for those beyond the end.
-template <ResultLayout kLayout>
-HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
-  if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
-    if constexpr (kLayout == ResultLayout::kPlanes) {
-      hn::StoreU(v.x, kFloats, result.x + first);
-      hn::StoreU(v.y, kFloats, result.y + first);
-      hn::StoreU(v.z, kFloats, result.z + first);
-    } else {
-      StorePacked<kLayout == ResultLayout::kStreamed>(v, result.x + 3 * first);
-    }
-    return;
-  }
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
-  hn::Store(v.x, kFloats, x);
-  hn::Store(v.y, kFloats, y);
-  hn::Store(v.z, kFloats, z);
-  for (std::size_t i = 0; i < kLanes && first + i < result.count; ++i) result.set(first + i, {x[i], y[i], z[i]});
-}
-
-// Calls body with the layout of a result, as a constant.
-template <class Body>
-HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
-  if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
-  if (result.is_packed()) {
-    if (stream && reinterpret_cast<std::uintptr_t>(result.x) % 64 == 0)
-      return body(std::integral_constant<ResultLayout, ResultLayout::kStreamed>());
-    return body(std::integral_constant<ResultLayout, ResultLayout::kPacked>());
-  }
-  return body(std::integral_constant<ResultLayout, ResultLayout::kOther>());
 }
 
 // Whether one of the 48 corners of a block is this vertex.
@@ -278,21 +330,22 @@ template <std::size_t kStride>
 HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, std::size_t count, EdgeBlock& block) {
   const auto last = static_cast<std::uint32_t>(triangles.vertex_count - 1);
   const std::uint32_t* corners = triangles.corners + 3 * first;
-  std::uint32_t padded[3 * kBlock];
   if (HWY_UNLIKELY(count < kBlock)) {
-    for (std::size_t k = 0; k < 3 * kBlock; ++k) padded[k] = corners[3 * std::min(k / 3, count - 1) + k % 3];
-    corners = padded;
+    for (std::size_t k = 0; k < 3 * kBlock; ++k) block.padded[k] = corners[3 * std::min(k / 3, count - 1) + k % 3];
+    corners = block.padded;
   } else if (!triangles.is_coherent && first + kFacesAhead + kBlock <= triangles.face_count) {
     Fetch<kStride>(triangles, corners + 3 * kFacesAhead);
   }
-  if (HWY_UNLIKELY(kReadsBehind && kStride == 3 && Contains(corners, last))) {
+  block.corners = corners;
+  block.has_last = kReadsBehind && kStride == 3 && Contains(corners, last);
+  if (HWY_UNLIKELY(block.has_last)) {
     LoadEdgesExactly(triangles.from, triangles.to, kStride, corners, block);
   } else {
     LoadEdges<kStride>(triangles.from, triangles.to, corners, block);
   }
 }
 
-// Calls body(place, normals) for every kLanes faces of a range. The next block is loaded before one is worked on, so
+// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() makes them of exact edges. The next block is loaded before one is worked on, so
 // that the machine does both at once.
 template <std::size_t kStride, class Body>
 HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
@@ -303,7 +356,11 @@ HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange 
     if (i + kBlock < faces.count) {
       LoadBlock<kStride>(triangles, faces.first + i + kBlock, faces.count - i - kBlock, blocks[(i / kBlock + 1) % 2]);
     }
-    for (std::size_t k = 0; k < kBlock; k += kLanes) body(i + k, NormalsAt(block, k, t));
+    for (std::size_t k = 0; k < kBlock; k += kLanes) {
+      const Normals normals = NormalsAt(block, k, t);
+      body(i + k, normals,
+           [&]() HWY_ATTR { return FineNormalsAt<kStride>(triangles, block, k, t, normals.product, normals.smaller); });
+    }
   }
 }
 
@@ -319,9 +376,14 @@ std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange fa
                                  bool stream, std::uint32_t* doubtful) {
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
     std::size_t count = 0;
-    const auto body = [&](std::size_t place, const Normals& normals) HWY_ATTR {
-      Write<layout()>(Normalized(normals.n), place, result);
-      count = Append(normals.trusted, place, faces.count, count, doubtful);
+    const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
+      Lanes3 unit = Normalized(normals.n);
+      if (HWY_UNLIKELY(!hn::AllTrue(kFloats, normals.trusted))) {
+        const FineNormals fine = fine_normals();
+        unit = Select(normals.trusted, unit, fine.unit);
+        count = Append(hn::Or(normals.trusted, fine.trusted), place, faces.count, count, doubtful);
+      }
+      Write<layout()>(unit, place, result);
     };
     ForNormals(triangles, faces, t, body);
     return count;
@@ -331,10 +393,18 @@ std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange fa
 std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
                                  std::uint32_t* doubtful) {
   std::size_t count = 0;
-  const auto body = [&](std::size_t place, const Normals& normals) HWY_ATTR {
+  const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
     // 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
-    const Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
-    const Lanes3& n = normals.n;
+    Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
+    Lanes3 n = normals.n;
+    if (HWY_UNLIKELY(!hn::AllTrue(kFloats, normals.trusted))) {
+      const FineNormals fine = fine_normals();
+      n = Select(normals.trusted, n, fine.n);
+      const Floats of_product = hn::Mul(hn::Set(kFloats, kThinError), hn::Sqrt(normals.product));
+      const Floats fine_error = hn::Mul(hn::Set(kFloats, 1.01f), hn::Add(hn::Sqrt(fine.square), of_product));
+      error = hn::IfThenElse(normals.trusted, error, fine_error);
+      count = Append(hn::Or(normals.trusted, fine.trusted), place, faces.count, count, doubtful);
+    }
     if (HWY_LIKELY(place + kLanes <= faces.count)) {
       hn::StoreInterleaved4(n.x, n.y, n.z, error, kFloats, &result[place].x);
     } else {
@@ -343,7 +413,6 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
       for (std::size_t i = 0; place + i < faces.count; ++i)
         result[place + i] = {rows[4 * i], rows[4 * i + 1], rows[4 * i + 2], rows[4 * i + 3]};
     }
-    count = Append(normals.trusted, place, faces.count, count, doubtful);
   };
   ForNormals(triangles, faces, t, body);
   return count;

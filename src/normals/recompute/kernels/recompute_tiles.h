@@ -8,7 +8,13 @@
 ///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
 ///
 /// so n is within 1e-6 rad where 2.31 sqrt(A B) <= 14.7 |n|: triangles with more than 9 degrees at their first corner
-/// that do not shrink much on their way. The others are *doubtful*, and the caller's: it does them in double.
+/// that do not shrink much on their way. *Thin* ones are made anew of exact edges, in double throughout:
+///
+///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
+///     unit        in double, and rounded to float32 at the end    2^-24
+///
+/// which is enough where that error is at most 2^-23 |n|: where A B <= 2^50 |n|^2. The others are *doubtful*, and the
+/// caller's: it looks closer, one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 
@@ -36,6 +42,10 @@ struct MovingTriangles {
 struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
+
+/// Up to this times |n|^2, A B leaves double precise enough. Of what remains kThinError sqrt(A B) is more, in units of
+/// 2^-24.
+inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
 /// Where the normals of faces are: that of face f is normals[f & mask].
 struct NormalWindow {

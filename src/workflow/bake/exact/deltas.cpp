@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/end_delta.h"
+#include "analysis/fits/end_delta.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "analysis/end_delta.h"
+#include "analysis/fits/end_delta.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
 

@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 /// Deltas of elements for which |n(0)| is 1: where two targets move an element and are active at once somewhere in the
 /// file, those of all active targets that move it, fitted together by least squares to the weights of the file
 /// (docs/theory.md, eq. 44). Over the poses that were fitted to no element is off by more than with the best delta of
-/// each target alone (analysis/end_delta.h), neither at worst nor in the square mean; where that cannot be had it keeps
+/// each target alone (analysis/fits/end_delta.h), neither at worst nor in the square mean; where that cannot be had it keeps
 /// those, as it does where more than 64 targets move it.
 class FittedLines {
  public:

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/kernels/products.h"
-#include "analysis/leading_vectors.h"
+#include "analysis/fits/kernels/products.h"
+#include "analysis/fits/leading_vectors.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/kernels/products.h"
+#include "analysis/fits/kernels/products.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
 #include "core/portable_math.h"

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "analysis/kernels/products.h"
+#include "analysis/fits/kernels/products.h"
 #include "chronormal/core/parallel.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "analysis/line_bound.h"
+#include "analysis/certificates/line_bound.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {

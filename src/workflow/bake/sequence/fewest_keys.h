@@ -2,7 +2,7 @@
 ///
 /// Every key has the exact unit normals of its instant, and between two keys a host shows normalize((1-t) u_0 + t u_1). From the
 /// first key on, the next one is put as late as possible: as long as the line is within the tolerance of n(t) at every instant,
-/// by a certificate and not by samples (analysis/line_bound.h), and no vertex leaves the straight line between the two keys. A key
+/// by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex leaves the straight line between the two keys. A key
 /// may lie between two keyframes, where the motion is straight and the normal is known; and keyframes that say nothing new, as
 /// a motion has them that was sampled by another program, are left out. As long as a part of what is right is right as well,
 /// no choice has fewer keys.

@@ -6,6 +6,7 @@
 //     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
+//     curved_normals      the same of curved paths, whose weights are cubics                  curved_sequence
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "workflow/bake/sequence/curved_sequence.h"
 #include "workflow/bake/sequence/fewest_keys.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
 #include "workflow/bake/sequence/sequence_deltas.h"
@@ -227,6 +229,36 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   return times;
 }
 
+// Adds the targets of curved paths to the file, and puts it together. Notes in the report what came of it.
+Result<std::string> write_curved(const Motion& motion, const SequenceNormals& normals, const CurvedNormals& curved,
+                                 PathKind path, const std::vector<float>& times, SequenceFile& file,
+                                 SequenceBake& report) {
+  GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
+  for (std::size_t k = 1; k < normals.keys(); ++k) {
+    file.add_key(k, normals.deltas(k), curved.keys[k]);
+    if (Status status = file.check_size(); !status) return status.error();
+  }
+  const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, path);
+  for (const std::size_t k : with_velocities) {
+    file.add_velocities(k, motion.keyframes[k].velocities);
+    if (Status status = file.check_size(); !status) return status.error();
+  }
+  for (const CurveBend& bend : curved.bends) {
+    mark.extras.emplace_back().target = normals.keys() - 1 + with_velocities.size() + mark.extras.size() - 1;
+    file.add_bend(bend.segment, bend.deltas);
+    if (Status status = file.check_size(); !status) return status.error();
+  }
+  const WeightTrack track = curved_track(times, with_velocities, curved.bends);
+  if (Status status = file.check_size(sizeof(float) * (track.times.size() + track.values.size())); !status)
+    return status.error();
+  report.largest_error = kDegreesPerRadian * curved.largest_error;
+  report.targets = normals.keys() - 1 + with_velocities.size();
+  report.extra_targets = curved.bends.size();
+  report.is_curved = true;
+  report.bend = bend_of(motion);
+  return file.finish(track, "CUBICSPLINE", mark, std::vector<int>(report.targets + report.extra_targets, 0));
+}
+
 std::string titles_of_others(std::span<const Host> hosts) {
   std::string titles;
   for (const Host& host : hosts)
@@ -234,8 +266,8 @@ std::string titles_of_others(std::span<const Host> hosts) {
   return titles;
 }
 
-void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, const SequenceTargets& targets,
-                   std::size_t without_room, std::vector<std::string>& warnings) {
+void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size_t targets, std::size_t without_room,
+                   std::vector<std::string>& warnings) {
   if (const std::string titles = titles_of_others(hosts); encoding != BakeEncoding::kHarmless && !titles.empty())
     warnings.push_back(
         "by --encode " + std::string(name_of(encoding)) +
@@ -245,15 +277,16 @@ void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, const Seq
     warnings.push_back(std::to_string(without_room) +
                        " normals turn so far from those of keyframe 0 that compressors cut their deltas");
   for (const Host& host : hosts)
-    if (host.most_targets > 0 && targets.count() > host.most_targets)
-      warnings.push_back(std::to_string(targets.count()) + " targets are more than " + std::string(host.title) +
+    if (host.most_targets > 0 && targets > host.most_targets)
+      warnings.push_back(std::to_string(targets) + " targets are more than " + std::string(host.title) +
                          " takes: " + std::string(host.beyond));
 }
 
 }  // namespace
 
 Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
-  const BakeEncoding encoding = options.encoding.value_or(BakeEncoding::kExact);
+  const bool is_curved = options.path != PathKind::kLinear;
+  const BakeEncoding encoding = options.encoding.value_or(is_curved ? BakeEncoding::kEndpoint : BakeEncoding::kExact);
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
   if (encoding == BakeEncoding::kKeys) {
@@ -262,6 +295,12 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     if (!(tolerance >= kLeastKeyTolerance))
       return Error{ErrorCode::kUsage, "", "the tolerance of keys must be 0.001 degrees or more"};
   }
+  if (is_curved && encoding != BakeEncoding::kEndpoint)
+    return Error{ErrorCode::kUsage, "",
+                 "on curved paths n(t) has degree 6, which weights cannot carry: endpoint fits it"};
+  if (is_curved && options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
+    return Error{ErrorCode::kUsage, "", "on curved paths normals are weighted by area, and by nothing else"};
+  if (const Status status = check_path(motion, options.path); !status) return status.error();
   const Result<NormalGroups> groups = groups_of(motion, options);
   if (!groups) return groups.error();
   const Result<SequenceNormals> made =
@@ -272,9 +311,15 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 
+  CurvedNormals curved;
+  if (is_curved)
+    curved = curved_normals(motion, groups.value(), options.path, tolerance / kDegreesPerRadian,
+                            [&](std::size_t done) { step(done, motion.segments.size()); });
   HarmlessElements made_elements;
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
-  if (are_units)
+  if (is_curved)
+    made_elements.elements = curved.elements;
+  else if (are_units)
     made_elements = harmless_elements(normals);
   else
     made_elements.elements = sequence_elements(normals);
@@ -291,6 +336,16 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
 
   SequenceFile file(motion, groups.value(), elements, options);
+  report.keyframes = normals.keys();
+  report.vertices = file.vertex_count();
+  if (is_curved) {
+    Result<std::string> bytes = write_curved(motion, normals, curved, options.path, times.value(), file, report);
+    if (!bytes) return bytes.error();
+    warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, report.warnings);
+    glb = std::move(bytes).value();
+    report.bytes = glb.size();
+    return report;
+  }
   if (encoding == BakeEncoding::kExact) {
     if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
   } else if (encoding == BakeEncoding::kKeys) {
@@ -304,12 +359,10 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(targets.encoding, options.hosts, targets, made_elements.without_room, report.warnings);
+  warn_of_hosts(targets.encoding, options.hosts, targets.count(), made_elements.without_room, report.warnings);
   Result<std::string> bytes = file.finish(targets, times.value());
   if (!bytes) return bytes.error();
   glb = std::move(bytes).value();
-  report.keyframes = normals.keys();
-  report.vertices = file.vertex_count();
   report.targets = targets.of_keys();
   report.extra_targets = targets.bent_segments.size();
   report.bytes = glb.size();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/end_delta.h"
+#include "analysis/fits/end_delta.h"
 #include "core/blocks.h"
 #include "core/float32.h"
 

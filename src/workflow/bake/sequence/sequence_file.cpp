@@ -49,12 +49,6 @@ std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   return normals;
 }
 
-// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
-// out-tangents.
-struct WeightTrack {
-  std::vector<float> times, values;
-};
-
 // Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
 WeightTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
   const std::size_t keys = targets.keys, n = targets.count();
@@ -161,6 +155,10 @@ SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std
   };
 }
 
+std::size_t SequenceFile::zero_normals() {
+  return builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {false, dense_zeros_});
+}
+
 std::size_t SequenceFile::zero_positions() {
   if (!zero_positions_)
     zero_positions_ = builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {true, dense_zeros_});
@@ -178,10 +176,17 @@ void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals)
   add_target("bend " + std::to_string(segment), zero_positions(), normals);
 }
 
+void SequenceFile::add_velocities(std::size_t key, std::span<const float> velocities) {
+  add_target("velocities " + std::to_string(key),
+             builder_.add_vectors(vertices_.positions(velocities), {true, dense_zeros_}), {});
+}
+
 void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {
   names_.push_back(std::move(name));
-  targets_.push_back({{"POSITION", positions},
-                      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
+  targets_.push_back(
+      {{"POSITION", positions},
+       {"NORMAL", normals.empty() ? zero_normals()
+                                  : builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
 }
 
 Status SequenceFile::check_size(std::uint64_t more) const {
@@ -196,24 +201,29 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
   const std::uint64_t keys = targets.keys + std::uint64_t{targets.bent_segments.size()} * (exact ? 0 : kBendPieces - 1),
                       weights = keys * targets.count() * (exact ? 3 : 1);
   if (Status status = check_size(sizeof(float) * (keys + weights)); !status) return status.error();
-  const WeightTrack track = exact ? spline_track(targets, times) : linear_track(targets, times);
-  const std::size_t input = builder_.add_scalars(track.times, {true, true}),
-                    output = builder_.add_scalars(track.values, {false, true});
   std::vector<int> rest(targets_.size(), 0);
   if (targets.has_key_0) rest[0] = 1;
+  return exact ? finish(spline_track(targets, times), "CUBICSPLINE", mark_of(targets), rest)
+               : finish(linear_track(targets, times), "LINEAR", mark_of(targets), rest);
+}
+
+Result<std::string> SequenceFile::finish(const WeightTrack& track, std::string_view interpolation,
+                                         const GltfBakeMark& bake_mark, const std::vector<int>& rest) {
+  const std::size_t input = builder_.add_scalars(track.times, {true, true}),
+                    output = builder_.add_scalars(track.values, {false, true});
   Json& document = builder_.document();
   document["scene"] = 0;
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  const Json mark = gltf::bake_mark_json(mark_of(targets));
+  const Json mark = gltf::bake_mark_json(bake_mark);
   Json node = {{"mesh", 0}};
-  if (!targets.bent_segments.empty()) node["extras"] = {{"chronormal", mark}};
+  if (!bake_mark.extras.empty()) node["extras"] = {{"chronormal", mark}};
   document["nodes"] = Json::array({std::move(node)});
   const Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", targets_}};
   const Json mesh = {{"primitives", Json::array({primitive})},
                      {"weights", rest},
                      {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
   document["meshes"] = Json::array({mesh});
-  const Json sampler = {{"input", input}, {"interpolation", exact ? "CUBICSPLINE" : "LINEAR"}, {"output", output}};
+  const Json sampler = {{"input", input}, {"interpolation", interpolation}, {"output", output}};
   const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
   document["animations"] =
       Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});

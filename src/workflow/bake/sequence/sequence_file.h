@@ -8,8 +8,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "chronormal/io/bake_mark.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
@@ -47,6 +49,12 @@ struct SequenceVertices {
   [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
 };
 
+/// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
+/// out-tangents.
+struct WeightTrack {
+  std::vector<float> times, values;
+};
+
 /// The file while it grows, target by target.
 class SequenceFile {
  public:
@@ -60,19 +68,25 @@ class SequenceFile {
   /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
   /// key 0 itself.
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for the bend of a segment.
+  /// Adds a target for the bend of a segment, the first or a further one.
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
+  /// Adds a target that moves vertices, (V, 3), and turns no normal.
+  void add_velocities(std::size_t key, std::span<const float> velocities);
 
   /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more.
   [[nodiscard]] Status check_size(std::uint64_t more = 0) const;
   /// Adds the animation and puts the file together. targets must say what was added. Errors: kInvalidInput where it
   /// would be too large.
   [[nodiscard]] Result<std::string> finish(const SequenceTargets& targets, const std::vector<float>& times);
+  /// The same with a track and a mark of the caller's; rest are the weights of the mesh that no animation plays.
+  [[nodiscard]] Result<std::string> finish(const WeightTrack& track, std::string_view interpolation,
+                                           const GltfBakeMark& mark, const std::vector<int>& rest);
 
  private:
   void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);
   // The accessor that targets share which move nothing.
   [[nodiscard]] std::size_t zero_positions();
+  [[nodiscard]] std::size_t zero_normals();
 
   SequenceVertices vertices_;
   bool dense_zeros_;

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "analysis/kernels/products.h"
-#include "analysis/leading_vectors.h"
+#include "analysis/fits/kernels/products.h"
+#include "analysis/fits/leading_vectors.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
 #include "workflow/bake/forms/unit_targets.h"

@@ -1,0 +1,65 @@
+/// Unit normals of vertices on cubics, of degree 6 in time, at the speed of memory: NormalCurves for curved paths.
+///
+/// The seven control normals of an element are kept in float32, 84 bytes, divided by a power of two, and evaluated by a
+/// kernel: a Bernstein sum and a root. Where float32 cannot carry an element to kPathAngle at every t, because n(t) gets
+/// shorter than 1 / 2.6 of sum w_k |c_k|, the element is flagged and evaluated in double, with the degenerate cases of
+/// unit_normal_at() in paths.h. That it does not is proven, and not sampled: all seven control normals lie within 67
+/// degrees of one direction, or 2.6^2 |n|^2 - (sum w_k |c_k|)^2 has Bernstein coefficients, after some subdivisions, of
+/// which none is negative.
+///
+/// Units      t: fraction of the segment, in [0, 1]; what lies outside is moved to the nearer end
+/// Errors     none; a t of NaN gives (0, 0, 0)
+/// Threads    const members may run at once; the same bits on any number of threads and on every instruction set
+#ifndef CHRONORMAL_NORMALS_PATH_CURVES_H_
+#define CHRONORMAL_NORMALS_PATH_CURVES_H_
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/paths.h"
+
+namespace chronormal {
+
+/// No normal of PathCurves turns from that of its control normals by more, in radians.
+inline constexpr double kPathAngle = 1e-6;
+
+/// The control normals of all faces, or of all groups of their corners, on all cores. 168 bytes for each of either.
+[[nodiscard]] std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment);
+[[nodiscard]] std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment,
+                                                                 const NormalGroups& groups);
+
+class PathCurves {
+ public:
+  /// Curves of no elements.
+  PathCurves() noexcept;
+  /// Packs control normals, each on its own.
+  explicit PathCurves(std::span<const PolynomialNormals<3>> normals, Threads threads = Threads::kOne);
+  PathCurves(PathCurves&& other) noexcept;
+  PathCurves& operator=(PathCurves&& other) noexcept;
+  ~PathCurves();
+
+  /// Writes the unit normals of all elements at t. Returns how many have no direction, and got (0, 0, 0).
+  /// result must have as many vectors as there are elements
+  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne) const;
+
+  [[nodiscard]] std::size_t size() const noexcept;
+  /// How many elements are evaluated in double.
+  [[nodiscard]] std::size_t flagged_count() const noexcept;
+  /// Memory that an evaluation reads, in bytes.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Data;
+  [[nodiscard]] std::size_t evaluate(IndexRange range, double t, VectorView<float> result) const noexcept;
+
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_NORMALS_PATH_CURVES_H_

@@ -1,0 +1,230 @@
+#include "chronormal/analysis/certify.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "analysis/certificates/angle_bound.h"
+#include "analysis/certificates/line_bound.h"
+#include "analysis/certificates/scheme_curves.h"
+#include "chronormal/normals/normal_curves.h"
+#include "core/blocks.h"
+#include "schemes/fitted_curves.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kMostPieces = 256;
+// A piece is not cut further below this; whatever is in there is as good as a single instant.
+constexpr double kNarrowest = 0x1p-40;
+constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_control_normals()
+constexpr std::size_t kBlockSize = 1024;
+
+// n(t) over [0, 1] at a size of about 1, and what it may be off by.
+struct Normal {
+  Bernstein<Vec3d, 2> n;
+  Bernstein<double, 2> error;
+
+  [[nodiscard]] NormalPiece over(double a, double b) const { return {restrict_to(n, a, b), restrict_to(error, a, b)}; }
+};
+
+// A quadratic that is zero at an end for sure has the direction of one of lower degree, which is not: n(t) / t, and
+// likewise at t = 1. Nothing where n is zero throughout.
+std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
+  const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
+  if (largest == 0) return std::nullopt;
+  const double scale = 1 / largest;
+  const Vec3d n0 = scale * c.n0, m = scale * c.m, n1 = scale * c.n1;
+  // This is for three components, and covers what cutting in double adds.
+  const auto error_of = [&](std::size_t k, const Vec3d& v) {
+    return 1.7320509 * scale * errors[k] + 0x1p-46 * max_abs(v);
+  };
+  const Bernstein<double, 2> error = {error_of(0, n0), error_of(1, m), error_of(2, n1)};
+  const auto is_zero = [&](std::size_t k, const Vec3d& v) { return v == Vec3d{} && errors[k] == 0; };
+  const bool no_start = is_zero(0, n0), no_middle = is_zero(1, m), no_end = is_zero(2, n1);
+  const auto constant = [&](const Vec3d& v, double e) { return Normal{{v, v, v}, {e, e, e}}; };
+  const auto line = [&](const Vec3d& a, double ea, const Vec3d& b, double eb) {
+    return Normal{{a, 0.5 * (a + b), b}, {ea, 0.5 * (ea + eb), eb}};
+  };
+  if (no_start && no_end) return constant(m, error[1]);
+  if (no_start && no_middle) return constant(n1, error[2]);
+  if (no_end && no_middle) return constant(n0, error[0]);
+  if (no_start) return line(2.0 * m, 2 * error[1], n1, error[2]);
+  if (no_end) return line(n0, error[0], 2.0 * m, 2 * error[1]);
+  return Normal{{n0, m, n1}, error};
+}
+
+// The piece of which the bound is the largest comes first.
+struct Piece {
+  double a, b;
+  double upper;
+  double uncertainty;  // in its middle
+
+  friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
+};
+
+template <class Curve>
+ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough,
+                      bool only_whether = false) {
+  std::array<Piece, kMostPieces> pieces;
+  std::size_t count = 0;
+  ErrorBounds result;
+  const auto add = [&](double a, double b) {
+    const CurvePiece shown = curve.over(a, b);
+    const NormalPiece exact = normal.over(a, b);
+    const MiddleAngle middle = middle_angle(shown, exact);
+    if (const double lower = middle.angle - middle.uncertainty; lower > result.lower) {
+      result.lower = lower;
+      result.at = a + (b - a) / 2;
+    }
+    pieces[count++] = {a, b, largest_angle(shown, exact), middle.uncertainty};
+    std::push_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  add(0, 1);
+  const std::size_t most = std::min(options.most_pieces, kMostPieces);
+  for (;;) {
+    const Piece worst = pieces[0];
+    result.upper = worst.upper;
+    result.from = worst.a;
+    result.to = worst.b;
+    const double allowed = options.relative_gap * worst.upper + options.gap + 2 * worst.uncertainty;
+    const bool is_close = worst.upper < std::numbers::pi && worst.upper - result.lower <= allowed;
+    if (only_whether && result.lower > enough) return result;
+    if (is_close || worst.upper <= enough || count >= most || worst.b - worst.a <= kNarrowest) return result;
+    std::pop_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count--));
+    const double middle = worst.a + (worst.b - worst.a) / 2;
+    add(worst.a, middle);
+    add(middle, worst.b);
+  }
+}
+
+// An arc that is run in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x), which is again a
+// quadratic but for a factor: r^2 (1-x)^2 n0 + 2 r (1-r) x (1-x) m + (1-r)^2 x^2 n1.
+struct Warp {
+  double share;
+
+  [[nodiscard]] Normal normal(Normal in_time) const {
+    const double weights[] = {share * share, share * (1 - share), (1 - share) * (1 - share)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      in_time.n[k] = weights[k] * in_time.n[k];
+      in_time.error[k] *= weights[k];
+    }
+    return in_time;
+  }
+  [[nodiscard]] double time(double x) const { return (1 - share) * x / (share * (1 - x) + (1 - share) * x); }
+};
+
+constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
+
+// All elements of a block share these.
+class Certifier {
+ public:
+  explicit Certifier(const Scheme& scheme) : fitted_(scheme.fitted_curves()) {
+    if (fitted_ == nullptr) {
+      reads_positions_ = !scheme.uses_control_normals();
+      return;
+    }
+    const std::size_t vectors = fitted_->coefficients.plane_count / 3;
+    if (is_sum() && vectors - 1 <= LagrangeBasis::kMostDegree) basis_.emplace(vectors - 1);
+  }
+
+  [[nodiscard]] ErrorBounds bounds(std::size_t i, const ControlNormals& normals, const ControlErrors& errors,
+                                   const CertifyOptions& options, double enough) const {
+    if (reads_positions_) return {0, kExactTolerance, 0, 0, 1};
+    const std::optional<Normal> normal = without_zero_ends(normals, errors);
+    if (!normal) return {0, 0, 0, 0, 1};
+    if (fitted_ == nullptr) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options, enough);
+
+    const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
+    switch (fitted_->formula) {
+      case Formula::kRational:
+        return bounds_of(CubicCurve(c), *normal, options, enough);
+      case Formula::kGreatArc:
+      case Formula::kCircleArc:
+        return bounds_of(ArcCurve(fitted_->formula, c), *normal, options, enough);
+      case Formula::kTimedCircleArc:
+        return of_warped_arc(c, *normal, options, enough);
+      case Formula::kDeCasteljau:
+        return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), *normal, options, enough);
+      default:
+        if (!basis_) return kUnknown;
+        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), *normal, options, enough);
+        return bounds_of(LagrangeCurve(*basis_, c), *normal, options, enough);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_sum() const {
+    const Formula f = fitted_->formula;
+    return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
+  }
+
+  static ErrorBounds of_warped_arc(ElementCoefficients c, const Normal& normal, const CertifyOptions& options,
+                                   double enough) {
+    const Warp warp{static_cast<double>(c[10])};
+    if (!(warp.share > 0 && warp.share < 1)) return kUnknown;
+    ErrorBounds bounds = bounds_of(ArcCurve(Formula::kTimedCircleArc, c), warp.normal(normal), options, enough);
+    for (double* t : {&bounds.at, &bounds.from, &bounds.to}) *t = warp.time(*t);
+    return bounds;
+  }
+
+  const FittedCurves* fitted_;
+  bool reads_positions_ = false;
+  std::optional<LagrangeBasis> basis_;
+};
+
+}  // namespace
+
+void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result,
+             const CertifyOptions& options, std::span<const ControlErrors> errors) {
+  assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
+  assert(errors.empty() || errors.size() == result.size());
+  const Certifier certifier(scheme);
+  double enough = options.enough;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const ControlNormals& c = block.normals[i];
+    const ControlErrors promised = {kPromisedShare * max_abs(c.n0), kPromisedShare * max_abs(c.m),
+                                    kPromisedShare * max_abs(c.n1)};
+    result[i] = certifier.bounds(i, c, errors.empty() ? promised : errors[i], options, enough);
+    if (options.only_worst) enough = std::max(enough, result[i].lower);
+  }
+}
+
+inline namespace internal {
+
+double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
+                  double enough) noexcept {
+  const ControlErrors errors = {kPromisedShare * max_abs(normals.n0), kPromisedShare * max_abs(normals.m),
+                                kPromisedShare * max_abs(normals.n1)};
+  const std::optional<Normal> normal = without_zero_ends(normals, errors);
+  if (!normal) return 0;
+  const NormalPiece piece = normal->over(a, b);
+  return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), {piece.n, piece.error}, {}, enough, true).upper;
+}
+
+}  // namespace internal
+
+Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
+                                         Threads threads) {
+  if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
+  std::vector<ErrorBounds> result(segment.topology->face_count());
+  const auto block = [&](IndexRange faces) {
+    std::vector<ControlNormals> normals(faces.count);
+    face_control_normals(segment, faces, normals);
+    const std::unique_ptr<Scheme> scheme = make_scheme(name).value();
+    scheme->prepare({&segment, faces, normals});
+    certify(*scheme, {&segment, faces, normals}, std::span(result).subspan(faces.first, faces.count), options);
+  };
+  if (threads == Threads::kAll) {
+    parallel_blocks(result.size(), kBlockSize, block);
+  } else {
+    for (std::size_t i = 0; i < block_count(result.size(), kBlockSize); ++i)
+      block({i * kBlockSize, std::min(kBlockSize, result.size() - i * kBlockSize)});
+  }
+  return result;
+}
+
+}  // namespace chronormal

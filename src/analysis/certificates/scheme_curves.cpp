@@ -1,0 +1,273 @@
+#include "analysis/certificates/scheme_curves.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "core/portable_math.h"
+#include "core/rounding.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr double kE = kFloatUnitRoundoff;
+constexpr double kScaling = 2 * kE;  // radians
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What a weighted sum of this many vectors adds, for a sum of |weights| |vectors| of 1: the rounding of a weight, a
+// product and the additions, and one more for weights that are rounded in double before.
+constexpr double rounding_of_sum(std::size_t count) { return (static_cast<double>(count) + 2) * kE; }
+
+double length_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+Bernstein<Vec3d, 3> elevated(const Bernstein<Vec3d, 2>& p) {
+  return {p[0], (1.0 / 3) * (p[0] + 2.0 * p[1]), (1.0 / 3) * (2.0 * p[1] + p[2]), p[2]};
+}
+
+// The halves of de Casteljau's triangle over as many coefficients as there are, in place: p becomes the part after t, or
+// the one before it.
+template <class T>
+void keep_after(std::span<T> p, double t) {
+  for (std::size_t level = 1; level < p.size(); ++level) {
+    for (std::size_t k = 0; k + level < p.size(); ++k) p[k] = (1 - t) * p[k] + t * p[k + 1];
+  }
+}
+template <class T>
+void keep_before(std::span<T> p, double t) {
+  for (std::size_t level = 1; level < p.size(); ++level) {
+    for (std::size_t k = p.size() - 1; k >= level; --k) p[k] = (1 - t) * p[k - 1] + t * p[k];
+  }
+}
+template <class T>
+void restrict_in_place(std::span<T> p, double a, double b) {
+  keep_before(p, b);
+  if (a > 0) keep_after(p, a / b);
+}
+
+CurvePiece cubic_piece(const Bernstein<Vec3d, 3>& p, double radius, double middle_radius) {
+  return {p, radius, 0.125 * (p[0] + p[3]) + 0.375 * (p[1] + p[2]), middle_radius, kScaling};
+}
+
+}  // namespace
+
+LagrangeBasis::LagrangeBasis(std::size_t degree) : degree_(degree), of_nodes_(degree + 1) {
+  assert(degree >= 1 && degree <= kMostDegree);
+  const double nodes = static_cast<double>(degree);
+  double largest_sum = 0;  // of |coefficients| as they would be without any cancellation
+  std::array<double, kMostDegree + 1> sums{};
+  for (std::size_t k = 0; k <= degree; ++k) {
+    // The product of (degree x - j) / (k - j), one factor after the other, each of degree 1.
+    Coefficients p{1}, sizes{1};
+    std::size_t so_far = 0;
+    for (std::size_t j = 0; j <= degree; ++j) {
+      if (j == k) continue;
+      const double scale = 1 / (static_cast<double>(k) - static_cast<double>(j));
+      const double at_start = -static_cast<double>(j) * scale, at_end = (nodes - static_cast<double>(j)) * scale;
+      ++so_far;
+      Coefficients next{}, next_sizes{};
+      for (std::size_t i = 0; i <= so_far; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(so_far);
+        if (i < so_far) {
+          next[i] += (1 - share) * at_start * p[i];
+          next_sizes[i] += (1 - share) * std::fabs(at_start) * sizes[i];
+        }
+        if (i > 0) {
+          next[i] += share * at_end * p[i - 1];
+          next_sizes[i] += share * std::fabs(at_end) * sizes[i - 1];
+        }
+      }
+      p = next;
+      sizes = next_sizes;
+    }
+    of_nodes_[k] = p;
+    for (std::size_t i = 0; i <= degree; ++i) sums[i] += sizes[i];
+  }
+  largest_sum = *std::max_element(sums.begin(), sums.end());
+  conversion_error_ = 32 * nodes * kUnitRoundoff * largest_sum;
+  if (degree == 1) return;
+
+  // The weights are symmetric, so half of [0, 1] tells; on a piece, a polynomial is below its largest coefficient.
+  const std::size_t pieces = 4 * degree;
+  for (std::size_t i = 0; 2 * i < pieces; ++i) {
+    double sum = 0;
+    for (const Coefficients& of_node : of_nodes_) {
+      Coefficients p = of_node;
+      const std::span<double> used(p.data(), degree + 1);
+      restrict_in_place(used, static_cast<double>(i) / static_cast<double>(pieces),
+                        static_cast<double>(i + 1) / static_cast<double>(pieces));
+      double largest = 0;
+      for (const double b : used) largest = std::max(largest, std::fabs(b));
+      sum += largest;
+    }
+    most_weight_ = std::max(most_weight_, sum + conversion_error_);
+  }
+}
+
+CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept : angle_(kScaling) {
+  const std::size_t degree = basis.degree();
+  assert(degree <= 3);
+  const double rounding = rounding_of_sum(degree + 1);
+  if (degree == 1) {
+    const Vec3d from = to_double(c.vector(0)), to = to_double(c.vector(1));
+    *this = CubicCurve(from, rounding * length_of(from), to, rounding * length_of(to));
+    return;
+  }
+  std::array<Vec3d, 4> p{};
+  double largest = 0;
+  for (std::size_t k = 0; k <= degree; ++k) {
+    const Vec3d v = to_double(c.vector(k));
+    largest = std::max(largest, length_of(v));
+    for (std::size_t i = 0; i <= degree; ++i) p[i] = p[i] + basis.of_node(k)[i] * v;
+  }
+  p_ = degree == 3 ? p : elevated({p[0], p[1], p[2]});
+  radius_.fill((rounding * basis.most_weight() + basis.conversion_error()) * largest);
+}
+
+CubicCurve::CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept
+    : p_{from, (1.0 / 3) * (2.0 * from + to), (1.0 / 3) * (from + 2.0 * to), to},
+      radius_{from_radius, 0.5 * (from_radius + to_radius), to_radius},
+      angle_(kScaling) {}
+
+CubicCurve::CubicCurve(ElementCoefficients c) noexcept : angle_(kScaling) {
+  const Vec3d n0 = to_double(c.vector(0)), m = to_double(c.vector(1)), n1 = to_double(c.vector(2));
+  p_ = elevated({n0, m, n1});
+  const double rounding = rounding_of_sum(3);
+  radius_ = {rounding * length_of(n0), rounding * length_of(m), rounding * length_of(n1)};
+}
+
+CubicCurve::CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept : p_(elevated(n)), angle_(angle) {}
+
+CurvePiece CubicCurve::over(double a, double b) const noexcept {
+  const Bernstein<double, 2> radius = restrict_to(radius_, a, b);
+  CurvePiece piece = cubic_piece(restrict_to(p_, a, b), *std::max_element(radius.begin(), radius.end()),
+                                 0.25 * (radius[0] + radius[2]) + 0.5 * radius[1]);
+  piece.angle = angle_;
+  return piece;
+}
+
+LagrangeCurve::LagrangeCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept : degree_(basis.degree()) {
+  double largest = 0;
+  p_ = {};
+  for (std::size_t k = 0; k <= degree_; ++k) {
+    const Vec3d v = to_double(c.vector(k));
+    largest = std::max(largest, length_of(v));
+    for (std::size_t i = 0; i <= degree_; ++i) p_[i] = p_[i] + basis.of_node(k)[i] * v;
+  }
+  radius_ = (rounding_of_sum(degree_ + 1) * basis.most_weight() + basis.conversion_error()) * largest;
+}
+
+CurvePiece LagrangeCurve::over(double a, double b) const noexcept {
+  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> coefficients = p_;
+  const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
+  restrict_in_place(p, a, b);
+  // The cubic of the same ends and slopes at the ends; raised to the degree of p, it has a coefficient beside each of p.
+  const double degree = static_cast<double>(degree_), steps = degree / 3;
+  const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
+                                     p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
+  double away = 0;
+  for (std::size_t j = 0; j <= degree_; ++j) {
+    Vec3d raised;
+    for (std::size_t i = 0; i <= 3; ++i) {
+      if (i > j || j - i > degree_ - 3) continue;
+      raised = raised + (binomial(3, i) * binomial(degree_ - 3, j - i) / binomial(degree_, j)) * cubic[i];
+    }
+    away = std::max(away, length_of(p[j] - raised));
+  }
+  CurvePiece piece = cubic_piece(cubic, radius_ + away * 1.0001, radius_);
+  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> half = coefficients;
+  keep_before(std::span<Vec3d>(half.data(), degree_ + 1), 0.5);
+  piece.middle = half[degree_];
+  return piece;
+}
+
+ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
+  const bool is_great = formula == Formula::kGreatArc;
+  if (!is_great) w_ = to_double(c.vector(0));
+  p_ = to_double(c.vector(is_great ? 0 : 1));
+  q_ = to_double(c.vector(is_great ? 1 : 2));
+  angle_ = static_cast<double>(c[is_great ? 6 : 9]);
+  const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
+  largest_ = std::max(p, q);
+  // t and its product with A; sine and cosine within 1.2e-7 = 2.02 e; two products and two additions.
+  double time_error = 2.01 * kE;
+  if (formula == Formula::kTimedCircleArc) {
+    // The warped time moves by at most `steepest` times the rounding of t, and by a few roundings of its own.
+    const double share = static_cast<double>(c[10]);
+    const double steepest = share > 0 && share < 1 ? std::max(share / (1 - share), (1 - share) / share) : kInfinity;
+    time_error += (steepest + 6) * kE;
+  }
+  rounding_ = time_error * angle_ * largest_ + kE * (2.1 * (p + q) + 3 * (w + p + q));
+}
+
+CurvePiece ArcCurve::over(double a, double b) const noexcept {
+  const double at = (a + (b - a) / 2) * angle_, beta = (b - a) / 2 * angle_;
+  const double cosine = portable::cos(at), sine = portable::sin(at);
+  const Vec3d p = cosine * p_ + sine * q_, q = cosine * q_ - sine * p_;
+  // From here x in [-beta, beta] further: cos x = 1 - x^2 / 2 + x^4 / 24 of which x^4 is beta^2 x^2 - beta^4 / 8 to within
+  // beta^4 / 8, and sin x = x - x^3 / 6.
+  const double square = beta * beta, fourth = square * square;
+  const double constant = 1 - fourth / 192, quadratic = square / 24 - 0.5;
+  const Vec3d outer = w_ + (constant + quadratic * square) * p, inner = w_ + (constant - quadratic * square / 3) * p;
+  const Vec3d far = (beta - beta * square / 6) * q, near = (beta / 3 + beta * square / 6) * q;
+  const double away = (fourth / 192 + fourth * square / 720 + fourth * beta / 120) * largest_;
+  CurvePiece piece;
+  piece.p = {outer - far, inner - near, inner + near, outer + far};
+  piece.radius = rounding_ + 1.0001 * away;
+  piece.middle = w_ + p;
+  piece.middle_radius = rounding_;
+  return piece;
+}
+
+SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcept : count_(count) {
+  for (std::size_t k = 0; k < count; ++k) points_[k] = unit(to_double(c.vector(k)));
+}
+
+CurvePiece SphericalCurve::over(double a, double b) const noexcept {
+  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, a slerp is not known in float32
+  const double t = a + (b - a) / 2, half = (b - a) / 2;
+  // A point in the middle of the piece, how fast it may move anywhere on it, and its rounding across and along itself.
+  struct Moving {
+    Vec3d at;
+    double speed = 0, across = 0, along = 0;
+  };
+  std::array<Moving, kMaxDeCasteljauNormals> row;
+  for (std::size_t k = 0; k < count_; ++k) row[k] = {points_[k], 0, 0, kScaling};
+  for (std::size_t left = count_ - 1; left > 0; --left) {
+    for (std::size_t k = 0; k < left; ++k) {
+      const Moving &from = row[k], &to = row[k + 1];
+      const double turn = angle_between(from.at, to.at);
+      const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
+      if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
+      // What a motion of one end by 1 moves the point by: sin(share T) / sin T, at most, for shares on this piece.
+      const double sine = portable::sin(most);
+      const auto factor = [most, sine](double share) {
+        if (most < 1e-6) return share * (1 + 1e-9);
+        const double angle = share * most;
+        return (angle < std::numbers::pi / 2 ? portable::sin(angle) : 1) / sine * (1 + 1e-12);
+      };
+      const double of_from = factor(1 - a), of_to = factor(b);
+      const double local = most < std::numbers::pi / 2 ? 40 * kE : 20 * kE * (1 + 1 / std::min(sine, 1.0));
+      Moving next;
+      if (turn < 1e-9) {
+        next.at = lerp(from.at, to.at, t);
+      } else {
+        const double inverse = 1 / portable::sin(turn);
+        next.at = (portable::sin((1 - t) * turn) * inverse) * from.at + (portable::sin(t * turn) * inverse) * to.at;
+      }
+      next.at = unit(next.at);
+      next.speed = most + of_from * from.speed + of_to * to.speed;
+      next.across = of_from * from.across + of_to * to.across +
+                    portable::sin(most / 2) / portable::cos(most / 2) * from.along + local;
+      next.along = (most < std::numbers::pi / 2 ? 1 : 1 / sine) * from.along + local;
+      row[k] = next;
+    }
+  }
+  const Vec3d middle = row[0].at;
+  const double rounding = row[0].across + 2 * kE;
+  return {{middle, middle, middle, middle}, rounding + half * row[0].speed, middle, rounding, kScaling};
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,111 @@
+/// The curves of schemes, piece by piece: on any [a, b], a cubic and a ball around it that holds what is shown.
+///
+/// Everything is taken from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so fits have no
+/// rounding of their own. What one evaluation adds, with e = 2^-24, is bounded for each formula of
+/// schemes/kernels/formulas-inl.h, operation by operation (docs/theory.md, section 19):
+///
+///     weighted sums of K + 1       (K + 3) e sum |w_k| |c_k|
+///     arcs                         e (2 A r + 2.1 (|p| + |q|) + 3 (|w| + |p| + |q|)),   r the larger of |p|, |q|
+///     slerp of slerp, each         40 e, or 20 e (1 + 1 / sin T) beyond a right angle
+///     scaling to length 1          2 e, an angle
+///
+/// Threads    pure: no allocation, no throw, but where a class says so.
+#ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
+#define CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "analysis/certificates/angle_bound.h"
+#include "chronormal/core/polynomial.h"
+#include "chronormal/core/vec3.h"
+#include "schemes/fitted_curves.h"
+
+namespace chronormal::inline internal {
+
+/// Lagrange polynomials at equidistant nodes, as what the whole block has in common. Beyond degree 27 the weights are so
+/// large that float32 shows nothing but rounding.
+class LagrangeBasis {
+ public:
+  static constexpr std::size_t kMostDegree = 27;
+  using Coefficients = std::array<double, kMostDegree + 1>;
+
+  /// Allocates. degree must be in [1, kMostDegree]
+  explicit LagrangeBasis(std::size_t degree);
+
+  [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
+  /// The Bernstein coefficients of the polynomial that is 1 at node k.
+  [[nodiscard]] const Coefficients& of_node(std::size_t k) const noexcept { return of_nodes_[k]; }
+  /// At least the sum of the |weights| at any t.
+  [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
+  /// How far a curve through unit vectors is off where its Bernstein coefficients are made and cut in double.
+  [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
+
+ private:
+  std::size_t degree_;
+  std::vector<Coefficients> of_nodes_;
+  double most_weight_ = 1, conversion_error_ = 0;
+};
+
+/// Weighted sums of up to four vectors, and quadratics: cubics as they stand.
+class CubicCurve {
+ public:
+  CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept;
+  /// The quadratic of `rational`, whose weights are those of Bernstein.
+  explicit CubicCurve(ElementCoefficients c) noexcept;
+  /// A line between two vectors, in balls of these radii around its ends.
+  CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
+  /// A quadratic that is shown to within an angle.
+  CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept;
+
+  [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
+
+ private:
+  Bernstein<Vec3d, 3> p_;
+  Bernstein<double, 2> radius_{};  // of the ball, over [0, 1]
+  double angle_;
+};
+
+/// Weighted sums of more vectors.
+class LagrangeCurve {
+ public:
+  LagrangeCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept;
+
+  [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
+
+ private:
+  std::size_t degree_;
+  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> p_;
+  double radius_ = 0;
+};
+
+/// Arcs of great circles and of others. An arc that meets its middle at another time is given by its share before that,
+/// and runs in that warped time; see warped_normal().
+class ArcCurve {
+ public:
+  /// w, p, q, A in the planes of the formula, kGreatArc, kCircleArc or kTimedCircleArc.
+  ArcCurve(Formula formula, ElementCoefficients c) noexcept;
+
+  [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
+
+ private:
+  Vec3d w_, p_, q_;
+  double angle_ = 0, largest_ = 0, rounding_ = 0;
+};
+
+/// De Casteljau's algorithm with slerp: a ball around the vector in the middle of a piece.
+class SphericalCurve {
+ public:
+  SphericalCurve(std::size_t count, ElementCoefficients c) noexcept;
+
+  [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
+
+ private:
+  std::size_t count_;
+  std::array<Vec3d, kMaxDeCasteljauNormals> points_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_

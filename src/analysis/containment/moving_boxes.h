@@ -1,0 +1,108 @@
+/// A hierarchy of boxes around the triangles of a mesh that deforms.
+///
+/// A box has its corners at both ends of a segment and moves between them on straight lines, as all within it does. A
+/// point that moves too is asked for the times at which it is inside: six linear inequalities, cut one after the other.
+/// So a fast mesh does not mean large boxes. The order of the triangles, a binary tree split at medians, is made once;
+/// every segment puts its own boxes around it.
+///
+/// Threads    const functions may run at the same time.
+/// Source     Gruenschloss et al., MSBVH: an efficient acceleration data structure for ray traced motion blur (2011).
+#ifndef CHRONORMAL_ANALYSIS_CONTAINMENT_MOVING_BOXES_H_
+#define CHRONORMAL_ANALYSIS_CONTAINMENT_MOVING_BOXES_H_
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "analysis/containment/crossing_signs.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::inline internal {
+
+/// A node of the tree. Its children, where it has some, follow each other.
+struct BoxNode {
+  std::uint32_t first = 0;  ///< child, or triangle
+  std::uint32_t count = 0;  ///< of triangles; 0: it has two children
+};
+
+struct BoxTree {
+  std::vector<BoxNode> nodes;        ///< the root first, parents before their children
+  std::vector<std::uint32_t> order;  ///< the triangles, so that those of a node follow each other
+};
+
+/// Puts together what is near to each other in these positions. Corners are the vertices of the triangles, three each.
+/// O(n log n).
+[[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
+
+/// Closed below and above, at both ends of a segment.
+struct MovingBox {
+  std::array<float, 3> low_from, low_to, high_from, high_to;
+
+  /// Whether a point is inside at some time.
+  [[nodiscard]] bool meets(const MovingPoint& point) const noexcept {
+    double begin = 0, end = 1;
+    return cut(low_from[0], low_to[0], point.from.x, point.to.x, 1, begin, end) &&
+           cut(high_from[0], high_to[0], point.from.x, point.to.x, -1, begin, end) &&
+           cut(low_from[1], low_to[1], point.from.y, point.to.y, 1, begin, end) &&
+           cut(high_from[1], high_to[1], point.from.y, point.to.y, -1, begin, end) &&
+           cut(low_from[2], low_to[2], point.from.z, point.to.z, 1, begin, end) &&
+           cut(high_from[2], high_to[2], point.from.z, point.to.z, -1, begin, end);
+  }
+
+  /// Whether the half-line upwards (z) from the point meets the box at t.
+  [[nodiscard]] bool is_above(const MovingPoint& point, double t) const noexcept {
+    return reaches(low_from[0], low_to[0], point.from.x, point.to.x, 1, t) &&
+           reaches(high_from[0], high_to[0], point.from.x, point.to.x, -1, t) &&
+           reaches(low_from[1], low_to[1], point.from.y, point.to.y, 1, t) &&
+           reaches(high_from[1], high_to[1], point.from.y, point.to.y, -1, t) &&
+           reaches(high_from[2], high_to[2], point.from.z, point.to.z, -1, t);
+  }
+
+ private:
+  // Keeps the times at which the point is above the bound (below it, with the sign -1).
+  static bool cut(float from, float to, float point_from, float point_to, double sign, double& begin,
+                  double& end) noexcept {
+    const double at_from = sign * (double{point_from} - from), at_to = sign * (double{point_to} - to);
+    if (at_from < 0 && at_to < 0) return false;
+    if (at_from < 0) begin = std::max(begin, at_from / (at_from - at_to));
+    if (at_to < 0) end = std::min(end, at_from / (at_from - at_to));
+    return begin <= end + kSlack;
+  }
+  static bool reaches(float from, float to, float point_from, float point_to, double sign, double t) noexcept {
+    const double at_from = double{point_from} - from, at_to = double{point_to} - to;
+    return sign * ((1 - t) * at_from + t * at_to) >= -kSlack * (std::fabs(at_from) + std::fabs(at_to));
+  }
+
+  static constexpr double kSlack = 1e-14;  // more than four roundings
+};
+
+/// The boxes of all nodes in a segment, whose topology has the triangles in the order of the tree. O(n).
+[[nodiscard]] std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segment& segment);
+
+/// Calls visit(triangle) for the triangles in all leaves whose boxes, and those above, pass the test.
+template <class Test, class Visit>
+void visit_boxes(std::span<const BoxNode> nodes, std::span<const MovingBox> boxes, const Test& test,
+                 const Visit& visit) {
+  std::array<std::uint32_t, 64> open{};  // a tree split at medians has at most 32 levels
+  std::size_t count = 1;
+  while (count > 0) {
+    const std::uint32_t n = open[--count];
+    if (!test(boxes[n])) continue;
+    const BoxNode& node = nodes[n];
+    if (node.count == 0) {
+      open[count++] = node.first + 1;
+      open[count++] = node.first;
+    }
+    for (std::uint32_t i = 0; i < node.count; ++i) visit(node.first + i);
+  }
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_CONTAINMENT_MOVING_BOXES_H_

@@ -1,0 +1,324 @@
+// The direction of the line u0 + w (s u1 - u0) runs along the great circle from u0 to u1, and s only decides how fast
+// where. So for each w the angle to n(w) falls with s while the line is behind n(w), seen along the circle, and grows
+// once it is ahead. Hence, as long as all angles stay below 90 degrees, their maximum over w has one valley, and the
+// best s is where the worst angle behind equals the worst ahead: the root of a monotone function.
+//
+// The maximum over w is taken over samples; then the true maxima at that s join the samples, until nothing is gained.
+// (An exchange as in the algorithm of Remez.)
+
+#include "analysis/fits/end_delta.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "core/portable_math.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr double kHalfPi = 1.57079632679489661923;
+constexpr double kRange = 11.090354888959125;  // log of 2^16, the largest s
+
+// Angles are compared by a number that ascends with them and needs no trigonometry: the square of the sine, and from 90
+// degrees on 2 minus it.
+double angle_of_key(double key) noexcept {
+  return key <= 1 ? portable::asin(std::sqrt(key)) : 2 * kHalfPi - portable::asin(std::sqrt(std::max(2 - key, 0.0)));
+}
+
+double key_of(double sine_square, double cosine) noexcept {
+  const double square = std::min(sine_square, 1.0);
+  return cosine < 0 ? 2 - square : square;
+}
+
+double key_between(const Vec3d& line, const Vec3d& u) noexcept {
+  const Vec3d c = cross(line, u);
+  return key_of(dot(c, c) / dot(line, line), dot(line, u));
+}
+
+// Ascending w, and what is known there.
+struct Sample {
+  double w = 0;
+  Vec3d u;  // the exact unit normal
+};
+
+class Samples {
+ public:
+  static constexpr std::size_t kMost = 128;
+
+  // Equidistant at first, then denser where the normal turns fast.
+  explicit Samples(const ControlNormals& normals) noexcept : normals_(normals) {
+    constexpr std::size_t kIntervals = 16, kMostTurning = 80;
+    constexpr int kLevels = 20;
+    constexpr double kTurn = 0.2;  // radians between neighbours
+    for (std::size_t i = 0; i <= kIntervals; ++i)
+      samples_[count_++] = at(static_cast<double>(i) / static_cast<double>(kIntervals));
+    for (int level = 0; level < kLevels; ++level) {
+      const std::size_t before = count_;
+      for (std::size_t i = count_ - 1; i > 0 && count_ < kMostTurning; --i) {
+        const Vec3d step = samples_[i].u - samples_[i - 1].u;
+        if (dot(step, step) > kTurn * kTurn) insert(0.5 * (samples_[i - 1].w + samples_[i].w));
+      }
+      if (count_ == before) break;
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+  [[nodiscard]] const Sample& operator[](std::size_t i) const noexcept { return samples_[i]; }
+  [[nodiscard]] Sample at(double w) const noexcept { return {w, unit_normal_at(normals_, w).vector}; }
+
+  // Does nothing where it is full, or has this w.
+  void insert(double w) noexcept {
+    if (count_ == kMost) return;
+    const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto place = std::lower_bound(samples_.begin(), end, w, [](const Sample& a, double b) { return a.w < b; });
+    if (place != end && place->w == w) return;
+    std::move_backward(place, end, end + 1);
+    *place = at(w);
+    ++count_;
+  }
+
+  // Adds points at which the line from `from` to `to` has equal shares of both behind it: it may turn fast near an end.
+  void follow(const Vec3d& from, const Vec3d& to) noexcept {
+    const double ratio = length(to) / length(from);
+    constexpr int kShares = 8;
+    if (ratio > 0.5 && ratio < 2) return;
+    for (int k = 1; k < kShares; ++k) insert(k / (k + ratio * (kShares - k)));
+  }
+
+ private:
+  const ControlNormals& normals_;
+  std::array<Sample, kMost> samples_;
+  std::size_t count_ = 0;
+};
+
+struct Peak {
+  double w = 0, key = 0;
+};
+
+// Where the line is zero, it jumps: both sides count.
+double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
+  const Vec3d line = (1 - sample.w) * from + sample.w * to;
+  if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
+  return std::max(key_between(from, sample.u), key_between(to, sample.u));
+}
+
+// Finds the largest angle between the line and the exact normal over w: refines the highest of the local maxima among
+// the samples by golden section.
+Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
+  constexpr double kGolden = 0.6180339887498949, kWorthwhile = 0.8;
+  constexpr int kSteps = 12;
+  std::array<double, Samples::kMost> keys;
+  Peak best;
+  const std::size_t n = samples.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    keys[i] = line_key(from, to, samples[i]);
+    if (keys[i] > best.key) best = {samples[i].w, keys[i]};
+  }
+  const double enough = kWorthwhile * best.key;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (keys[i] < enough || (i > 0 && keys[i - 1] > keys[i]) || (i + 1 < n && keys[i + 1] > keys[i])) continue;
+    double a = samples[i == 0 ? 0 : i - 1].w, b = samples[std::min(i + 1, n - 1)].w;
+    double x1 = b - kGolden * (b - a), x2 = a + kGolden * (b - a);
+    double f1 = line_key(from, to, samples.at(x1)), f2 = line_key(from, to, samples.at(x2));
+    for (int step = 0; step < kSteps; ++step) {
+      if (f1 >= f2) {
+        b = x2;
+        x2 = x1;
+        f2 = f1;
+        x1 = b - kGolden * (b - a);
+        f1 = line_key(from, to, samples.at(x1));
+      } else {
+        a = x1;
+        x1 = x2;
+        f1 = f2;
+        x2 = a + kGolden * (b - a);
+        f2 = line_key(from, to, samples.at(x2));
+      }
+      if (f1 > best.key) best = {x1, f1};
+      if (f2 > best.key) best = {x2, f2};
+    }
+  }
+  return best;
+}
+
+// The samples as functions of s alone.
+class ScaleSearch {
+ public:
+  ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}
+
+  void add(const Sample& sample) noexcept {
+    const double w = sample.w, v = 1 - w;
+    if (w == 0 || w == 1) return;  // the line is exact there, or as exact as a limit can be
+    const double height = dot(sample.u, pole_);
+    terms_[count_++] = {v * dot(pole_, cross(u0_, sample.u)),
+                        w * dot(pole_, cross(u1_, sample.u)),
+                        v * dot(u0_, sample.u),
+                        w * dot(u1_, sample.u),
+                        height * height,
+                        v * v,
+                        2 * v * w * dot(u0_, u1_),
+                        w * w};
+  }
+  void clear() noexcept { count_ = 0; }
+
+  // The best log s over the samples, and the largest angle over them there, as a key.
+  [[nodiscard]] double best_log_scale(double guess, double& key) const noexcept {
+    double low = -kRange, high = kRange;
+    const double best = below_right_angle(low, high) ? balance(low, high, guess) : best_of_grid();
+    key = largest(best);
+    return best;
+  }
+
+ private:
+  // Of one w: pole . (line x u), the cosine, the height of u above the circle, and the squared length of the line are
+  // polynomials in s.
+  struct Term {
+    double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
+  };
+  struct Worst {
+    double behind = 0, ahead = 0;  // of the line against the normal: keys
+  };
+
+  [[nodiscard]] Worst worst(double log_scale) const noexcept {
+    const double s = portable::exp(log_scale);
+    Worst result;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Term& t = terms_[i];
+      const double side = t.ahead0 + s * t.ahead1;
+      const double square = t.square0 + s * (t.square1 + s * t.square2);
+      const double key = key_of(t.height + side * side / square, t.cosine0 + s * t.cosine1);
+      double& of_side = side > 0 ? result.behind : result.ahead;
+      of_side = std::max(of_side, key);
+    }
+    return result;
+  }
+
+  [[nodiscard]] double largest(double log_scale) const noexcept {
+    const Worst w = worst(log_scale);
+    return std::max(w.behind, w.ahead);
+  }
+
+  // Narrows [low, high] to the log s for which all angles are below 90 degrees: each w asks for an interval.
+  [[nodiscard]] bool below_right_angle(double& low, double& high) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Term& t = terms_[i];
+      if (t.cosine0 <= 0 && t.cosine1 <= 0) return false;
+      if (t.cosine0 <= 0) low = std::max(low, portable::log(-t.cosine0 / t.cosine1));
+      if (t.cosine1 < 0) high = std::min(high, portable::log(-t.cosine0 / t.cosine1));
+    }
+    return low < high;
+  }
+
+  // Finds where the worst angles behind and ahead are equal, by false position with the Illinois rule.
+  [[nodiscard]] double balance(double low, double high, double guess) const noexcept {
+    constexpr int kSteps = 60;
+    constexpr double kEqual = 5e-4, kNarrow = 1e-9;
+    const auto difference = [](const Worst& w) { return std::sqrt(w.behind) - std::sqrt(w.ahead); };
+    double f_low = difference(worst(low)), f_high = difference(worst(high));
+    if (f_low <= 0) return low;
+    if (f_high >= 0) return high;
+    double x = std::clamp(guess, low, high);
+    for (int step = 0; step < kSteps && high - low > kNarrow; ++step) {
+      if (!(low < x && x < high) || step % 4 == 3) x = 0.5 * (low + high);
+      const Worst w = worst(x);
+      const double f = difference(w);
+      if (std::fabs(f) <= kEqual * std::sqrt(std::max(w.behind, w.ahead))) break;
+      if (f > 0) {
+        low = x;
+        f_low = f;
+        f_high /= 2;
+      } else {
+        high = x;
+        f_high = f;
+        f_low /= 2;
+      }
+      x = low + (high - low) * (f_low / (f_low - f_high));
+    }
+    return x;
+  }
+
+  // Some angle is 90 degrees or more for every s, and there may be several valleys: walks over all.
+  [[nodiscard]] double best_of_grid() const noexcept {
+    constexpr int kGrid = 44, kHalvings = 20;
+    double step = 2 * kRange / kGrid, best = 0, best_key = largest(0);
+    const auto offer = [&](double x) {
+      const double key = std::fabs(x) <= kRange ? largest(x) : 3;
+      if (key < best_key) {
+        best_key = key;
+        best = x;
+      }
+    };
+    for (int i = 0; i <= kGrid; ++i) offer(step * i - kRange);
+    for (int i = 0; i < kHalvings; ++i) {
+      step /= 2;
+      const double centre = best;
+      offer(centre - step);
+      offer(centre + step);
+    }
+    return best;
+  }
+
+  Vec3d u0_, u1_, pole_;
+  std::array<Term, Samples::kMost> terms_;
+  std::size_t count_ = 0;
+};
+
+// log s of the line that is n(w) itself where its degree is 0 or 1, or where it is w or 1 - w times such a line.
+double log_of_degree_1(const ControlNormals& normals) noexcept {
+  const Vec3d from = max_abs(normals.n0) == 0 ? 2 * normals.m : normals.n0;
+  const Vec3d to = max_abs(normals.n1) == 0 ? 2 * normals.m : normals.n1;
+  const double ratio = length(to) / length(from);
+  return std::isnormal(ratio) ? std::clamp(portable::log(ratio), -kRange, kRange) : 0;
+}
+
+bool all_zero(const ControlNormals& normals) noexcept {
+  return max_abs(normals.n0) == 0 && max_abs(normals.m) == 0 && max_abs(normals.n1) == 0;
+}
+
+}  // namespace
+
+double largest_line_error(const ControlNormals& normals, const Vec3d& from, const Vec3d& to) noexcept {
+  if (all_zero(normals)) return 0;
+  Samples samples(normals);
+  samples.follow(from, to);
+  return angle_of_key(highest_peak(samples, from, to).key);
+}
+
+EndDelta best_end_delta(const ControlNormals& normals) noexcept {
+  if (all_zero(normals)) return {};
+  const Vec3d u0 = unit_normal_at(normals, 0).vector, u1 = unit_normal_at(normals, 1).vector;
+  Samples samples(normals);
+  const double key_of_one = highest_peak(samples, u0, u1).key;
+  const EndDelta plain{u1 - u0, 1, angle_of_key(key_of_one)};
+  // Below this sine, which way is ahead is mostly rounding: equal or antipodal.
+  constexpr double kSmallestSine = 1e-10;
+  if (length(cross(u0, u1)) < kSmallestSine) return plain;
+
+  // Round 0 tries what meets an element of degree 1 exactly, which no search can.
+  double log_scale = log_of_degree_1(normals), lowest_possible = 0;
+  Peak best{0, 3};
+  double best_scale = 1;
+  ScaleSearch search(u0, u1);
+  constexpr int kExchanges = 6;
+  constexpr double kGain = 1 + 1e-3, kExact = 1e-24;  // of keys: half of it in angles
+  for (int round = 0; round <= kExchanges; ++round) {
+    const double s = portable::exp(log_scale);
+    samples.follow(u0, s * u1);
+    const Peak peak = highest_peak(samples, u0, s * u1);
+    if (peak.key < best.key) {
+      best = peak;
+      best_scale = s;
+    }
+    if (best.key < kExact || best.key <= kGain * lowest_possible) break;
+    samples.insert(peak.w);
+    search.clear();
+    for (std::size_t i = 0; i < samples.size(); ++i) search.add(samples[i]);
+    log_scale = search.best_log_scale(log_scale, lowest_possible);
+  }
+  if (!(best.key < key_of_one)) return plain;
+  return {best_scale * u1 - u0, best_scale, angle_of_key(best.key)};
+}
+
+}  // namespace chronormal::inline internal

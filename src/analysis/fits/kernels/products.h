@@ -1,0 +1,28 @@
+/// The kernel of dense linear algebra: sums of outer products of rows.
+///
+/// Every sum runs over the rows in their order, each step rounded by itself: the same bits on every instruction set.
+#ifndef CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
+#define CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
+
+#include <cstddef>
+
+namespace chronormal::inline internal {
+
+/// A matrix in someone else's memory: its element (row, column) is data[row * row_stride + column * column_stride].
+struct StridedMatrix {
+  const float* data = nullptr;
+  std::size_t rows = 0, columns = 0, row_stride = 0, column_stride = 1;
+};
+
+/// Adds the product of the transpose of a with b to sums (a.columns, b.columns), of which a row begins every `stride`
+/// floats:
+///
+///     sums[i][j] += sum over r of a[r][i] b[r][j]
+///
+/// a and b must have as many rows as each other, the elements of a row of b must lie side by side, and sums must not
+/// overlap them. Cost: one multiplication and one addition for each a[r][i] b[r][j]
+void add_products(const StridedMatrix& a, const StridedMatrix& b, float* sums, std::size_t stride) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_

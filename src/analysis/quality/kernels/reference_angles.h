@@ -1,0 +1,44 @@
+/// Reference normals of triangles at many times, and the angles between exact normals and others, in lanes of double.
+///
+/// Both give the bits of their scalar forms: reference_normals() of analysis/quality.h, but for its length, and
+/// portable::atan2(|n x u|, n . u).
+#ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
+#define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::inline internal {
+
+/// The reference normals of some triangles of a segment. Positions are gathered once, so that each t costs a pass over
+/// memory that lies side by side.
+class ReferenceTriangles {
+ public:
+  /// All faces of the segment must be triangles. Nothing of it is kept.
+  ReferenceTriangles(const Segment& segment, IndexRange faces);
+
+  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) where it is zero.
+  /// result must have as many elements as there are faces; t in [0, 1]
+  void normals(double t, std::span<Vec3d> result) const noexcept;
+
+ private:
+  std::size_t count_;
+  std::vector<double> edges_;  // in groups of lanes, 20 values of each triangle
+};
+
+/// What stands for an angle where there is none.
+inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
+
+/// Writes the angle between each exact normal, of any length, and the normal shown; kNoExactNormal where the first is
+/// zero, or else kNoNormal where the second is zero or not finite. Fastest where the largest component of exact normals
+/// is 1. All three must have the same size.
+void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_

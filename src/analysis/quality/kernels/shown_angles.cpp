@@ -1,0 +1,156 @@
+#include "analysis/quality/kernels/shown_angles.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "analysis/quality/kernels/shown_angles.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "simd/angles-inl.h"
+
+#ifndef CHRONORMAL_ANALYSIS_KERNELS_SHOWN_ANGLES_ONCE
+#define CHRONORMAL_ANALYSIS_KERNELS_SHOWN_ANGLES_ONCE
+namespace chronormal::inline internal {
+namespace {
+
+// Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
+// at k * kTriangles + i. The values are x, y, z of each corner, first of all at the start and then at the end.
+constexpr std::size_t kTriangles = 8, kPositionValues = 18;
+
+}  // namespace
+}  // namespace chronormal::inline internal
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::inline internal::HWY_NAMESPACE {
+
+HWY_INLINE Real Promoted(const float* from) { return hn::PromoteTo(kDoubles, hn::LoadU(HalfFloatTag(), from)); }
+HWY_INLINE Real RoundedToFloat(Real a) {
+#if CHRONORMAL_DEMOTE_CLAMPS
+  double rounded[kDoubleLanes];
+  a.store(rounded);
+  for (double& value : rounded) value = double{static_cast<float>(value)};
+  return Real::load(rounded);
+#else
+  return hn::PromoteTo(kDoubles, hn::DemoteTo(HalfFloatTag(), a.v));
+#endif
+}
+
+void TriangleNormals(const float* groups, std::size_t count, double t, MovingTriangles::Normal* result) {
+  const Real of_t(t), s = Real(1.0) - of_t;
+  for (std::size_t first = 0; first < count; first += kTriangles, groups += kTriangles * kPositionValues) {
+    MovingTriangles::Normal normals[kTriangles];
+    const std::size_t last = std::min(kTriangles, count - first);
+    MovingTriangles::Normal* const to = last == kTriangles ? result + first : normals;
+    for (std::size_t lane = 0; lane < kTriangles; lane += kDoubleLanes) {
+      const auto coordinate = [&](std::size_t k) HWY_ATTR {
+        const float* const from = groups + k * kTriangles + lane;
+        return s * Promoted(from) + of_t * Promoted(from + 9 * kTriangles);
+      };
+      const auto corner = [&](std::size_t c) HWY_ATTR {
+        return Real3{coordinate(3 * c), coordinate(3 * c + 1), coordinate(3 * c + 2)};
+      };
+      const Real3 a = corner(0), e = corner(1) - a, f = corner(2) - a;
+      const Real3 n = Real3{Real(0.0), Real(0.0), Real(0.0)} + cross(e, f);
+      hn::StoreInterleaved4(n.x.v, n.y.v, n.z.v, max_abs(n).v, kDoubles, &to[lane].x);
+    }
+    if (to == normals) std::copy_n(normals, last, result + first);
+  }
+}
+
+// A vector without its length: v / scale, which has a component of 1, and the length of that; zero for the zero vector.
+struct Scaled {
+  Real3 vector;
+  Real scale, length;
+
+  explicit HWY_INLINE Scaled(const Real3& v) : scale(max_abs(v)) {
+    const Real divisor = select(scale == Real(0.0), Real(1.0), scale);
+    vector = {v.x / divisor, v.y / divisor, v.z / divisor};
+    length = sqrt(dot(vector, vector));
+  }
+  // As unit() and length() of core/vec3.h.
+  [[nodiscard]] HWY_INLINE Real3 unit() const {
+    return (Real(1.0) / select(length == Real(0.0), Real(1.0), length)) * vector;
+  }
+  [[nodiscard]] HWY_INLINE Real whole_length() const { return scale * length; }
+};
+
+HWY_INLINE Real3 load3(const PlanesOf4& planes, std::size_t i) {
+  return {Real::load(planes.x.data() + i), Real::load(planes.y.data() + i), Real::load(planes.z.data() + i)};
+}
+
+HWY_INLINE Real ShownAngle(const Real3& from, const Real3& to, const Real3& sum, Real least, Real size, Real rounding,
+                           Real t) {
+  const Real zero(0.0);
+  const Real3 u = Scaled((Real(1.0) - t) * from + t * to).unit();
+  const Real3 shown{RoundedToFloat(u.x), RoundedToFloat(u.y), RoundedToFloat(u.z)};
+  const RealMask counts = max_abs(sum) > rounding * size;
+  const Scaled right(Real3{select(counts, sum.x, zero), select(counts, sum.y, zero), select(counts, sum.z, zero)});
+  const Real3 now = right.unit();
+  const Real angle = upper_angle(Scaled(cross(shown, now)).whole_length(), dot(shown, now));
+  const RealMask is_drawn = size > least, has_normal = right.whole_length() > least;
+  const RealMask shows = !(max_abs(shown) == zero);
+  const Real judged = select(has_normal & is_drawn, angle * Real(kDegreesPerRadian), Real(kNotJudged));
+  return select(shows | !is_drawn, judged, Real(kNotLit));
+}
+
+void ShownAngles(const ShownElements& elements, double time, std::span<double> degrees) {
+  const Real t(time), rounding(elements.rounding);
+  const auto& [from, to, right, share] = elements;
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= degrees.size(); i += kDoubleLanes) {
+    ShownAngle(load3(from, i), load3(to, i), load3(right, i), Real::load(from.w.data() + i),
+               Real::load(right.w.data() + i), rounding, t)
+        .store(degrees.data() + i);
+  }
+  // One at a time, in all lanes.
+  const auto all3 = [](const PlanesOf4& planes, std::size_t k) HWY_ATTR {
+    return Real3{Real(planes.x[k]), Real(planes.y[k]), Real(planes.z[k])};
+  };
+  for (; i < degrees.size(); ++i) {
+    double result[kDoubleLanes];
+    ShownAngle(all3(from, i), all3(to, i), all3(right, i), Real(from.w[i]), Real(right.w[i]), rounding, t)
+        .store(result);
+    degrees[i] = result[0];
+  }
+}
+
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace chronormal::inline internal {
+
+HWY_EXPORT(TriangleNormals);
+HWY_EXPORT(ShownAngles);
+
+void MovingTriangles::gather(VectorView<const float> from, VectorView<const float> to,
+                             std::span<const std::uint32_t> corners) {
+  assert(corners.size() % 3 == 0);
+  count_ = corners.size() / 3;
+  positions_.resize((count_ + kTriangles - 1) / kTriangles * kTriangles * kPositionValues);
+  for (std::size_t i = 0; i < count_; ++i) {
+    float* const first = positions_.data() + i / kTriangles * kTriangles * kPositionValues + i % kTriangles;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f start = from[corners[3 * i + c]], end = to[corners[3 * i + c]];
+      float* const of_corner = first + 3 * c * kTriangles;
+      for (const auto& [k, value] :
+           {std::pair{0U, start.x}, {1U, start.y}, {2U, start.z}, {9U, end.x}, {10U, end.y}, {11U, end.z}})
+        of_corner[k * kTriangles] = value;
+    }
+  }
+}
+
+void MovingTriangles::normals(double t, std::vector<Normal>& result) const {
+  result.resize(count_);
+  HWY_DYNAMIC_DISPATCH(TriangleNormals)(positions_.data(), count_, t, result.data());
+}
+
+void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept {
+  HWY_DYNAMIC_DISPATCH(ShownAngles)(elements, t, degrees);
+}
+
+}  // namespace chronormal::inline internal
+#endif  // HWY_ONCE

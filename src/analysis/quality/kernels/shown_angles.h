@@ -1,0 +1,66 @@
+/// What an audit computes of every vertex at every sample, in lanes of double: normals of moving triangles, and the angles
+/// between right normals and those that a host shows which interpolates stored ones.
+///
+/// Both give the bits of their scalar forms: twice_vector_area() of positions interpolated in double, and
+/// angle_between() of what unit() and lerp() of core/vec3.h make.
+#ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
+#define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+
+namespace chronormal::inline internal {
+
+/// Some triangles between two keyframes. Positions are gathered once, so that each t costs a pass over memory that lies
+/// side by side. Can be used again and again; its memory stays.
+class MovingTriangles {
+ public:
+  /// corners: three vertices for each triangle
+  void gather(VectorView<const float> from, VectorView<const float> to, std::span<const std::uint32_t> corners);
+
+  struct Normal {
+    double x, y, z;
+    double size;  ///< the largest component
+  };
+  /// Writes the normals at t in [0, 1], one for each triangle.
+  void normals(double t, std::vector<Normal>& result) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<float> positions_;  // in groups of lanes, 18 values of each triangle
+};
+
+/// Vectors in planes of memory, and a fourth number for each.
+struct PlanesOf4 {
+  std::vector<double> x, y, z, w;
+
+  void resize(std::size_t count) {
+    for (std::vector<double>* const plane : {&x, &y, &z, &w}) plane->resize(count);
+  }
+};
+
+/// What stands for an error where there is none.
+inline constexpr double kNotLit = -1, kNotJudged = -2;
+
+/// What is shown of some elements between two samples, and what is right there.
+struct ShownElements {
+  const PlanesOf4& from;   ///< stored normals, of any length; w is the least length of a right normal
+  const PlanesOf4& to;     ///< w means nothing
+  const PlanesOf4& right;  ///< right normals, of any length; w is the size of the terms that they are sums of
+  double rounding = 0;     ///< the share of that size which is nothing but rounding
+};
+
+/// Writes, in degrees, the angles between unit(lerp(from, to, t)), rounded to float32, and the right normals. kNotLit
+/// where an element is drawn and shows nothing; else kNotJudged where it is not drawn or has no right normal.
+/// All planes must have as many elements as the result; no number may be infinite or NaN.
+void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_

@@ -1,0 +1,43 @@
+/// When a normal nearly vanishes on the way: the instants inside a segment at which its direction is as good as
+/// discontinuous, for whoever interpolates or looks at it.
+///
+/// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above what float32 rounds, so
+/// that a face which was made to collapse and then rounded is among them, and far below any length that was meant.
+/// Whether it vanishes indeed is another question, which analysis/collapse.h decides exactly.
+///
+/// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
+/// Threads    pure: no allocation, no throw.
+#ifndef CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
+#define CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
+
+#include <array>
+#include <cstddef>
+
+#include "chronormal/normals/control_normals.h"
+
+namespace chronormal::inline internal {
+
+/// Far above the rounding of float32 positions, far below any length that was meant.
+inline constexpr double kCollapseShare = 1e-6;
+
+/// Nearer to an end than this, it is the keyframe that has no area.
+inline constexpr double kCollapseMargin = 1e-6;
+
+struct NearCollapse {
+  double t = 0;             ///< where |n(t)| is smallest
+  bool turns_over = false;  ///< whether the direction after is opposed to that before
+};
+
+struct NearCollapses {
+  std::array<NearCollapse, 2> at;  ///< ascending in t
+  std::size_t count = 0;
+  bool everywhere = false;  ///< n is zero in the whole segment; count is 0
+};
+
+/// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros so close together that |n(t)| stays below the share
+/// between them are one. Cost: three dot products for most faces, the roots of a cubic for those that turn far.
+[[nodiscard]] NearCollapses find_near_collapses(const ControlNormals& normals) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_

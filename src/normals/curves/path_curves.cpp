@@ -1,0 +1,186 @@
+// PathCurves: blocks of 16 elements for the kernel, and the flagged elements, which are written over what it makes of them.
+//
+// The angle in float32, with u = 2^-24: a control normal, its weight and their product are rounded once each, and a
+// product goes through three additions, so that n(t) is off by 6 u sum w_k |c_k| at most, and turns by 6 u r where
+// |n(t)| >= sum w_k |c_k| / r; the last product, by 1 / |n|, turns it by u. With r = 2.6 that is 9.9e-7.
+
+#include "chronormal/normals/path_curves.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+
+#include "core/blocks.h"
+#include "core/memory.h"
+#include "normals/control/local_time.h"
+#include "normals/curves/certificate.h"
+#include "normals/curves/kernels/evaluate_path.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kPiece = 8192;   // of elements, a multiple of a block; what a thread does at a time
+constexpr double kLongestRatio = 2.6;  // r
+constexpr double kSmallest = 0x1p-40;  // of the largest control normal: the root of |n|^2 stays in range of float32
+
+using Controls = PolynomialNormals<3>;
+static_assert(std::tuple_size_v<Controls> == kPathControls);
+
+// What the products of two coefficients of degree 6 count in the coefficient of degree 12 that they belong to.
+struct ProductShares {
+  double of[kPathControls][kPathControls];
+  constexpr ProductShares() : of() {
+    for (std::size_t i = 0; i < kPathControls; ++i)
+      for (std::size_t j = 0; j < kPathControls; ++j) of[i][j] = binomial(6, i) * binomial(6, j) / binomial(12, i + j);
+  }
+};
+constexpr ProductShares kShares;
+
+// Whether float32 can carry an element: proven at a glance, or else by the coefficients of r^2 |n|^2 - (sum w_k |c_k|)^2.
+bool stays_long(const Controls& n, double largest) {
+  std::array<double, kPathControls> lengths;
+  Vec3d sum;
+  for (std::size_t k = 0; k < n.size(); ++k) {
+    lengths[k] = length(n[k]);
+    if (!(lengths[k] > kSmallest * largest)) return false;
+    sum = sum + (1 / lengths[k]) * n[k];
+  }
+  const Vec3d middle = unit(sum);
+  const auto is_near = [&](std::size_t k) { return kLongestRatio * dot(middle, n[k]) >= lengths[k]; };
+  std::size_t near = 0;
+  while (near < n.size() && is_near(near)) ++near;
+  if (near == n.size()) return true;
+  Bernstein<double, 12> slack{};
+  for (std::size_t i = 0; i < n.size(); ++i)
+    for (std::size_t j = 0; j < n.size(); ++j)
+      slack[i + j] += kShares.of[i][j] * (kLongestRatio * kLongestRatio * dot(n[i], n[j]) - lengths[i] * lengths[j]);
+  return certainly_not_negative(slack);
+}
+
+PathWeights weights_at(double t) {
+  PathWeights weights;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    double weight = binomial(6, k);
+    for (std::size_t i = 0; i < 6; ++i) weight *= i < k ? t : 1 - t;
+    weights[k] = static_cast<float>(weight);
+  }
+  return weights;
+}
+
+}  // namespace
+
+struct PathCurves::Data {
+  std::size_t size = 0;
+  AlignedArray<float> blocks;
+  std::vector<std::size_t> flagged;  // ascending
+  std::vector<Controls> flagged_normals;
+
+  // Writes an element into its block, or zeros where float32 cannot carry it. Returns whether it can.
+  bool pack(std::size_t element, const Controls& normals) {
+    double largest = 0;
+    for (const Vec3d& n : normals) largest = std::max(largest, max_abs(n));
+    const bool fits = largest > 0 && std::isfinite(largest);
+    const double scale = fits ? std::ldexp(1.0, -std::ilogb(largest)) : 0;
+    Controls scaled;
+    for (std::size_t k = 0; k < kPathControls; ++k) scaled[k] = scale * normals[k];
+    const bool carries = fits && std::isfinite(scale) && stays_long(scaled, 1);
+    float* const lane = blocks.data() + element / kTile * kPathBlock + element % kTile;
+    for (std::size_t k = 0; k < kPathControls; ++k) {
+      const Vec3f n = carries ? to_float(scaled[k]) : Vec3f{1, 0, 0};
+      for (const auto& [c, value] : {std::pair{0, n.x}, std::pair{1, n.y}, std::pair{2, n.z}})
+        lane[(3 * k + static_cast<std::size_t>(c)) * kTile] = value;
+    }
+    return carries;
+  }
+};
+
+std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment) {
+  std::vector<Controls> result(segment.topology->face_count());
+  parallel_blocks(result.size(), kPiece, [&](IndexRange range) {
+    polynomial_face_normals(segment, range, std::span(result).subspan(range.first, range.count));
+  });
+  return result;
+}
+
+std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment, const NormalGroups& groups) {
+  const std::vector<Controls> of_faces = all_path_normals(segment);
+  std::vector<Controls> result(groups.size());
+  parallel_blocks(result.size(), kPiece, [&](IndexRange range) {
+    polynomial_group_normals<3>(groups, of_faces, range, std::span(result).subspan(range.first, range.count));
+  });
+  return result;
+}
+
+PathCurves::PathCurves() noexcept = default;
+PathCurves::PathCurves(PathCurves&&) noexcept = default;
+PathCurves& PathCurves::operator=(PathCurves&&) noexcept = default;
+PathCurves::~PathCurves() = default;
+
+PathCurves::PathCurves(std::span<const PolynomialNormals<3>> normals, Threads threads)
+    : data_(std::make_unique<Data>()) {
+  data_->size = normals.size();
+  const std::size_t count = block_count(normals.size(), kTile);
+  data_->blocks = AlignedArray<float>(count * kPathBlock);
+  std::vector<char> carries(count * kTile);
+  blocks_on(threads, count * kTile, kPiece, [&](IndexRange range) {
+    for (std::size_t i = range.first; i < range.end(); ++i)
+      carries[i] = data_->pack(i, i < normals.size() ? normals[i] : Controls{}) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (carries[i] != 0) continue;
+    data_->flagged.push_back(i);
+    data_->flagged_normals.push_back(normals[i]);
+  }
+}
+
+std::size_t PathCurves::unit_normals(double time, VectorView<float> result, Threads threads) const {
+  assert(result.count == size());
+  if (std::isnan(time)) {
+    for (std::size_t i = 0; i < size(); ++i) result.set(i, {});
+    return size();
+  }
+  const double t = local_time(time);
+  std::atomic<std::size_t> without_direction = 0;
+  blocks_on(threads, size(), kPiece, [&](IndexRange range) { without_direction += evaluate(range, t, result); });
+  return without_direction;
+}
+
+// The range begins at a block.
+std::size_t PathCurves::evaluate(IndexRange range, double t, VectorView<float> result) const noexcept {
+  if (range.count == 0) return 0;
+  const PathWeights weights = weights_at(t);
+  const float* const blocks = data_->blocks.data() + range.first / kTile * kPathBlock;
+  std::size_t done = range.count / kTile * kTile;  // in whole blocks, where the kernel may write all of them
+  if (result.is_packed())
+    evaluate_path_blocks(blocks, done / kTile, weights, PackedResult{result.x + 3 * range.first});
+  else if (result.stride == 1)
+    evaluate_path_blocks(blocks, done / kTile, weights,
+                         PlanesResult{result.x + range.first, result.y + range.first, result.z + range.first});
+  else
+    done = 0;
+  alignas(64) float x[kTile], y[kTile], z[kTile];
+  for (; done < range.count; done += kTile) {
+    evaluate_path_blocks(blocks + done / kTile * kPathBlock, 1, weights, PlanesResult{x, y, z});
+    const std::size_t count = std::min(kTile, range.count - done);
+    for (std::size_t i = 0; i < count; ++i) result.set(range.first + done + i, {x[i], y[i], z[i]});
+  }
+  std::size_t without_direction = 0;
+  const std::vector<std::size_t>& flagged = data_->flagged;
+  auto at = std::lower_bound(flagged.begin(), flagged.end(), range.first);
+  for (; at != flagged.end() && *at < range.end(); ++at) {
+    const UnitNormal u = unit_normal_at(data_->flagged_normals[static_cast<std::size_t>(at - flagged.begin())], t);
+    result.set(*at, to_float(u.vector));
+    if (u.direction == Direction::kNone) ++without_direction;
+  }
+  return without_direction;
+}
+
+std::size_t PathCurves::size() const noexcept { return data_ ? data_->size : 0; }
+std::size_t PathCurves::flagged_count() const noexcept { return data_ ? data_->flagged.size() : 0; }
+std::size_t PathCurves::bytes() const noexcept {
+  constexpr std::size_t kIndex = 8, kElement = 3 * kPathControls * sizeof(float);
+  return size() * kElement + flagged_count() * (kIndex + sizeof(Controls));
+}
+
+}  // namespace chronormal

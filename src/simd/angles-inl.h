@@ -1,0 +1,119 @@
+// The angle of a vector in lanes of double, bit for bit that of portable::atan2() for y >= 0, and a scalar to write
+// formulas in.
+//
+// Included once for each instruction set, as lanes-inl.h. The polynomial is Highway's for the arc tangent on [0, 1], in
+// the same order but never fused, as the single lane of core/portable_math has it.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/rows-inl.h"
+
+#if defined(CHRONORMAL_SIMD_ANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_SIMD_ANGLES_INL_H_
+#undef CHRONORMAL_SIMD_ANGLES_INL_H_
+#else
+#define CHRONORMAL_SIMD_ANGLES_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::inline internal::HWY_NAMESPACE {
+
+// One double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
+struct Real {
+  Doubles v;
+
+  Real() = default;
+  HWY_INLINE Real(Doubles of_v) : v(of_v) {}                      // NOLINT(google-explicit-constructor)
+  HWY_INLINE Real(double value) : v(hn::Set(kDoubles, value)) {}  // NOLINT(google-explicit-constructor)
+  static HWY_INLINE Real load(const double* from) { return hn::LoadU(kDoubles, from); }
+  HWY_INLINE void store(double* to) const { hn::StoreU(v, kDoubles, to); }
+
+  friend HWY_INLINE Real operator+(Real a, Real b) { return hn::Add(a.v, b.v); }
+  friend HWY_INLINE Real operator-(Real a, Real b) { return hn::Sub(a.v, b.v); }
+  friend HWY_INLINE Real operator*(Real a, Real b) { return hn::Mul(a.v, b.v); }
+  friend HWY_INLINE Real operator/(Real a, Real b) { return hn::Div(a.v, b.v); }
+};
+
+// Which of the elements a condition holds for.
+struct RealMask {
+  hn::Mask<DoubleTag> m;
+
+  friend HWY_INLINE RealMask operator&(RealMask a, RealMask b) { return {hn::And(a.m, b.m)}; }
+  friend HWY_INLINE RealMask operator|(RealMask a, RealMask b) { return {hn::Or(a.m, b.m)}; }
+  friend HWY_INLINE RealMask operator!(RealMask a) { return {hn::Not(a.m)}; }
+};
+
+HWY_INLINE RealMask operator<(Real a, Real b) { return {hn::Lt(a.v, b.v)}; }
+HWY_INLINE RealMask operator>(Real a, Real b) { return {hn::Gt(a.v, b.v)}; }
+HWY_INLINE RealMask operator==(Real a, Real b) { return {hn::Eq(a.v, b.v)}; }
+
+HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(mask.m, a.v, b.v); }
+HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
+HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
+HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
+// b where one of them is NaN.
+HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
+HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
+// Whether the sign bit is set, that of -0 too.
+HWY_INLINE RealMask has_sign(Real a) {
+  const hn::RebindToSigned<DoubleTag> bits;
+  return {hn::RebindMask(kDoubles, hn::Lt(hn::BitCast(bits, a.v), hn::Zero(bits)))};
+}
+
+struct Real3 {
+  Real x, y, z;
+
+  friend HWY_INLINE Real3 operator+(const Real3& a, const Real3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend HWY_INLINE Real3 operator-(const Real3& a, const Real3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend HWY_INLINE Real3 operator*(Real s, const Real3& a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+HWY_INLINE Real dot(const Real3& a, const Real3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+HWY_INLINE Real3 cross(const Real3& a, const Real3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+// As in core/vec3.h: where a component is NaN, the others count.
+HWY_INLINE Real max_abs(const Real3& a) {
+  const Real x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
+  const Real largest = larger_of(z, larger_of(y, x));
+  const Real of_two = larger_of(z, y);
+  return select(largest == largest, largest, select(of_two == of_two, of_two, z));
+}
+
+// Of q in [0, 1].
+HWY_INLINE Real arc_tangent(Real q) {
+  const Real x = q * q, x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
+  const auto pair = [x](double c0, double c1) HWY_ATTR { return Real(c1) * x + Real(c0); };
+  const auto four = [x2](Real low, Real high) HWY_ATTR { return x2 * high + low; };
+  const Real c0 = four(pair(-0.333333333333311110369124, +0.199999999996591265594148),
+                       pair(-0.14285714266771329383765, +0.111111105648261418443745));
+  const Real c4 = four(pair(-0.090908995008245008229153, +0.0769219538311769618355029),
+                       pair(-0.0666573579361080525984562, +0.0587666392926673580854313));
+  const Real c8 = four(pair(-0.0523674852303482457616113, +0.0466667150077840625632675),
+                       pair(-0.0407629191276836500001934, +0.0337852580001353069993897));
+  const Real c12 = four(pair(-0.0254517624932312641616861, +0.016599329773529201970117),
+                        pair(-0.00889896195887655491740809, +0.00370026744188713119232403));
+  const Real c16 =
+      four(pair(-0.00110611831486672482563471, +0.000209850076645816976906797), Real(-1.88796008463073496563746e-5));
+  const Real series = x16 * c16 + (x8 * (x4 * c12 + c8) + (x4 * c4 + c0));
+  return series * (x * q) + q;
+}
+
+// The angle of the vector (x, y) with y >= 0, in [0, pi]; 0 for the zero vector, pi where its x is -0. Both are finite,
+// or the result is NaN.
+HWY_INLINE Real upper_angle(Real y, Real x) {
+  const Real ax = absolute(x);
+  const RealMask steep = y > ax;
+  const Real larger = select(steep, y, ax), smaller = select(steep, ax, y);
+  const Real angle = arc_tangent(smaller / select(larger == Real(0.0), Real(1.0), larger));
+  const Real upright = select(steep, Real(1.57079632679489661923132169) - angle, angle);
+  return select(has_sign(x), Real(3.14159265358979323846) - upright, upright);
+}
+
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // CHRONORMAL_SIMD_ANGLES_INL_H_

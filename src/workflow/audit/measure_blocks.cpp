@@ -1,0 +1,242 @@
+#include "workflow/audit/measure_blocks.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "analysis/quality/kernels/shown_angles.h"
+#include "chronormal/core/parallel.h"
+#include "core/blocks.h"
+#include "core/float32.h"
+#include "core/rounding.h"
+#include "workflow/audit/measure.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+// As many blocks at a time as keep all threads busy and their results few.
+constexpr std::size_t kBlocksPerWaveAndThread = 8;
+
+// The errors of a block at all samples of a segment take 20 kB each.
+constexpr std::size_t kMostSamples = 128;
+
+// Outputs, and what their normals are made of.
+struct Block {
+  IndexRange outputs, elements;
+  std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
+  std::vector<std::uint32_t> faces, face_ends;  // of each element, as the block numbers them
+};
+
+std::vector<Block> make_blocks(const JudgedPart& part) {
+  const std::span<const JudgedOutput> outputs = part.outputs();
+  std::vector<Block> blocks;
+  std::vector<std::uint32_t> number(part.face_count()), owner(part.face_count());
+  for (std::size_t first = 0; first < outputs.size(); first += kRange) {
+    Block& block = blocks.emplace_back();
+    const auto b = static_cast<std::uint32_t>(blocks.size());
+    const std::size_t last = std::min(first + kRange, outputs.size());
+    block.outputs = {first, last - first};
+    block.elements.first = outputs[first].element;
+    block.elements.count = outputs[last - 1].element + 1 - block.elements.first;
+    for (std::size_t e = block.elements.first; e < block.elements.end(); ++e) {
+      for (const std::uint32_t face : part.faces_of(e)) {
+        if (owner[face] != b) {
+          owner[face] = b;
+          number[face] = static_cast<std::uint32_t>(block.corners.size() / 3);
+          for (const std::uint32_t v : part.corners_of(face)) block.corners.push_back(part.vertices()[v]);
+        }
+        block.faces.push_back(number[face]);
+      }
+      block.face_ends.push_back(static_cast<std::uint32_t>(block.faces.size()));
+    }
+  }
+  return blocks;
+}
+
+// The memory that it takes to measure a block.
+struct Scratch {
+  MovingTriangles triangles;
+  std::vector<MovingTriangles::Normal> faces;
+  PlanesOf4 start, end, between;  // right normals, at the ends of a segment and inside
+  PlanesOf4 from, to;             // what a host keeps of those at the ends
+  std::vector<double> degrees;
+};
+
+// The sums of the normals of faces, and of their sizes.
+void add_up(const Block& block, const std::vector<MovingTriangles::Normal>& faces, PlanesOf4& result) {
+  result.resize(block.elements.count);
+  std::uint32_t i = 0;
+  for (std::size_t e = 0; e < block.elements.count; ++e) {
+    MovingTriangles::Normal sum{};
+    for (; i < block.face_ends[e]; ++i) {
+      const MovingTriangles::Normal& n = faces[block.faces[i]];
+      sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z, sum.size + n.size};
+    }
+    result.x[e] = sum.x;
+    result.y[e] = sum.y;
+    result.z[e] = sum.z;
+    result.w[e] = sum.size;
+  }
+}
+
+void add_up_at(const Block& block, double t, Scratch& scratch, PlanesOf4& result) {
+  scratch.triangles.normals(t, scratch.faces);
+  add_up(block, scratch.faces, result);
+}
+
+Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
+  return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
+}
+
+// As largest_control_normals() of measure.h; makes those larger that are in these segments.
+void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
+                          std::vector<double>& largest) {
+  largest.resize(block.elements.count);
+  Scratch scratch;
+  std::optional<std::size_t> keyframe;  // which scratch.end is of
+  for (const std::size_t s : segments) {
+    const Segment segment = motion.segment(s);
+    scratch.triangles.gather(segment.from, segment.to, block.corners);
+    if (keyframe == motion.segments[s].from)
+      std::swap(scratch.start, scratch.end);
+    else
+      add_up_at(block, 0, scratch, scratch.start);
+    add_up_at(block, 0.5, scratch, scratch.between);
+    add_up_at(block, 1, scratch, scratch.end);
+    keyframe = motion.segments[s].to;
+    for (std::size_t e = 0; e < largest.size(); ++e) {
+      const Vec3d start = normal_of(scratch.start, e), end = normal_of(scratch.end, e);
+      const Vec3d m = 2.0 * normal_of(scratch.between, e) - 0.5 * (start + end);
+      largest[e] = std::max({largest[e], length(start), length(m), length(end)});
+    }
+  }
+}
+
+// What is interpolated of right normals at a keyframe, as a host keeps them.
+void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
+  result.resize(sums.x.size());
+  for (std::size_t e = 0; e < sums.x.size(); ++e) {
+    Vec3d kept = rounded_to_float(unit(normal_of(sums, e)));
+    if (rule != AuditRule::kLerp) kept = unit(kept);
+    result.x[e] = kept.x;
+    result.y[e] = kept.y;
+    result.z[e] = kept.z;
+  }
+}
+
+double time_of_sample(std::size_t i, std::size_t samples) {
+  return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
+}
+
+// Adds those of all outputs, in their order, as MotionError::add() and add_unlit() do.
+template <class At>
+void add_errors(std::span<const double> of_elements, const Block& block, const JudgedPart& part, MotionError& result,
+                const At& at) {
+  double sum = 0, sum_of_squares = 0, worst = 0;  // in registers
+  std::size_t judged = 0;
+  for (const JudgedOutput& output : part.outputs().subspan(block.outputs.first, block.outputs.count)) {
+    double degrees = of_elements[output.element - block.elements.first];
+    if (degrees < 0) {
+      if (degrees == kNotJudged) {
+        ++result.no_normal;
+        continue;
+      }
+      if (result.unlit++ == 0) result.unlit_at = at(output);
+      degrees = 180;
+    }
+    ++judged;
+    sum += degrees;
+    sum_of_squares += degrees * degrees;
+    count_in_bins(degrees, result);
+    if (degrees > worst) {
+      worst = degrees;
+      result.worst_at = at(output);
+    }
+  }
+  result.judged = judged;
+  result.sum = sum;
+  result.sum_of_squares = sum_of_squares;
+  result.worst = worst;
+}
+
+// Writes the errors of a block at each sample of a segment.
+void measure_block(const Segment& segment, std::size_t number, const Block& block, std::span<const double> largest,
+                   const JudgedPart& part, AuditRule rule, const FindPlace& at, Scratch& scratch,
+                   std::span<MotionError> errors) {
+  scratch.triangles.gather(segment.from, segment.to, block.corners);
+  add_up_at(block, 0, scratch, scratch.start);
+  add_up_at(block, 1, scratch, scratch.end);
+  keep_as_host(rule, scratch.start, scratch.from);
+  keep_as_host(rule, scratch.end, scratch.to);
+  for (std::size_t e = 0; e < largest.size(); ++e) scratch.from.w[e] = kVanished * largest[e];
+  scratch.degrees.resize(block.elements.count);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double t = time_of_sample(i, errors.size());
+    const bool is_inside = i > 0 && i + 1 < errors.size();
+    if (is_inside) add_up_at(block, t, scratch, scratch.between);
+    const PlanesOf4& right = is_inside ? scratch.between : i == 0 ? scratch.start : scratch.end;
+    const double weight = rule != AuditRule::kStep ? t : t < 1 ? 0 : 1;
+    shown_angles({scratch.from, scratch.to, right, kRoundingOfTerms}, weight, scratch.degrees);
+    errors[i] = {};
+    add_errors(scratch.degrees, block, part, errors[i],
+               [&](const JudgedOutput& output) { return at(number, t, output); });
+  }
+}
+
+}  // namespace
+
+bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting, std::size_t samples) noexcept {
+  if (samples > kMostSamples) return false;
+  if (weighting != Weighting::kArea) return false;
+  if (rule != AuditRule::kLerp && rule != AuditRule::kNlerp && rule != AuditRule::kStep) return false;
+  for (std::size_t f = 0; f < part.face_count(); ++f)
+    if (part.corners_of(f).size() != 3) return false;
+  return true;
+}
+
+Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
+                      AuditRule rule, const FindPlace& at, const std::function<void()>& progress, AuditSubject& subject,
+                      const KeptErrors& kept) {
+  const Motion& motion = stream.motion();
+  const std::vector<Block> blocks = make_blocks(part);
+  std::vector<std::vector<double>> largest(blocks.size());
+  // Segments that are held together share what they have at the keyframes between them.
+  const std::size_t at_once = stream.keeps_all() ? segments.size() : 1;
+  for (std::size_t s = 0; s < segments.size(); s += at_once) {
+    const std::span<const std::size_t> held = segments.subspan(s, at_once);
+    if (Status status = stream.hold_segments(held.front(), held.back()); !status) return status;
+    parallel_for(blocks.size(), [&](std::size_t b) { keep_largest_normals(motion, held, blocks[b], largest[b]); });
+  }
+
+  const std::size_t per_wave = std::min(blocks.size(), kBlocksPerWaveAndThread * thread_count());
+  std::vector<std::vector<MotionError>> wave(per_wave, std::vector<MotionError>(subject.samples));
+  std::vector<Scratch> scratch(per_wave);
+  const IndexRange share = kept.shard.of(segments.size());
+  for (std::size_t s = share.first; s < share.end(); ++s) {
+    if (Status status = stream.hold_segment(segments[s]); !status) return status;
+    const Segment segment = motion.segment(segments[s]);
+    std::vector<MotionError> of_samples(subject.samples);
+    for (std::size_t first = 0; first < blocks.size(); first += per_wave) {
+      const std::size_t count = std::min(per_wave, blocks.size() - first);
+      parallel_for(count, [&](std::size_t b) {
+        measure_block(segment, s, blocks[first + b], largest[first + b], part, rule, at, scratch[b], wave[b]);
+      });
+      // In order, so that sums do not depend on the threads.
+      for (std::size_t b = 0; b < count; ++b)
+        for (std::size_t i = 0; i < of_samples.size(); ++i) of_samples[i].add(wave[b][i]);
+    }
+    SegmentErrors found{s, {}, {}};
+    for (std::size_t i = 0; i < of_samples.size(); ++i) {
+      found.error.add(of_samples[i]);
+      if (i == 0 || i + 1 == of_samples.size()) found.at_keys.add(of_samples[i]);
+    }
+    add_segment(std::move(found), kept, subject);
+    progress();
+  }
+  subject.vertices = part.outputs().size();
+  return Success{};
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,82 @@
+#include "workflow/compare/curved_segments.h"
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/path_curves.h"
+#include "core/rounding.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+// The exact normals of the curve, whatever control normals of straight motion a block has.
+class CurveScheme final : public Scheme {
+ public:
+  explicit CurveScheme(const CurvedSegments& segments) : segments_(segments) {}
+
+  void prepare(const ElementBlock& block) override {
+    curves_ = PathCurves(segments_.control_normals(block.segment->index, block.elements));
+  }
+  std::size_t evaluate(double t, VectorView<float> result) const noexcept override {
+    return curves_.unit_normals(t, result);
+  }
+
+  [[nodiscard]] bool uses_control_normals() const noexcept override { return false; }
+  [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
+  [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
+  [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }
+  // Seven products and six sums of vectors, and a division by the length.
+  [[nodiscard]] OperationCounts operations() const override {
+    return {.add = 6 * 3 + 2, .multiply = 7 * 3 + 3 + 3, .divide = 1, .sqrt = 1};
+  }
+
+ private:
+  const CurvedSegments& segments_;
+  PathCurves curves_;
+};
+
+}  // namespace
+
+void CurvedSegments::enter(std::size_t first, std::size_t last) {
+  segments_.erase(segments_.begin(), segments_.lower_bound(first));
+  for (std::size_t s = first; s <= last; ++s) {
+    if (segments_.contains(s)) continue;
+    Entered entered{path_segment(*motion_, s, path_), {}};
+    const auto start = std::chrono::steady_clock::now();
+    if (groups_ != nullptr) entered.of_faces = all_path_normals(entered.curve);
+    shared_ns_ = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() *
+                 static_cast<double>(thread_count());
+    segments_.emplace(s, std::move(entered));
+  }
+}
+
+void CurvedSegments::exact_normals(std::size_t segment, IndexRange range, double t,
+                                   std::span<Vec3d> result) const noexcept {
+  const PolynomialSegment<3>& curve = segments_.find(segment)->second.curve;
+  if (groups_ == nullptr) return polynomial_face_normals_at(curve, t, range, result);
+  for (std::size_t i = 0; i < range.count; ++i) {
+    VectorSum sum;
+    for (const std::uint32_t f : groups_->faces(range.first + i)) {
+      Vec3d normal;
+      polynomial_face_normals_at(curve, t, {f, 1}, std::span(&normal, 1));
+      sum.add(normal);
+    }
+    result[i] = sum.without_rounding();
+  }
+}
+
+std::vector<PolynomialNormals<3>> CurvedSegments::control_normals(std::size_t segment, IndexRange range) const {
+  const Entered& entered = segments_.find(segment)->second;
+  std::vector<PolynomialNormals<3>> result(range.count);
+  if (groups_ == nullptr)
+    polynomial_face_normals(entered.curve, range, std::span(result));
+  else
+    polynomial_group_normals<3>(*groups_, entered.of_faces, range, result);
+  return result;
+}
+
+std::unique_ptr<Scheme> CurvedSegments::scheme() const { return std::make_unique<CurveScheme>(*this); }
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,56 @@
+/// What a comparison on curved paths needs of each segment: the exact normals there, and the scheme that is made of them.
+/// Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_COMPARE_CURVED_SEGMENTS_H_
+#define CHRONORMAL_WORKFLOW_COMPARE_CURVED_SEGMENTS_H_
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/paths.h"
+#include "chronormal/schemes/scheme.h"
+
+namespace chronormal::inline internal {
+
+/// The row of the exact normals of a curved path.
+inline constexpr std::string_view kExactCurve = "exact";
+
+class CurvedSegments {
+ public:
+  /// groups: nullptr for faces. Motion and groups must outlive this.
+  CurvedSegments(const Motion& motion, PathKind path, const NormalGroups* groups)
+      : motion_(&motion), path_(path), groups_(groups) {}
+
+  /// Makes ready for segments first to last, and forgets those before.
+  void enter(std::size_t first, std::size_t last);
+  /// What faces that groups share cost one thread in a segment, nanoseconds; 0 for faces.
+  [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
+
+  /// The normals of a range of elements of a segment that was entered, from the positions of vertices at t.
+  void exact_normals(std::size_t segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept;
+  /// The control normals of degree 6 of a range of elements.
+  [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(std::size_t segment, IndexRange range) const;
+  /// PathCurves as a scheme, on blocks of segments that were entered. This must outlive it.
+  [[nodiscard]] std::unique_ptr<Scheme> scheme() const;
+
+ private:
+  struct Entered {
+    PolynomialSegment<3> curve;
+    std::vector<PolynomialNormals<3>> of_faces;  // for groups
+  };
+
+  const Motion* motion_;
+  PathKind path_;
+  const NormalGroups* groups_;
+  std::map<std::size_t, Entered> segments_;
+  double shared_ns_ = 0;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_COMPARE_CURVED_SEGMENTS_H_

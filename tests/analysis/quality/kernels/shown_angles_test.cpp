@@ -1,0 +1,99 @@
+// What an audit computes in lanes, on every instruction set, held bit by bit against core/vec3.h.
+#include "analysis/quality/kernels/shown_angles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/rounding.h"
+#include "core/vector_area.h"
+#include "simd/targets.h"
+#include "tests/support/hard_motions.h"
+
+namespace chronormal::shown_angles_test {
+namespace {
+
+TEST(MovingTriangles, have_the_bits_of_vector_areas_of_interpolated_positions_on_every_instruction_set) {
+  fixtures::Random random(6);
+  std::size_t judged = 0;
+  for (const test::HardMotions& hard : test::hard_motions()) {
+    const Motion motion = hard.make(random);
+    if (!motion.topology.all_triangles()) continue;
+    const Segment segment = motion.segment(0);
+    const auto corners = motion.topology.corners();
+    MovingTriangles triangles;
+    triangles.gather(segment.to, segment.from, corners.first(3));  // leaves something behind
+    triangles.gather(segment.from, segment.to, corners);
+    std::vector<MovingTriangles::Normal> normals;
+    for (const double t : {0.0, 0.35, 1.0}) {
+      for (const std::int64_t target : supported_targets()) {
+        const ScopedTarget scoped(target);
+        triangles.normals(t, normals);
+        ASSERT_EQ(normals.size(), motion.topology.face_count());
+        for (std::size_t f = 0; f < normals.size(); ++f) {
+          const auto at = [&](std::size_t c) {
+            const std::uint32_t v = corners[3 * f + c];
+            return lerp(to_double(segment.from[v]), to_double(segment.to[v]), t);
+          };
+          const Vec3d n = twice_vector_area(3, at);
+          EXPECT_EQ((Vec3d{normals[f].x, normals[f].y, normals[f].z}), n) << hard.name << ", " << target_name(target);
+          EXPECT_EQ(normals[f].size, max_abs(n));
+          ++judged;
+        }
+      }
+    }
+  }
+  EXPECT_GT(judged, 1000U);
+}
+
+void put(PlanesOf4& planes, std::size_t i, const Vec3d& v, double w) {
+  planes.x[i] = v.x, planes.y[i] = v.y, planes.z[i] = v.z, planes.w[i] = w;
+}
+
+TEST(ShownAngles, have_the_bits_of_one_angle_after_the_other_on_every_instruction_set) {
+  fixtures::Random random(7);
+  constexpr std::size_t kCount = 1003;
+  constexpr double kRounding = 1e-13;
+  const auto vector = [&] {
+    const fixtures::Point p = random.in_cube(std::pow(10.0, random.uniform(-20, 20)));
+    return Vec3d{p[0], p[1], p[2]};
+  };
+  PlanesOf4 from, to, right;
+  for (PlanesOf4* const planes : {&from, &to, &right}) planes->resize(kCount);
+  std::vector<Vec3d> starts(kCount), ends(kCount), sums(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    starts[i] = i % 10 == 0 ? Vec3d{} : unit(vector());
+    ends[i] = i % 20 < 2 ? -starts[i] : unit(starts[i] + random.uniform(0, 1) * unit(vector()));
+    sums[i] = i % 15 == 0 ? Vec3d{} : vector();
+    const double size = max_abs(sums[i]);
+    // Elements without a normal, those that are hardly more than rounding, and those that are not drawn.
+    put(from, i, starts[i], i % 4 == 0 ? 2 * size : 0.3 * size);
+    put(to, i, ends[i], 0);
+    put(right, i, sums[i], i % 6 == 0 ? 1e14 * size : i % 8 == 0 ? 4 * size : size);
+  }
+  std::size_t not_lit = 0, not_judged = 0;
+  for (const double t : {0.0, 0.5, 0.7}) {
+    std::vector<double> expected(kCount), degrees(kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Vec3d shown = to_double(to_float(unit(lerp(starts[i], ends[i], t))));
+      const Vec3d normal = without_rounding(sums[i], kRounding * right.w[i]);
+      const bool is_drawn = right.w[i] > from.w[i], has_normal = length(normal) > from.w[i];
+      expected[i] = is_drawn && shown == Vec3d{} ? kNotLit
+                    : !is_drawn || !has_normal   ? kNotJudged
+                                                 : angle_between(shown, unit(normal)) * kDegreesPerRadian;
+      not_lit += expected[i] == kNotLit ? 1U : 0U;
+      not_judged += expected[i] == kNotJudged ? 1U : 0U;
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      shown_angles({from, to, right, kRounding}, t, degrees);
+      EXPECT_EQ(degrees, expected) << target_name(target) << " at " << t;
+    }
+  }
+  EXPECT_GT(not_lit, 50U);
+  EXPECT_GT(not_judged, 500U);
+}
+
+}  // namespace
+}  // namespace chronormal::shown_angles_test

@@ -1,0 +1,110 @@
+// --path of sample, audit, compare and bake: what they print on curves, when they warn, and what they refuse.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::paths_cli_test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Paths : public testing::Test {
+ protected:
+  // Two triangles that turn by an angle from frame to frame, and lean over.
+  void write_turn(double angle) {
+    for (int frame = 0; frame < 5; ++frame) {
+      std::ostringstream text;
+      text.precision(9);
+      const double c = std::cos(angle * frame), s = std::sin(angle * frame);
+      const double places[4][3] = {{1, 0, 0}, {2, 0.3, 0.2}, {1.5, 1, 0.4}, {2.4, 1.2, -0.3}};
+      for (const auto& p : places)
+        text << "v " << c * p[0] + s * p[2] << ' ' << p[1] + 0.1 * frame * frame * p[0] << ' ' << c * p[2] - s * p[0]
+             << '\n';
+      text << "f 1 2 3\nf 2 4 3\n";
+      folder_.write("f" + std::to_string(frame) + ".obj", text.str());
+    }
+  }
+  [[nodiscard]] ProcessResult run(const std::string& arguments) const {
+    return run_shell(std::string(kProgram) + " " + arguments, folder_.path());
+  }
+  [[nodiscard]] Json json(const std::string& arguments) const {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << arguments << '\n' << result.err;
+    return result.exit_code == 0 ? Json::parse(result.out) : Json();
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Paths, compare_has_a_row_for_the_curve_and_says_what_it_is_held_against) {
+  write_turn(0.3);
+  const Json result = json("compare 'f*.obj' --path catmull-rom --schemes linear --json --no-times");
+  EXPECT_EQ(result["input"]["path"], "catmull-rom");
+  EXPECT_EQ(result["input"]["is_too_sparse"], false);
+  ASSERT_EQ(result["schemes"].size(), 2U);
+  EXPECT_EQ(result["schemes"][1]["scheme"], "exact");
+  EXPECT_LT(result["schemes"][1]["max_degrees"], 1e-4);
+  EXPECT_GT(result["schemes"][0]["max_degrees"], 0.1);
+  const ProcessResult table = run("compare 'f*.obj' --path catmull-rom --schemes linear --no-times");
+  EXPECT_NE(table.out.find("held against the exact normals of catmull-rom paths"), std::string::npos) << table.out;
+  EXPECT_NE(run("compare 'f*.obj' --path catmull-rom --csv").out.find(",path,bend\n"), std::string::npos);
+  EXPECT_FALSE(json("compare 'f*.obj' --json --no-times")["input"].contains("path"));
+}
+
+TEST_F(Paths, audit_and_bake_go_by_the_curve) {
+  write_turn(0.3);
+  const Json straight = json("audit 'f*.obj' --json"), curved = json("audit 'f*.obj' --path catmull-rom --json");
+  EXPECT_EQ(curved["path"], "catmull-rom");
+  EXPECT_FALSE(straight.contains("path"));
+  EXPECT_NE(straight["worst_degrees"], curved["worst_degrees"]);
+  const Json baked = json("bake 'f*.obj' --path catmull-rom -o out.glb --json");
+  EXPECT_EQ(baked["encoding"], "endpoint");
+  EXPECT_LT(baked["bound_degrees"], 0.5);
+  EXPECT_EQ(run("audit out.glb --tolerance 0.5").exit_code, 0) << "the file moves and shows what was promised";
+}
+
+TEST_F(Paths, all_warn_where_keyframes_are_too_far_apart) {
+  for (const std::string command : {"compare 'f*.obj'", "audit 'f*.obj'", "bake 'f*.obj' --force -o out.glb",
+                                    "sample 'f*.obj' --times 0:4:3 --force -o out.npz"}) {
+    write_turn(0.2);
+    const ProcessResult near = run(command + " --path catmull-rom");
+    EXPECT_EQ(near.exit_code, 0) << near.err;
+    EXPECT_EQ(near.err.find("too far apart"), std::string::npos) << near.err;
+    write_turn(1.6);
+    EXPECT_NE(run(command + " --path catmull-rom").err.find("too far apart for a curve"), std::string::npos) << command;
+    EXPECT_EQ(run(command).err.find("too far apart"), std::string::npos) << "straight paths have no such trouble";
+  }
+}
+
+TEST_F(Paths, refuse_what_has_no_such_path) {
+  write_turn(0.2);
+  for (const std::string command :
+       {"compare 'f*.obj'", "audit 'f*.obj'", "bake 'f*.obj' -o out.glb", "sample 'f*.obj' --times 0:4:3 -o out.npz"}) {
+    for (const std::string path : {"hermite", "spline"}) {
+      const ProcessResult refused = run(command + " --path " + path);
+      EXPECT_EQ(refused.exit_code, 2) << command << refused.out;
+      EXPECT_NE(refused.err.find("--path"), std::string::npos) << refused.err;
+    }
+  }
+  for (const std::string other : {"--certify", "--tolerance 1", "--truth 2", "--blend 3"})
+    EXPECT_EQ(run("compare 'f*.obj' --path catmull-rom " + other).exit_code, 2) << other;
+  EXPECT_EQ(run("bake 'f*.obj' -o out.glb --path catmull-rom --encode exact").exit_code, 2);
+  EXPECT_EQ(run("bake 'f*.obj' -o out.glb").exit_code, 0);
+  for (const std::string command : {"audit out.glb", "bake out.glb -o more.glb"}) {
+    const ProcessResult refused = run(command + " --path catmull-rom");
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    EXPECT_NE(refused.err.find("paths are of sequences"), std::string::npos) << refused.err;
+  }
+}
+
+}  // namespace
+}  // namespace chronormal::paths_cli_test

@@ -1,0 +1,64 @@
+// How far ahead evaluations ask for curves: the distance of the shortest trial, which is looked for only for a while.
+
+#include "normals/curves/kernels/prefetch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "chronormal/normals/normal_curves.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal::prefetch_test {
+namespace {
+
+TEST(PrefetchRule, the_shortest_of_all_trials_decides) {
+  for (std::size_t fastest = 0; fastest < PrefetchRule::kDistances.size(); ++fastest) {
+    PrefetchRule rule;
+    EXPECT_EQ(rule.best(), PrefetchRule::kDistances[0]);  // before any trial
+    std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
+    while (const std::optional<std::size_t> trial = rule.next()) {
+      // All are slow at times, the fastest one mostly.
+      const bool is_quiet = ++trials[*trial] == 3;
+      rule.take(*trial, is_quiet ? (*trial == fastest ? 0.1f : 0.12f) : (*trial == fastest ? 5.0f : 2.0f));
+    }
+    EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
+    for (const std::size_t count : trials) EXPECT_EQ(count, PrefetchRule::kTrials);
+  }
+}
+
+TEST(PrefetchRule, threads_share_trials) {
+  PrefetchRule rule;
+  std::vector<std::thread> threads;
+  std::atomic<std::size_t> count = 0;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      while (const std::optional<std::size_t> trial = rule.next()) {
+        rule.take(*trial, *trial == 2 ? 1.0f : 2.0f);
+        ++count;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(count, PrefetchRule::kTrials * PrefetchRule::kDistances.size());
+  EXPECT_EQ(rule.best(), PrefetchRule::kDistances[2]);
+}
+
+TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
+  const Motion motion = fixtures::smooth_morph(600);  // 720,000 faces, 26 MB of curves
+  const NormalCurves curves = NormalCurves::of_faces(motion.segment(0));
+  std::vector<float> first(3 * curves.size()), later(3 * curves.size());
+  (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
+  for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
+    (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
+  EXPECT_EQ(prefetch_in_shared_cache().next(), std::nullopt);
+  EXPECT_EQ(first, later);
+}
+
+}  // namespace
+}  // namespace chronormal::prefetch_test

@@ -1,0 +1,129 @@
+// Baked sequences on curved paths, as a reader shows them that knows nothing of how they were made: positions are those of
+// the curves, and normals are within what the bake states.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "chronormal/workflow/bake.h"
+#include "tests/support/curved_motion.h"
+#include "tests/support/shown_glb.h"
+
+namespace chronormal::bake_curved_test {
+namespace {
+
+using test::ShownGlb;
+
+const std::vector<double> kTimes = {0, 0.25, 0.5, 0.875, 1.25, 1.5};
+
+struct Baked {
+  SequenceBake report;
+  std::string glb;
+};
+
+Baked baked(const Motion& motion, PathKind path, double tolerance) {
+  BakeOptions options;
+  options.path = path;
+  options.tolerance = tolerance;
+  Baked result;
+  Result<SequenceBake> report = bake_sequence(motion, options, result.glb);
+  EXPECT_TRUE(report.ok()) << report.error().text();
+  if (report.ok()) result.report = std::move(report).value();
+  return result;
+}
+
+// How far vertices are from the curve at most, and normals, in degrees, at instants within segments.
+struct Worst {
+  double distance = 0, angle = 0;
+};
+Worst worst_of(const Motion& motion, const ShownGlb& glb, bool given, int instants) {
+  Worst worst;
+  for (std::size_t s = 0; s + 1 < motion.keyframes.size(); ++s) {
+    for (int i = 0; i <= instants; ++i) {
+      const double t = static_cast<double>(i) / instants;
+      const std::vector<long double> right = test::on_curve(motion, s, static_cast<long double>(t), given);
+      const auto normals = test::normals_of(motion, right, true);
+      const std::vector<double> weights =
+          glb.weights((1 - t) * motion.keyframes[s].time + t * motion.keyframes[s + 1].time);
+      for (std::size_t v = 0; v < glb.vertices(); ++v) {
+        const auto p = glb.position(v, weights);
+        for (std::size_t c = 0; c < 3; ++c)
+          worst.distance = std::max(worst.distance, std::fabs(p[c] - static_cast<double>(right[3 * v + c])));
+        worst.angle = std::max(worst.angle, test::angle_of(glb.normal(v, weights), normals[v]) * kDegreesPerRadian);
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(BakeCurved, positions_are_those_of_the_curve_and_normals_within_what_is_stated) {
+  const Motion motion = test::curved_motion(kTimes, 2, 16, 8);
+  std::size_t before = 0;
+  for (const double tolerance : {90.0, 0.5, 0.01}) {
+    const Baked bake = baked(motion, PathKind::kCatmullRom, tolerance);
+    const ShownGlb glb(bake.glb);
+    const Worst worst = worst_of(motion, glb, false, 40);
+    EXPECT_LT(worst.distance, 2e-6) << tolerance;
+    EXPECT_NEAR(worst.angle, bake.report.largest_error, 1e-3) << "what is stated is what is shown";
+    EXPECT_EQ(bake.report.targets, 5U);
+    EXPECT_EQ(glb.targets(), bake.report.targets + bake.report.extra_targets);
+    if (tolerance == 90)
+      EXPECT_EQ(bake.report.extra_targets, 0U);
+    else
+      EXPECT_GT(bake.report.extra_targets, before) << "a bend more where it takes one";
+    before = bake.report.extra_targets;
+  }
+  EXPECT_LT(baked(motion, PathKind::kCatmullRom, 0.01).report.largest_error,
+            0.3 * baked(motion, PathKind::kCatmullRom, 90).report.largest_error);
+}
+
+TEST(BakeCurved, velocities_of_the_file_are_targets_of_their_own) {
+  Motion motion = test::curved_motion(kTimes, 1.5, 12, 6);
+  for (Motion::Keyframe& key : motion.keyframes)
+    for (std::size_t c = 0; c < key.positions.size(); ++c)
+      key.velocities.push_back(0.5F * key.positions[(c + 2) % key.positions.size()]);
+  motion.keyframes[2].velocities.clear();  // Catmull-Rom stands in
+  const Baked bake = baked(motion, PathKind::kHermite, 0.5);
+  EXPECT_EQ(bake.report.targets, 5U + 5U);
+  const Worst worst = worst_of(motion, ShownGlb(bake.glb), true, 40);
+  EXPECT_LT(worst.distance, 2e-6);
+  EXPECT_NEAR(worst.angle, bake.report.largest_error, 1e-3);
+}
+
+TEST(BakeCurved, an_element_without_area_at_the_first_key_is_right_later) {
+  Motion motion = test::curved_motion(kTimes, 1, 8, 4);
+  std::vector<float>& first = motion.keyframes[0].positions;
+  for (std::size_t c = 0; c < first.size(); ++c) first[c] = c % 3 == 0 ? 1.0F : 0.0F;  // all in one point
+  const Baked bake = baked(motion, PathKind::kCatmullRom, 0.5);
+  const ShownGlb glb(bake.glb);
+  for (const std::size_t k : {1U, 3U, 5U}) {
+    const std::vector<double> weights = glb.weights(kTimes[k]);
+    const auto normals = test::normals_of(motion, test::on_curve(motion, k - 1, 1), true);
+    for (std::size_t v = 0; v < glb.vertices(); ++v)
+      EXPECT_LT(test::angle_of(glb.normal(v, weights), normals[v]), 1e-5) << k << ' ' << v;
+  }
+}
+
+TEST(BakeCurved, refuses_encodings_and_weightings_that_it_has_not) {
+  const Motion motion = test::curved_motion(kTimes, 1, 6, 4);
+  std::string glb;
+  BakeOptions options;
+  options.path = PathKind::kCatmullRom;
+  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kHarmless, BakeEncoding::kKeys}) {
+    options.encoding = encoding;
+    EXPECT_EQ(bake_sequence(motion, options, glb).error().code, ErrorCode::kUsage);
+  }
+  options.encoding = {};
+  options.weighting = Weighting::kAngle;
+  EXPECT_EQ(bake_sequence(motion, options, glb).error().code, ErrorCode::kUsage);
+  options.weighting = {};
+  options.path = PathKind::kHermite;
+  EXPECT_EQ(bake_sequence(motion, options, glb).error().code, ErrorCode::kUsage) << "no velocities";
+}
+
+}  // namespace
+}  // namespace chronormal::bake_curved_test

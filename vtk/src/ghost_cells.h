@@ -1,0 +1,16 @@
+/// Ghost cells: copies of cells that belong to other pieces, around a piece of a mesh.
+#ifndef CHRONORMAL_VTK_GHOST_CELLS_H_
+#define CHRONORMAL_VTK_GHOST_CELLS_H_
+
+#include <vtkPolyData.h>
+
+namespace chronormal::vtk {
+
+/// Removes the ghost cells that are more than so many levels away from the cells of the piece, and the points that only
+/// they use. A ghost cell is of level 1 where it shares a point with a cell of the piece, of level 2 where it shares one
+/// with a ghost cell of level 1, and so on. Cells that are hidden, and no copies, stay. O(levels x corners).
+void keep_ghost_levels(vtkPolyData* piece, int levels);
+
+}  // namespace chronormal::vtk
+
+#endif  // CHRONORMAL_VTK_GHOST_CELLS_H_

@@ -1,0 +1,261 @@
+// Normals of faces at both ends of a segment, sums over the faces of points and cells, and their directions at t.
+#include "poly_data_normals.h"
+
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
+#include "normals/groups/group_sum.h"
+
+namespace chronormal::vtk {
+namespace {
+
+constexpr std::size_t kBlock = 4096;  // elements that one thread takes at a time
+
+std::size_t size(vtkIdType count) { return static_cast<std::size_t>(count); }
+
+// Calls body(i) for every element, in blocks on all cores.
+template <class Body>
+void for_elements(std::size_t count, const Body& body) {
+  parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) body(i);
+  });
+}
+
+// The four lists of cells of a vtkPolyData, in the order in which it numbers them.
+std::array<vtkCellArray*, 4> cell_lists(vtkPolyData* mesh) {
+  return {mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips()};
+}
+
+Status check_cells(vtkPolyData* from, vtkPolyData* to) {
+  const auto before = cell_lists(from), after = cell_lists(to);
+  vtkIdType number = 0;
+  vtkNew<vtkIdList> a, b;
+  for (std::size_t list = 0; list < before.size(); ++list) {
+    const vtkIdType count = before[list]->GetNumberOfCells();
+    if (count != after[list]->GetNumberOfCells())
+      return invalid_input("", "the two steps have other numbers of vertices, lines, polygons or strips");
+    for (vtkIdType c = 0; c < count; ++c, ++number) {
+      const auto place = [number] { return "cell " + std::to_string(number); };
+      before[list]->GetCellAtId(c, a);
+      for (const vtkIdType point : *a) {
+        if (point < 0 || point >= from->GetNumberOfPoints())
+          return invalid_input(place(), "it names point " + std::to_string(point) + ", which the mesh does not have");
+      }
+      if (before[list] == after[list]) continue;
+      after[list]->GetCellAtId(c, b);
+      if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
+        return invalid_input(place(), "it has other points in the two steps");
+    }
+  }
+  return Success{};
+}
+
+Status check_positions(vtkPolyData* mesh) {
+  for (vtkIdType p = 0; p < mesh->GetNumberOfPoints(); ++p) {
+    const double* const x = mesh->GetPoint(p);
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
+      return invalid_input("point " + std::to_string(p), "its coordinates must be finite");
+  }
+  return Success{};
+}
+
+// Polygons, and the triangles of strips, each with the cell that it is of.
+struct Faces {
+  std::vector<std::uint32_t> offsets = {0}, corners;
+  std::vector<vtkIdType> cells;
+
+  [[nodiscard]] std::size_t count() const { return cells.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const {
+    return std::span(corners).subspan(offsets[f], offsets[f + 1] - offsets[f]);
+  }
+  void add(std::initializer_list<vtkIdType> points, vtkIdType cell) { add(points.begin(), points.end(), cell); }
+  void add(const vtkIdType* begin, const vtkIdType* end, vtkIdType cell) {
+    for (; begin != end; ++begin) corners.push_back(static_cast<std::uint32_t>(*begin));
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    cells.push_back(cell);
+  }
+};
+
+Faces find_faces(vtkPolyData* mesh) {
+  Faces faces;
+  vtkNew<vtkIdList> cell;
+  vtkIdType number = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  for (vtkIdType c = 0; c < mesh->GetNumberOfPolys(); ++c, ++number) {
+    mesh->GetPolys()->GetCellAtId(c, cell);
+    if (cell->GetNumberOfIds() >= 3) faces.add(cell->begin(), cell->end(), number);
+  }
+  for (vtkIdType c = 0; c < mesh->GetNumberOfStrips(); ++c, ++number) {
+    mesh->GetStrips()->GetCellAtId(c, cell);
+    for (vtkIdType k = 0; k + 2 < cell->GetNumberOfIds(); ++k) {
+      const vtkIdType turned = k % 2;  // every second triangle of a strip is wound the other way
+      faces.add({cell->GetId(k + turned), cell->GetId(k + 1 - turned), cell->GetId(k + 2)}, number);
+    }
+  }
+  return faces;
+}
+
+// eq. 5 of docs/theory.md in double, for positions that are not in float: the edges e(t), f(t) of each triangle of the fan
+// have the product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
+ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std::span<const std::uint32_t> face) {
+  struct Edge {
+    Vec3d from, to;
+  };
+  const auto position = [](vtkPolyData* mesh, vtkIdType p) {
+    std::array<double, 3> x{};
+    mesh->GetPoint(p, x.data());
+    return Vec3d{x[0], x[1], x[2]};
+  };
+  const auto point = [&](std::size_t c) { return Edge{position(from, face[c]), position(to, face[c])}; };
+  const Edge origin = point(0);
+  CrossSum n0, m, n1;
+  for_fan(
+      face.size(),
+      [&](std::size_t c) {
+        const Edge place = point(c);
+        return Edge{place.from - origin.from, place.to - origin.to};
+      },
+      [&](const Edge& e, const Edge& f) {
+        n0.add(e.from, f.from);
+        m.add(e.from, f.to);
+        m.add(e.to, f.from);
+        n1.add(e.to, f.to);
+      });
+  return {n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()};
+}
+
+std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to, const Faces& faces) {
+  if (faces.count() == 0) return {};
+  vtkFloatArray* const before = vtkFloatArray::SafeDownCast(from->GetPoints()->GetData());
+  vtkFloatArray* const after = vtkFloatArray::SafeDownCast(to->GetPoints()->GetData());
+  const std::size_t points = size(from->GetNumberOfPoints());
+  if (before != nullptr && after != nullptr) {
+    const Result<Topology> topology = Topology::polygons(points, faces.offsets, faces.corners);
+    Segment segment;
+    segment.topology = &topology.value();
+    segment.from = VectorView<const float>::packed(before->GetPointer(0), points);
+    segment.to = VectorView<const float>::packed(after->GetPointer(0), points);
+    return all_face_control_normals(segment);
+  }
+  std::vector<ControlNormals> result(faces.count());
+  for_elements(faces.count(), [&](std::size_t f) { result[f] = control_normals_in_double(from, to, faces.face(f)); });
+  return result;
+}
+
+// The sum of terms in the order of their values, which knows nothing of the order in which a mesh or a piece of it has them.
+ControlNormals sum_of(std::vector<ControlNormals>& terms) {
+  const auto values = [](const ControlNormals& n) {
+    return std::array{n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z};
+  };
+  std::sort(terms.begin(), terms.end(),
+            [&](const ControlNormals& a, const ControlNormals& b) { return values(a) < values(b); });
+  ControlNormalsSum sum;
+  for (const ControlNormals& term : terms) sum.add(term);
+  return sum.without_rounding();
+}
+
+// Vectors in an array of VTK, in float or in double.
+struct Vectors {
+  Vectors(std::size_t count, bool in_double)
+      : array(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(in_double ? VTK_DOUBLE : VTK_FLOAT))) {
+    array->SetNumberOfComponents(3);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  }
+  void set(std::size_t i, const Vec3d& v) const {
+    const std::array values = {v.x, v.y, v.z};
+    array->SetTuple(static_cast<vtkIdType>(i), values.data());
+  }
+
+  vtkSmartPointer<vtkDataArray> array;
+};
+
+// Which faces each element has the sum of.
+struct Groups {
+  // element_of(k) and face_of(k) name an element and a face of it, `pairs` times.
+  template <class ElementOf, class FaceOf>
+  Groups(std::size_t elements, std::size_t pairs, const ElementOf& element_of, const FaceOf& face_of)
+      : ends(elements + 1, 0), faces(pairs) {
+    // By counting: ends[e + 1] counts e, then ends[e] is where e begins, and in the end where it ends.
+    for (std::size_t k = 0; k < pairs; ++k) ++ends[element_of(k) + 1];
+    for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
+    for (std::size_t k = 0; k < pairs; ++k) faces[ends[element_of(k)]++] = static_cast<std::uint32_t>(face_of(k));
+  }
+
+  [[nodiscard]] std::size_t size() const { return ends.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t e) const {
+    const std::size_t first = e == 0 ? 0 : ends[e - 1];
+    return std::span(faces).subspan(first, ends[e] - first);
+  }
+
+  std::vector<std::uint32_t> ends, faces;
+};
+
+vtkSmartPointer<vtkDataArray> normals_of_groups(const Groups& groups, const std::vector<ControlNormals>& of_faces,
+                                                double t, bool in_double) {
+  const Vectors result(groups.size(), in_double);
+  for_elements(groups.size(), [&](std::size_t e) {
+    thread_local std::vector<ControlNormals> terms;
+    terms.clear();
+    for (const std::uint32_t f : groups.of(e)) terms.push_back(of_faces[f]);
+    result.set(e, unit_normal_at(sum_of(terms), t).vector);
+  });
+  return result.array;
+}
+
+}  // namespace
+
+Status check_motion(vtkPolyData* from, vtkPolyData* to) {
+  const vtkIdType points = from->GetNumberOfPoints();
+  if (points != to->GetNumberOfPoints())
+    return invalid_input("", "the two steps have " + std::to_string(points) + " and " +
+                                 std::to_string(to->GetNumberOfPoints()) + " points");
+  vtkIdType corners = 0;
+  for (vtkCellArray* const list : cell_lists(from)) corners += 3 * list->GetNumberOfConnectivityIds();
+  if (size(std::max(points, corners)) > std::numeric_limits<std::uint32_t>::max())
+    return invalid_input("", "the mesh has more points or corners than 32 bits can count");
+  if (Status cells = check_cells(from, to); !cells) return cells;
+  if (Status before = check_positions(from); !before) return before;
+  return check_positions(to);
+}
+
+MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells) {
+  const bool in_double = from->GetPoints() != nullptr && from->GetPoints()->GetDataType() == VTK_DOUBLE;
+  const Faces faces = find_faces(from);
+  const std::vector<ControlNormals> of_faces = normals_of_faces(from, to, faces);
+  MeshNormals result;
+  if (points) {
+    std::vector<std::uint32_t> face_of_corner(faces.corners.size());
+    for (std::size_t f = 0; f < faces.count(); ++f)
+      std::fill(face_of_corner.begin() + faces.offsets[f], face_of_corner.begin() + faces.offsets[f + 1],
+                static_cast<std::uint32_t>(f));
+    const Groups groups(
+        size(from->GetNumberOfPoints()), faces.corners.size(), [&](std::size_t k) { return faces.corners[k]; },
+        [&](std::size_t k) { return face_of_corner[k]; });
+    result.of_points = normals_of_groups(groups, of_faces, t, in_double);
+  }
+  if (cells) {
+    const Groups groups(
+        size(from->GetNumberOfCells()), faces.count(), [&](std::size_t k) { return size(faces.cells[k]); },
+        [](std::size_t k) { return k; });
+    result.of_cells = normals_of_groups(groups, of_faces, t, in_double);
+  }
+  return result;
+}
+
+}  // namespace chronormal::vtk

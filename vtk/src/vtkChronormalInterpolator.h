@@ -1,0 +1,69 @@
+/// A vtkTemporalInterpolator whose normals are right.
+///
+/// It takes the place of vtkTemporalInterpolator in a pipeline: positions and all other arrays are interpolated as there,
+/// and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at the
+/// requested time, and not mixtures of stored ones. See docs/vtk.md.
+///
+/// Normals    Point normals are sums over the faces around a point, weighted by area, and cell normals those of the
+///            cell; both are of length 1, or (0, 0, 0) where there is no face. Normals that the input has are replaced;
+///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
+///            double where the points are.
+/// Time       Any time: outside the range of the input it is that of the nearer end.
+/// Arrays     Ids, ghost flags and texts are those of the step before, since they are names and not amounts.
+/// Pieces     Where a piece is asked for, one more ghost level is asked of the input, so that the normals along seams
+///            have the bits of the whole; ghost cells that nobody asked for are removed again.
+/// Errors     Where the cells of a mesh differ between the two steps, where normals belong to data other than
+///            vtkPolyData, and where blocks are missing in one of the steps, there is an error, and an empty output.
+#ifndef vtkChronormalInterpolator_h
+#define vtkChronormalInterpolator_h
+
+#include <array>
+
+#include "vtkChronormalModule.h"
+#include "vtkTemporalInterpolator.h"
+
+class vtkCompositeDataSet;
+class vtkDataSet;
+
+class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpolator {
+ public:
+  static vtkChronormalInterpolator* New();
+  vtkTypeMacro(vtkChronormalInterpolator, vtkTemporalInterpolator);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkChronormalInterpolator(const vtkChronormalInterpolator&) = delete;
+  void operator=(const vtkChronormalInterpolator&) = delete;
+
+  /// Whether points without stored normals get normals; on by default.
+  vtkSetMacro(ComputePointNormals, bool);
+  vtkGetMacro(ComputePointNormals, bool);
+  vtkBooleanMacro(ComputePointNormals, bool);
+
+  /// Whether cells without stored normals get normals; off by default.
+  vtkSetMacro(ComputeCellNormals, bool);
+  vtkGetMacro(ComputeCellNormals, bool);
+  vtkBooleanMacro(ComputeCellNormals, bool);
+
+ protected:
+  vtkChronormalInterpolator() = default;
+  ~vtkChronormalInterpolator() override = default;
+
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                             vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int Execute(vtkInformation* request, const std::vector<vtkSmartPointer<vtkDataObject>>& inputs,
+              vtkInformationVector* outputVector) override;
+
+ private:
+  struct Request;
+
+  vtkSmartPointer<vtkDataObject> Interpolate(vtkDataObject* from, vtkDataObject* to, const Request& request);
+  vtkSmartPointer<vtkDataObject> InterpolateBlocks(vtkCompositeDataSet* from, vtkCompositeDataSet* to,
+                                                   const Request& request);
+  vtkSmartPointer<vtkDataSet> InterpolateMesh(vtkDataSet* from, vtkDataSet* to, const Request& request);
+
+  bool ComputePointNormals = true;
+  bool ComputeCellNormals = false;
+  std::array<int, 3> KeptPiece = {0, 1, 0};  // which piece of how many, with how many ghost levels, was asked for last
+};
+
+#endif

@@ -1,0 +1,135 @@
+"""A sheet that bends, turns and folds, as a source with time steps; and its normals from positions alone, by cross
+products in double, which is what the filter is held against."""
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+
+SIDE = 20
+TIMES = (0.0, 1.0, 2.5)
+
+
+def positions(time, side=SIDE):
+    """(n, 3) in float32: waves that run along a sheet which turns about its middle line, more at one end."""
+    u, v = (x.reshape(-1) for x in np.meshgrid(*2 * [np.linspace(0, 1, side)], indexing="ij"))
+    height = 0.3 * np.sin(3 * u + 2 * v + 2 * time) + time * u * v
+    angle = 2 * time * v
+    x, z = u - 0.5, height
+    return np.stack([x * np.cos(angle) - z * np.sin(angle), v, x * np.sin(angle) + z * np.cos(angle)],
+                    axis=-1).astype(np.float32)
+
+
+def quads(side=SIDE):
+    i = np.arange(side * side).reshape(side, side)
+    return np.stack([i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]], axis=-1).reshape(-1, 4)
+
+
+def triangles(side=SIDE):
+    q = quads(side)
+    return np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
+
+
+def between(time, side=SIDE):
+    """Positions at any time, as straight lines between the steps have them, in double."""
+    time = min(max(time, TIMES[0]), TIMES[-1])
+    k = min(int(np.searchsorted(TIMES, time, side="right")), len(TIMES) - 1)
+    t = (time - TIMES[k - 1]) / (TIMES[k] - TIMES[k - 1])
+    return (1 - t) * positions(TIMES[k - 1], side).astype(float) + t * positions(TIMES[k], side).astype(float)
+
+
+def areas(points, faces):
+    """Vector areas of polygons, by Newell's sums over their edges."""
+    corners = points[faces] - points[faces[:, :1]]
+    return np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
+
+
+def unit(vectors):
+    """Of length 1, but zero vectors as they are."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(lengths == 0, 1, lengths)
+
+
+def point_normals(points, faces):
+    """Sums of the vector areas of the faces around each point."""
+    sums = np.zeros((len(points), 3))
+    for corner in faces.T:
+        np.add.at(sums, corner, areas(points, faces))
+    return unit(sums)
+
+
+def degrees(a, b):
+    a, b = unit(np.asarray(a, dtype=float)), unit(np.asarray(b, dtype=float))
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)))
+
+
+def cells(faces):
+    offsets, corners = vtkIdTypeArray(), vtkIdTypeArray()
+    offsets.DeepCopy(numpy_to_vtk(np.arange(len(faces) + 1) * faces.shape[1], array_type=offsets.GetDataType()))
+    corners.DeepCopy(numpy_to_vtk(faces.reshape(-1).astype(np.int64), array_type=corners.GetDataType()))
+    result = vtkCellArray()
+    result.SetData(offsets, corners)
+    return result
+
+
+def named(values, name):
+    array = numpy_to_vtk(np.ascontiguousarray(values), deep=1)
+    array.SetName(name)
+    return array
+
+
+def mesh(points, faces):
+    """A vtkPolyData with stored normals of points, an amount, and ids."""
+    data = vtkPolyData()
+    held = vtkPoints()
+    held.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=1))
+    data.SetPoints(held)
+    data.SetPolys(cells(faces))
+    data.GetPointData().SetNormals(named(point_normals(points.astype(float), faces).astype(np.float32), "Normals"))
+    data.GetPointData().AddArray(named(points[:, 0] * 2, "amount"))
+    data.GetPointData().AddArray(named(np.arange(len(points), dtype=float), "number"))  # survives every filter of VTK
+    for attributes, count in ((data.GetPointData(), len(points)), (data.GetCellData(), len(faces))):
+        ids = vtkIdTypeArray()
+        ids.DeepCopy(named(np.arange(count), "ids"))
+        ids.SetName("ids")
+        attributes.SetGlobalIds(ids)
+    return data
+
+
+class Steps(VTKPythonAlgorithmBase):
+    """A source with time steps; `make(time)` gives the data of each. It notes the times, and the piece with its ghost
+    levels, that it was asked for; where it cannot cut pieces, VTK has it make the first piece alone."""
+
+    def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False, times=TIMES):
+        super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
+        self.make, self.cuts, self.times, self.asked, self.piece = make, cuts, times, [], None
+
+    def RequestInformation(self, request, inputs, outputs):
+        info = outputs.GetInformationObject(0)
+        info.Set(Pipeline.TIME_STEPS(), self.times, len(self.times))
+        info.Set(Pipeline.TIME_RANGE(), (self.times[0], self.times[-1]), 2)
+        if self.cuts:
+            info.Set(vtkAlgorithm.CAN_HANDLE_PIECE_REQUEST(), 1)
+        return 1
+
+    def RequestData(self, request, inputs, outputs):
+        info = outputs.GetInformationObject(0)
+        time = info.Get(Pipeline.UPDATE_TIME_STEP())
+        self.asked.append(time)
+        self.piece = (info.Get(Pipeline.UPDATE_PIECE_NUMBER()), info.Get(Pipeline.UPDATE_NUMBER_OF_GHOST_LEVELS()))
+        output = vtkDataObject.GetData(info)
+        output.ShallowCopy(self.make(time))
+        output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
+        return 1
+
+
+def numbers(data):
+    """Which points of the whole mesh these are."""
+    return np.rint(vtk_to_numpy(data.GetPointData().GetArray("number"))).astype(int)
+
+
+def normals(data):
+    return vtk_to_numpy(data.GetPointData().GetNormals())
