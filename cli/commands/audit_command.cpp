@@ -73,7 +73,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
-  if (document != nullptr && !how.shard.is_all())
+  if (document != nullptr && how.shard)
     return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path(input, how.path); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
@@ -106,10 +106,10 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }
-  const Result<Shard> shard = options.shard.read();
+  const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   how.shard = shard.value();
-  if (!how.shard.is_all() && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;

@@ -219,7 +219,7 @@ Result<int> run(const Options& options) {
                   "certificates are of straight paths: leave out --path, or compare at samples");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
-  const Result<Shard> shard = options.shard.read();
+  const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   if (options.shard.text && options.each) return misuse("--shard", "it divides one motion: leave out --each");
   if (options.shard.text && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");

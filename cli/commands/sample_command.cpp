@@ -95,11 +95,11 @@ Result<Request> understand(const Options& options) {
   if (!format) return format.error();
   Result<AskedMoments> asked = understand(options.moments);
   if (!asked) return asked.error();
-  const Result<Shard> shard = options.shard.read();
+  const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   Request request{sample.value(),
                   std::move(asked).value(),
-                  {options.common.output, format.value(), options.common.force, shard.value()}};
+                  {options.common.output, format.value(), options.common.force, shard.value().value_or(Shard{})}};
   if (const Status status = check_input(options.input); !status) return status.error();
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();

@@ -52,8 +52,8 @@ Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<
 
 Option ShardArgument::option(const std::string& of_what) { return {"--shard I/N", &text, of_what}; }
 
-Result<Shard> ShardArgument::read() const {
-  if (!text) return Shard{};
+Result<std::optional<Shard>> ShardArgument::read() const {
+  if (!text) return std::optional<Shard>();
   const std::string_view words = *text;
   const std::size_t slash = words.find('/');
   std::size_t index = 0, count = 0;
@@ -64,7 +64,7 @@ Result<Shard> ShardArgument::read() const {
   const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
                         is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
   if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
-  return Shard{index - 1, count};
+  return std::optional(Shard{index - 1, count});
 }
 
 std::vector<Option> PathArgument::table(const std::string& what) {

@@ -72,7 +72,7 @@ struct ShardArgument {
   /// of_what is what is divided, and what OUT is then, for the help.
   [[nodiscard]] Option option(const std::string& of_what);
   /// Errors: kUsage where it is no such share.
-  [[nodiscard]] Result<Shard> read() const;
+  [[nodiscard]] Result<std::optional<Shard>> read() const;
 };
 
 /// The option --path: how vertices move between the keyframes of a sequence.

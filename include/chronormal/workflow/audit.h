@@ -88,7 +88,7 @@ struct AuditOptions {
   bool keep_errors = false;           ///< every single one, in Audit::errors
   /// Of a sequence of straight paths: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
   /// asked of the whole motion (which vertices move, how long a normal gets) is found anew by every shard.
-  Shard shard = {};
+  std::optional<Shard> shard = {};
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };

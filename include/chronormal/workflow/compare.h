@@ -61,7 +61,7 @@ struct CompareOptions {
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
   /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared. Of straight paths.
-  Shard shard = {};
+  std::optional<Shard> shard = {};
   /// How the vertices of a sequence move: on curved paths every scheme is held against the exact normals of these curves,
   /// and one more row, "exact", is PathCurves (normals/path_curves.h).
   PathKind path = PathKind::kLinear;

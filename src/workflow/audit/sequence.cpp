@@ -246,7 +246,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   const bool is_straight = options.path == PathKind::kLinear;
-  if (!options.shard.is_all() && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
+  if (options.shard && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
     return Error{ErrorCode::kUsage, "",
                  "a shard is of the segments of a sequence of straight paths, and keeps sums and no single errors"};
   if (!is_straight) {
@@ -284,9 +284,10 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const std::size_t rows = motion.segments.size() * options.samples.value_or(kAuditSamples);
     if (const Status status = reserve_rows(result.errors[0], rows); !status) return status.error();
   }
+  const Shard share = options.shard.value_or(Shard{});
   std::size_t done = 0;
   const auto progress = [&] {
-    if (options.progress) options.progress(++done, options.shard.of(motion.segments.size()).count);
+    if (options.progress) options.progress(++done, share.of(motion.segments.size()).count);
   };
   const bool is_targets = motion.kind == MotionKind::kTargets;
   for (const std::vector<std::size_t>& segments : segments_of_subjects(motion)) {
@@ -305,7 +306,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     if (!is_targets) groups = NormalGroups();  // the part has all that is needed of them
     if (part.outputs().empty()) {
       ++result.still;
-      for (std::size_t s = 0; s < options.shard.of(subject.segments).count; ++s) progress();
+      for (std::size_t s = 0; s < share.of(subject.segments).count; ++s) progress();
       continue;
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
@@ -313,7 +314,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
                           normals_at_first_keyframe(part, base), segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
-                          static_cast<bool>(watch), options.shard, options.shard.is_all() ? nullptr : &result.measured};
+                          static_cast<bool>(watch), share, options.shard ? &result.measured : nullptr};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;

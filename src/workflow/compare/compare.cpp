@@ -16,9 +16,9 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "workflow/compare/compared.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
-#include "workflow/errors/shards.h"
 
 namespace chronormal {
 namespace {
@@ -27,34 +27,10 @@ namespace {
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
-// Below this mean, the error of linear is its rounding, and no measure for others.
-constexpr double kNoError = 1e-6;  // radians
-
 using Clock = std::chrono::steady_clock;
 
 double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-}
-
-// Puts the bounds of the elements of a block together, or those of blocks; of equals the first counts.
-void add(CertifiedError& all, const CertifiedError& other) {
-  all.lower = std::max(all.lower, other.lower);
-  all.unbounded += other.unbounded;
-  if (!(other.upper > all.upper)) return;
-  all.upper = other.upper;
-  all.segment = other.segment;
-  all.element = other.element;
-  all.from = other.from;
-  all.to = other.to;
-}
-
-// Adds what was found after it. Adding the same parts in the same order gives the same bits.
-void add(SchemeTally& all, const SchemeTally& other) {
-  all.quality.add(other.quality);
-  add(all.certified, other.certified);
-  all.fallbacks += other.fallbacks;
-  all.flagged += other.flagged;
-  all.bytes += other.bytes;
 }
 
 // The median, which a thread that was interrupted does not move.
@@ -283,47 +259,6 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
-std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
-  std::optional<std::size_t> cheapest;
-  for (std::size_t s = 0; s < schemes.size(); ++s) {
-    if (schemes[s].certified->upper * kDegreesPerRadian > degrees) continue;
-    if (!cheapest || evaluation_cost(schemes[s]) < evaluation_cost(schemes[*cheapest])) cheapest = s;
-  }
-  return cheapest;
-}
-
-// Fills in what follows from the sums over segments, of each row, and of linear.
-void conclude(const std::vector<SchemeTally>& totals, std::size_t segments, bool certified, Comparison& comparison) {
-  std::vector<SchemeComparison>& rows = comparison.schemes;
-  const auto linear_row =
-      std::find_if(rows.begin(), rows.end(), [](const auto& row) { return row.scheme == "linear"; });
-  const Quality& linear = totals[static_cast<std::size_t>(linear_row - rows.begin())].quality;
-  const double elements = static_cast<double>(comparison.elements * segments);
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    const SchemeTally& total = totals[s];
-    SchemeComparison& row = rows[s];
-    row.quality = total.quality;
-    row.relative_to_linear = {};
-    if (linear.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear.sum;
-    row.fallbacks = total.fallbacks;
-    row.flagged = total.flagged;
-    row.bytes = total.bytes / elements;
-    if (certified) row.certified = total.certified;
-  }
-  if (comparison.tolerance) comparison.cheapest = cheapest_within(rows, *comparison.tolerance);
-}
-
-// Whether two shards may be of one comparison: of the same elements at the same samples, by the same schemes.
-bool are_of_one(const Comparison& a, const Comparison& b) {
-  const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
-    return one.scheme == other.scheme && one.sequential == other.sequential &&
-           one.certified.has_value() == other.certified.has_value();
-  };
-  return a.kind == b.kind && a.vertices == b.vertices && a.faces == b.faces && a.elements == b.elements &&
-         a.segments == b.segments && a.samples == b.samples && a.motion == b.motion && a.tolerance == b.tolerance &&
-         std::equal(a.schemes.begin(), a.schemes.end(), b.schemes.begin(), b.schemes.end(), same_scheme);
-}
-
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -403,14 +338,14 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
-  if (!options.shard.is_all() && (options.keep_errors || options.keep_samples || curved))
+  if (options.shard && (options.keep_errors || options.keep_samples || curved))
     return Error{ErrorCode::kUsage, "", "a shard keeps sums, of straight paths: the rest is of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());
   std::vector<SchemeTimes> times(names.size());
   std::vector<ComparedSegment> compared;
-  const IndexRange share = options.shard.of(motion.segments.size());
+  const IndexRange share = options.shard.value_or(Shard{}).of(motion.segments.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
   const std::size_t first_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
@@ -441,7 +376,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
           rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
       }
       if ((first + i + 1) % blocks_per_segment != 0) continue;
-      if (!options.shard.is_all()) compared.push_back({segment, {}});
+      if (options.shard) compared.push_back({segment, {}});
       for (std::size_t s = 0; s < names.size(); ++s) {
         Tally& found = of_segment[s];
         found.quality.max_at.element = all->first_output(found.quality.max_at.element);
@@ -449,7 +384,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
         add(totals[s], found);
         times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
         times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
-        if (!options.shard.is_all()) compared.back().schemes.push_back(found);
+        if (options.shard) compared.back().schemes.push_back(found);
         found = {};
       }
     }
@@ -481,47 +416,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   }
   conclude(totals, share.count, certified, comparison);
   return comparison;
-}
-
-Result<Comparison> merge(std::vector<Comparison> shards) {
-  std::vector<ComparedSegment> compared;
-  for (Comparison& shard : shards) {
-    if (!are_of_one(shard, shards.front()))
-      return Error{ErrorCode::kUsage, "", "these are shards of two different comparisons"};
-    std::move(shard.compared.begin(), shard.compared.end(), std::back_inserter(compared));
-  }
-  Comparison all = std::move(shards.front());
-  if (const Status complete = put_in_order(all.segments, compared); !complete) return complete.error();
-  std::vector<SchemeTally> totals(compared.front().schemes.size());
-  for (const ComparedSegment& segment : compared)
-    for (std::size_t i = 0; i < totals.size(); ++i) add(totals[i], segment.schemes[i]);
-  const bool certified = all.schemes.front().certified.has_value();
-  for (SchemeComparison& row : all.schemes) row.prepare_ns = row.evaluate_ns = 0;
-  all.compared.clear();
-  conclude(totals, all.segments, certified, all);
-  return all;
-}
-
-double evaluation_cost(const SchemeComparison& scheme) noexcept {
-  const OperationCounts& o = scheme.operations;
-  return scheme.bytes + o.add + o.multiply + 4 * (o.divide + o.sqrt) + 20 * o.trigonometric;
-}
-
-Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options) {
-  const bool are_faces = options.elements.kind == ElementKind::kFaces;
-  if (options.schemes.empty()) {
-    for (const SchemeDescription& description : scheme_descriptions()) {
-      const auto scheme = make_scheme(description.name);
-      if (scheme && (are_faces || !scheme.value()->needs_faces())) options.schemes.emplace_back(description.name);
-    }
-  }
-  options.tolerance = tolerance;
-  options.samples = 2;
-  Result<Comparison> comparison = compare(motion, options);
-  if (!comparison) return comparison.error();
-  Choice choice{std::nullopt, std::move(comparison).value()};
-  if (choice.comparison.cheapest) choice.scheme = choice.comparison.schemes[*choice.comparison.cheapest].scheme;
-  return choice;
 }
 
 }  // namespace chronormal

@@ -70,6 +70,7 @@ std::vector<std::vector<std::string>> write_all(const TemporaryFolder& folder, c
 
 InputOptions streamed(InputOptions options) {
   options.stream = true;
+  options.kept_bytes = 0;
   return options;
 }
 
@@ -226,7 +227,7 @@ TEST(InputFrames, from_to_and_every_choose_keyframes_and_keep_their_times) {
   for (const auto& names : write_all(folder, motion)) {
     for (const bool stream : {false, true}) {
       InputOptions options = test::files(names);
-      options.stream = stream;
+      if (stream) options = streamed(options);
       options.from = 1;
       options.to = 7;
       options.every = 3;
