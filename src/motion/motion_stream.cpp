@@ -19,6 +19,12 @@ namespace {
 // A keyframe that is read while the caller computes. Where there are no threads, nothing is read ahead.
 class ReadAhead {
  public:
+#ifdef CHRONORMAL_HAVE_TBB
+  static constexpr bool kCan = true;
+#else
+  static constexpr bool kCan = false;
+#endif
+
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
@@ -136,7 +142,8 @@ Status MotionStream::hold(std::size_t first, std::size_t last) {
   state.first = first;
   state.end = last + 1;
   const bool is_more = state.end < state.outline.keyframes.size();
-  if (goes_on && is_more && !state.ahead.is_under_way() && state.outline.keyframes[state.end].positions.empty())
+  if (ReadAhead::kCan && goes_on && is_more && !state.ahead.is_under_way() &&
+      state.outline.keyframes[state.end].positions.empty())
     state.ahead.start(state.read, state.outline, state.end, state.room());
   state.spare.clear();
   return Success{};

@@ -11,8 +11,10 @@
 namespace chronormal::inline internal {
 
 std::optional<PositionedFile> PositionedFile::open(const std::string& path) {
-  Descriptor descriptor(open_descriptor(path, O_RDONLY | O_NOCTTY | O_NONBLOCK));
   struct stat status {};
+  // A pipe that is opened and closed again has lost its writer: look before.
+  if (path == "-" || ::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  Descriptor descriptor(open_descriptor(path, O_RDONLY));
   if (!descriptor.is_open() || ::fstat(descriptor.number(), &status) != 0 || !S_ISREG(status.st_mode))
     return std::nullopt;
   return PositionedFile(path, std::move(descriptor), static_cast<std::uint64_t>(status.st_size));

@@ -98,13 +98,15 @@ std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes
   return ObjFaces(bytes, positions);
 }
 
-// Of files that can be found; who reads the others will say what is wrong.
-std::uint64_t bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
+// Of all files; nothing where one of them is none that can be read again, such as a pipe, or is not there.
+std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
   std::uint64_t bytes = 0;
   for (const std::size_t k : frames) {
     std::error_code code;
+    if (files[k] == "-" || !std::filesystem::is_regular_file(files[k], code)) return std::nullopt;
     const std::uintmax_t size = std::filesystem::file_size(files[k], code);
-    if (!code) bytes += size;
+    if (code) return std::nullopt;
+    bytes += size;
   }
   return bytes;
 }
@@ -181,8 +183,8 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   Result<std::vector<std::size_t>> chosen = choose_files(files, options);
   if (!chosen) return chosen.error();
   const std::vector<std::size_t> frames = std::move(chosen).value();
-  const std::uint64_t bytes = bytes_of(files, frames);
-  if (bytes <= options.kept_bytes) return read_sequence(files, options);
+  const std::optional<std::uint64_t> bytes = bytes_of(files, frames);
+  if (!bytes || *bytes <= options.kept_bytes) return read_sequence(files, options);
 
   Motion outline;
   for (const std::size_t k : frames)
@@ -196,7 +198,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), first_path, place, read);
   if (!first) return first.error();
   if (options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty()) return read_sequence(files, options);
-  read.bytes_read = bytes;
+  read.bytes_read = *bytes;
   outline.topology = std::move(first.value().topology);
   std::vector<float>& positions = outline.keyframes[0].positions;
   positions = std::move(first.value().positions);

@@ -22,7 +22,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 /// The same but that the files of keyframes after the first are read when the stream asks for them, with the errors of
-/// that file; all at once where the options keep the normals of all and the first file stores some.
+/// that file. All are read at once where they are small (InputOptions::kept_bytes), where one is no regular file, and where
+/// the options keep the normals of all and the first file stores some.
 [[nodiscard]] Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -82,7 +82,7 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
   const Motion motion = bending();
   std::vector<CompareOptions> all(3);
   all[1].elements.kind = ElementKind::kVertices;
-  all[1].schemes = {"slerp", "recompute"};
+  all[1].schemes = {"slerp", "quadratic"};
   all[1].tolerance = 0.5;
   all[2].access = Access::kSequential;
   for (const CompareOptions& options : all) {
@@ -97,7 +97,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     normals.of_keyframes.emplace_back();
     for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)
-      normals.of_keyframes.back().insert(normals.of_keyframes.back().end(), {0, k == 4 ? 0.0F : 0.25F, k == 4 ? 0 : 1});
+      normals.of_keyframes.back().insert(normals.of_keyframes.back().end(), {0, k == 4 ? 0.0F : 0.25F, k == 4 ? 0.0F : 1.0F});
   }
   for (const StoredNormals& stored : {StoredNormals{}, normals}) {
     for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
