@@ -65,7 +65,7 @@ TEST(MotionStream, holds_no_more_than_was_asked_for) {
 TEST(MotionStream, any_order_of_keyframes_gives_the_right_ones) {
   Source source;
   MotionStream stream = source.stream(12, 0);
-  for (const std::size_t first : {7, 8, 9, 2, 9, 10, 3, 4, 5, 5, 0}) {
+  for (const std::size_t first : {7U, 8U, 9U, 2U, 9U, 10U, 3U, 4U, 5U, 5U, 0U}) {
     ASSERT_TRUE(stream.hold(first, first + 1).ok());
     for (const std::size_t k : {first, first + 1}) {
       ASSERT_EQ(stream.motion().keyframes[k].positions.size(), 9U) << k;

@@ -23,7 +23,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-constexpr std::size_t kSide = 8;
+constexpr std::uint32_t kSide = 8;
 
 // A sheet that waves, with a seam: two columns of vertices lie at one place, and come apart in the last keyframe.
 Motion wave(std::size_t keyframes) {
@@ -102,7 +102,7 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
     EXPECT_TRUE(stream.motion().topology == whole.topology) << names.back();
     ASSERT_EQ(stream.motion().keyframes.size(), 5U) << names.back();
     EXPECT_TRUE(stream.motion().keyframes[3].positions.empty()) << names.back() << ": it was read whole";
-    for (const std::size_t k : {3, 0, 4, 1, 2}) {
+    for (const std::size_t k : {3U, 0U, 4U, 1U, 2U}) {
       ASSERT_TRUE(stream.hold(k, k).ok());
       EXPECT_EQ(stream.motion().keyframes[k].positions, whole.keyframes[k].positions) << names.back();
       EXPECT_EQ(stream.motion().keyframes[k].time, whole.keyframes[k].time) << names.back();
@@ -208,7 +208,7 @@ TEST(InputStream, errors_in_keyframes_are_those_of_reading_whole) {
   folder.write("walk.pc2", bytes);
   folder.write("walk_03.ply", "ply\nformat ascii 1.0\nelement vertex 1\n");
   folder.write("walk_03.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  for (const std::size_t i : {1, 4, 5}) {
+  for (const std::size_t i : {1U, 4U, 5U}) {
     const Result<Motion> whole = test::read_motion(test::files(inputs[i]));
     Result<Input> input = open_input(streamed(test::files(inputs[i])));
     ASSERT_FALSE(whole.ok());

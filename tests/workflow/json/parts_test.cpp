@@ -63,8 +63,8 @@ std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals
 }
 
 TEST(Shard, shares_are_a_partition_and_of_nearly_equal_size) {
-  for (const std::size_t total : {0, 1, 7, 8, 1000003}) {
-    for (const std::size_t count : {1, 2, 3, 7, 10}) {
+  for (const std::size_t total : {0U, 1U, 7U, 8U, 1000003U}) {
+    for (const std::size_t count : {1U, 2U, 3U, 7U, 10U}) {
       std::size_t end = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const IndexRange share = Shard{i, count}.of(total);
@@ -87,7 +87,8 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
   all[2].access = Access::kSequential;
   for (const CompareOptions& options : all) {
     const std::string whole = compare_json({{"walk", compare(motion, options).value()}}, false, false);
-    for (const std::size_t count : {1, 2, 3, 8, 11}) EXPECT_EQ(merged(compare_parts(motion, options, count)), whole);
+    for (const std::size_t count : {1U, 2U, 3U, 8U, 11U})
+      EXPECT_EQ(merged(compare_parts(motion, options, count)), whole);
   }
 }
 
@@ -97,14 +98,16 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     normals.of_keyframes.emplace_back();
     for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)
-      normals.of_keyframes.back().insert(normals.of_keyframes.back().end(), {0, k == 4 ? 0.0F : 0.25F, k == 4 ? 0.0F : 1.0F});
+      normals.of_keyframes.back().insert(normals.of_keyframes.back().end(),
+                                         {0, k == 4 ? 0.0F : 0.25F, k == 4 ? 0.0F : 1.0F});
   }
   for (const StoredNormals& stored : {StoredNormals{}, normals}) {
     for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
       AuditOptions options;
       options.rule = rule;
       const std::string whole = audit_json("walk", audit(motion, stored, options).value(), 1);
-      for (const std::size_t count : {2, 5, 9}) EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
+      for (const std::size_t count : {2U, 5U, 9U})
+        EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
     }
   }
 }
@@ -162,7 +165,7 @@ TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
   for (int i = 0; i <= 40; ++i) moments.times.push_back(0.02 * i);
   const SampleOptions options;
   ASSERT_TRUE(write_samples(motion, options, moments, {folder / "all.npy"}).ok());
-  for (const std::size_t count : {2, 3, 7}) {
+  for (const std::size_t count : {2U, 3U, 7U}) {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < count; ++i) {
       parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
