@@ -186,23 +186,26 @@ Result<int> run(const Options& options) {
 
 Command sample_command() {
   auto options = std::make_shared<Options>();
-  return {"sample",
-          "Write the normals of a motion at chosen times, or of targets at chosen weights",
-          {input_table(options->input),
-           options->moments.table(),
-           options->elements.table(),
-           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-            {"--length KIND", &options->length,
-             "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-             "around a vertex (with --weighting area)"}},
-           options->path.table("normals are exact on all of them"),
-           {{"--hard-edges KIND", &options->hard_edges,
-             "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-             "file, by its smoothing groups (groups) or its own normals (normals)"},
-            {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"}},
-           options->common.table(true)},
-          footer(),
-          [options] { return run(*options); }};
+  return {
+      "sample",
+      "Write the normals of a motion at chosen times, or of targets at chosen weights",
+      {input_table(options->input),
+       options->moments.table(),
+       options->elements.table(),
+       {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+        {"--length KIND", &options->length,
+         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+         "around a vertex (with --weighting area)"}},
+       options->path.table("normals are exact on all of them"),
+       {{"--hard-edges KIND", &options->hard_edges,
+         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+         "file, by its smoothing groups (groups) or its own normals (normals)"},
+        {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"},
+        options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
+                              ".obj with the numbers that they have among all")},
+       options->common.table(true)},
+      footer(),
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli
