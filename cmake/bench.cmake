@@ -6,7 +6,7 @@ if(NOT benchmark_FOUND)
 endif()
 
 file(GLOB_RECURSE bench_sources CONFIGURE_DEPENDS bench/*.cpp)
-list(FILTER bench_sources EXCLUDE REGEX "/bench/peers/")
+list(FILTER bench_sources EXCLUDE REGEX "/bench/(peers|commands)/")
 add_executable(chronormal_bench ${bench_sources})
 target_include_directories(chronormal_bench PRIVATE bench src)
 target_compile_definitions(chronormal_bench PRIVATE CHRONORMAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

@@ -14,6 +14,7 @@ void add_group(Page& page, const Results& results, const std::string& group) {
   for (const Column& column : columns()) header.push_back(column.title);
   std::vector<Cells> rows;
   const auto add_row = [&](const std::string& name, bool many_threads) {
+    if (name == "recompute in float32" && !results.knows(group, name)) return;
     Cells cells = {name};
     for (const Column& column : columns()) {
       const Row* const row = results.find(group, column.size, column.order, name, many_threads);
@@ -49,6 +50,7 @@ Panel size_panel(const Results& results, const std::string& group, std::size_t w
       {"Eigen loop", {"Eigen loop", "Eigen loop"}, Colour::kGrey, Mark::kCross},
       {"plain C++ loop", {"plain C++ loop", "plain C++ loop"}, Colour::kBlack, Mark::kOpenTriangle},
       {"recompute", {"recompute", "recompute"}, Colour::kRed, Mark::kSquare},
+      {"in float32", {"recompute in float32", "recompute in float32"}, Colour::kRed, Mark::kCircle},
       {"exact", {"exact to float3", "exact to float3"}, Colour::kBlue, Mark::kDisc},
       {"compact", {"compact to float3", "compact to float3"}, Colour::kGreen, Mark::kDiamond}};
   Panel panel;
@@ -61,6 +63,7 @@ Panel size_panel(const Results& results, const std::string& group, std::size_t w
              {{0.1, "0.1"}, {1, "1"}, {10, "10"}, {100, "100"}, {1000, "1000"}, {10000, "10000"}}};
   panel.legend = "top left maxrows 4";
   for (const Curve& curve : curves) {
+    if (results.find(group, "15k", kGrid, curve.names[which]) == nullptr) continue;
     Series in_order{curve.title, {}, curve.colour, 2, false, curve.mark};
     for (const Column& column : columns()) {
       const Row* const row = results.find(group, column.size, column.order, curve.names[which]);

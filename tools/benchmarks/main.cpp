@@ -50,6 +50,8 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"cpu", results.machine_value("cpu")},
        {"facts", facts},
        {"quick", results.quick ? " **Repetitions were few and short in this quick run; its figures are rough.**" : ""},
+       {"meshes", meshes_part(results, folder)},
+       {"frames", frames_part(results, folder)},
        {"blend", blend_part(results, folder)}});
   add_costs(part, results);
   add_aims(part, results);

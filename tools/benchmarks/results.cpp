@@ -71,7 +71,8 @@ const std::vector<std::string>& rivals_of(const std::string& group) {
 }
 
 const std::vector<std::string>& ours() {
-  static const std::vector<std::string> all = {"recompute",
+  static const std::vector<std::string> all = {"recompute in float32",
+                                               "recompute",
                                                "exact to float3",
                                                "exact to planes",
                                                "exact to octahedral",
@@ -93,9 +94,9 @@ const std::vector<std::string>& ours() {
 }
 
 const std::vector<std::string>& threaded() {
-  static const std::vector<std::string> all = {"recompute",          "exact to float3",      "compact to float3",
-                                               "bare loop as exact", "bare loop as compact", "prepare exact",
-                                               "prepare compact"};
+  static const std::vector<std::string> all = {"recompute in float32", "recompute",          "exact to float3",
+                                               "compact to float3",    "bare loop as exact", "bare loop as compact",
+                                               "prepare exact",        "prepare compact"};
   return all;
 }
 
@@ -109,18 +110,35 @@ const std::vector<std::string>& schemes() {
 }
 
 const std::vector<std::string>& blend_actives() {
-  static const std::vector<std::string> all = {"1", "2", "4", "8", "16", "100"};
+  static const std::vector<std::string> all = {"1", "2", "4", "8", "16", "52", "100"};
+  return all;
+}
+
+const std::vector<std::string>& dense_actives() {
+  static const std::vector<std::string> all = {"1", "2", "5"};
+  return all;
+}
+
+const std::vector<std::string>& other_meshes() {
+  static const std::vector<std::string> all = {"thin", "varied", "eversion", "dance", "face"};
+  return all;
+}
+
+const std::vector<std::string>& paths_on_meshes() {
+  static const std::vector<std::string> all = {"plain C++ loop",  "recompute in float32", "recompute",
+                                               "exact to float3", "compact to float3",    "prepare exact",
+                                               "prepare compact"};
   return all;
 }
 
 const std::vector<std::string>& blend_ways() {
-  static const std::vector<std::string> all = {"chosen",    "terms",          "touched part",
+  static const std::vector<std::string> all = {"chosen",    "terms",          "touched part", "recompute in float32",
                                                "recompute", "plain C++ loop", "linear sum"};
   return all;
 }
 
-std::string blend_row(const std::string& active, const std::string& way) {
-  return fmt::format("{} of 100: {}", active, way);
+std::string blend_row(const std::string& active, const std::string& way, const std::string& targets) {
+  return fmt::format("{} of {}: {}", active, targets, way);
 }
 
 std::vector<std::string> blend_sizes(const Results& results) {
@@ -176,6 +194,11 @@ const Row* Results::find(const std::string& group, const std::string& size, cons
   return found == rows.end() ? nullptr : &*found;
 }
 
+bool Results::knows(const std::string& group, const std::string& path) const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const Row& row) { return row.group == group && (path.empty() || row.name == path); });
+}
+
 const std::string& Results::machine_value(const std::string& key) const {
   for (const auto& [entry, value] : machine) {
     if (entry == key) return value;
@@ -198,6 +221,8 @@ std::vector<std::string> missing_rows(const Results& results) {
   std::vector<std::string> missing;
   const auto need = [&](const std::string& group, const Column& column, const std::string& name, bool many_threads) {
     if (may_be_missing(group, column, name)) return;
+    // What later runs measure is not asked of earlier ones.
+    if (name == "recompute in float32" && !results.knows(group, name)) return;
     if (results.find(group, column.size, column.order, name, many_threads) == nullptr)
       missing.push_back(fmt::format("{}, {}, {}: {}{}", group, column.size, column.order, name,
                                     many_threads ? " on many threads" : ""));
@@ -221,7 +246,16 @@ std::vector<std::string> missing_rows(const Results& results) {
   }
   for (const std::string& size : blend_sizes(results)) {
     for (const std::string& active : blend_actives()) {
-      for (const std::string& way : blend_ways()) need("blend", {size, kGrid, ""}, blend_row(active, way), false);
+      for (const std::string& way : blend_ways()) {
+        const std::string row = blend_row(active, way);
+        const bool is_later = way == "recompute in float32" || active == "52";
+        if (!is_later || results.knows("dense blend")) need("blend", {size, kGrid, ""}, row, false);
+      }
+    }
+    for (const std::string& active : dense_actives()) {
+      if (!results.knows("dense blend")) break;
+      for (const std::string& way : blend_ways())
+        need("dense blend", {size, kGrid, ""}, blend_row(active, way, dense_actives().back()), false);
     }
   }
   for (const std::string of : {"faces", "vertices"}) {

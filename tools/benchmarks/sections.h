@@ -18,6 +18,11 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 /// The part on blend shapes; empty where no run measured them.
 [[nodiscard]] std::string blend_part(const Results& results, const std::string& folder);
 
+/// The parts on other meshes, and on what a frame costs by how many there are in a segment; empty where no run measured
+/// them.
+[[nodiscard]] std::string meshes_part(const Results& results, const std::string& folder);
+[[nodiscard]] std::string frames_part(const Results& results, const std::string& folder);
+
 [[nodiscard]] std::string nanoseconds(double ns);
 /// The median, and the distance between the quartiles in percent of it; "-" where there is no row.
 [[nodiscard]] std::string cell(const Row* row);

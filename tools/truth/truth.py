@@ -1,5 +1,6 @@
 # Writes docs/truth.md from tools/truth/truth.md.in: motions whose truth is known, as many keyframes as it takes, and sequences by
-# other people in CHRONORMAL_DATA, each given to `chronormal compare --truth`. --check says where the page is another.
+# other people in CHRONORMAL_DATA, each given to `chronormal compare --truth`; and what errors come to on the screen and at keyframes
+# (shading.py). --check says where the page is another.
 import json
 import os
 import pathlib
@@ -8,6 +9,8 @@ import sys
 import tempfile
 
 import numpy as np
+
+import shading
 
 PROGRAM = pathlib.Path('build/release/chronormal').resolve()
 TEMPLATE, PAGE = pathlib.Path('tools/truth/truth.md.in'), pathlib.Path('docs/truth.md')
@@ -99,19 +102,78 @@ def sequences(data):
     return table([f'{name}, every {every}{"nd" if every == 2 else "rd"}' for name, _, every in inputs], results)
 
 
+def sampled(path, *moments):
+    """Positions (k, n, 3), times (k) and faces of a motion at some moments, as `chronormal sample` writes them."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / 'poses.npz'
+        subprocess.run([PROGRAM, 'sample', path, *moments, '--quiet', '-o', out], check=True, capture_output=True)
+        arrays = np.load(out)
+        return arrays['positions'].astype(float), arrays['times'], arrays['faces']
+
+
+def screens(data):
+    """The differences on the screen, for the dance and a face."""
+    lines = []
+    for title, path, moments in [('the dance', 'sequences/rumba_13', ['--times', 'keys']),
+                                 ('a face', 'rigs/ict_capture.glb', ['--animation', '0', '--times', '0:0.5:4'])]:
+        poses, _, faces = sampled(data / path, *moments)
+        low, high = poses.min((0, 1)), poses.max((0, 1))
+        width = 1.02 * (high - low)[:2].max()
+        view = (low + high)[0] / 2 - width / 2, (low + high)[1] / 2 - width / 2, width
+        all_of = {}
+        for start, end in zip(poses, poses[1:]):
+            for name, found in shading.differences(start, end, faces, view).items():
+                all_of.setdefault(name, []).append(found)
+        for name, found in all_of.items():
+            angles, levels = (np.concatenate(part) for part in zip(*found))
+            cells = [angles.mean(), np.percentile(angles, 99), np.median(levels), np.percentile(levels, 99)]
+            lines.append(f'| {title} | `{name}` | ' + ' | '.join(f'{cell:.2f}' for cell in cells) + ' |')
+    head = ['| | scheme | mean, degrees | 99 %, degrees | median pixel, levels | 99 % of pixels, levels |', '|---|---|--:|--:|--:|--:|']
+    return '\n'.join(head + lines)
+
+
+def bands(data):
+    """By how much dn/dt jumps at keyframes, for motions that are known and for the dance."""
+    columns = []
+    for name, (mesh, moved) in MOTIONS.items():
+        times = np.linspace(0, 1, 9)
+        columns.append(shading.mach_bands([moved(mesh[0], t) for t in times], times, mesh[1]))
+    poses, times, faces = sampled(data / 'sequences/rumba_13', '--times', 'keys')
+    columns.append(shading.mach_bands(list(poses), times, faces))
+    titles = {'linear': '`linear` (nlerp)', 'polynomial': '`polynomial`: exact of straight paths', 'curve': 'exact of curved paths (Catmull-Rom)'}
+    lines = ['| jump of dn/dt, % of its size | the turn, 8 segments | the twist, 8 segments | the dance |', '|---|--:|--:|--:|']
+    return '\n'.join(lines + [f'| {titles[name]} | ' + ' | '.join(f'{100 * column[name]:.1f}' for column in columns) + ' |' for name in titles])
+
+
+def table_1(data):
+    """Sums relative to linear over 21 samples of each segment, as Table 1 of the paper has them."""
+    names = ['linear', 'quadratic', 'cubic', 'polynomial', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal', 'circle:timed']
+    columns = []
+    for path in ['sequences/rumba_13', 'rigs/ict_capture.glb']:
+        command = [PROGRAM, 'compare', data / path, '--schemes', ','.join(names), '--json', '--no-times', '--quiet']
+        result = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        columns.append({row['scheme']: row['relative_to_linear'] for row in result['schemes']})
+    number = lambda ratio: f'{ratio:.3f}' if ratio > 0.001 else f'{ratio:.0e}'.replace('e-0', 'e-')
+    lines = ['| sum relative to linear | the dance | a face |', '|---|--:|--:|']
+    return '\n'.join(lines + [f'| `{name}` | ' + ' | '.join(number(column[name]) for column in columns) + ' |' for name in names])
+
+
+# What is measured on other people's meshes, each between two comments of the page.
+MEASURED = {'sequences': sequences, 'screen': screens, 'keyframes': bands, 'table 1': table_1}
+
+
 def main():
     data = os.environ.get('CHRONORMAL_DATA')
     check = '--check' in sys.argv
     text, there = TEMPLATE.read_text(), PAGE.read_text() if PAGE.exists() else ''
-    if not data:
-        # What is there stays: a page without other people's meshes would say less than it did.
-        begin, end = '<!-- sequences -->\n', '\n<!-- end -->'
-        if begin not in there:
-            sys.exit('set CHRONORMAL_DATA to the folder of the real data: the page has figures of its files')
-        sequence_table = there.split(begin)[1].split(end)[0]
-    else:
-        sequence_table = sequences(pathlib.Path(data))
-    page = text.replace('@turn@', known('turn')).replace('@twist@', known('twist')).replace('@sequences@', sequence_table)
+    if not data and any(f'<!-- {name} -->' not in there for name in MEASURED):
+        sys.exit('set CHRONORMAL_DATA to the folder of the real data: the page has figures of its files')
+    page = text.replace('@turn@', known('turn')).replace('@twist@', known('twist'))
+    for name, measure in MEASURED.items():
+        # Without the data what is there stays: a page without other people's meshes would say less than it did.
+        begin, end = f'<!-- {name} -->\n', '\n<!-- end -->'
+        table = measure(pathlib.Path(data)) if data else there.split(begin)[1].split(end)[0]
+        page = page.replace(f'@{name}@', table)
     if check and page != there:
         sys.exit(f'{PAGE} has other figures than those measured now: run tools/make_truth')
     if not check:

@@ -14,6 +14,8 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
@@ -78,37 +80,39 @@ Status check_positions(vtkPolyData* mesh) {
 
 // Polygons, and the triangles of strips, each with the cell that it is of.
 struct Faces {
-  std::vector<std::uint32_t> offsets = {0}, corners;
-  std::vector<vtkIdType> cells;
-
-  [[nodiscard]] std::size_t count() const { return cells.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const {
-    return std::span(corners).subspan(offsets[f], offsets[f + 1] - offsets[f]);
-  }
-  void add(std::initializer_list<vtkIdType> points, vtkIdType cell) { add(points.begin(), points.end(), cell); }
-  void add(const vtkIdType* begin, const vtkIdType* end, vtkIdType cell) {
-    for (; begin != end; ++begin) corners.push_back(static_cast<std::uint32_t>(*begin));
-    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
-    cells.push_back(cell);
-  }
+  Topology topology;
+  std::vector<std::uint32_t> cells;
 };
 
 Faces find_faces(vtkPolyData* mesh) {
-  Faces faces;
-  vtkNew<vtkIdList> cell;
-  vtkIdType number = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
-  for (vtkIdType c = 0; c < mesh->GetNumberOfPolys(); ++c, ++number) {
-    mesh->GetPolys()->GetCellAtId(c, cell);
-    if (cell->GetNumberOfIds() >= 3) faces.add(cell->begin(), cell->end(), number);
+  std::vector<std::uint32_t> offsets = {0}, corners, cells;
+  const auto number = [](vtkIdType n) { return static_cast<std::uint32_t>(n); };
+  const auto end_face = [&](vtkIdType cell) {
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    cells.push_back(number(cell));
+  };
+  corners.reserve(size(mesh->GetPolys()->GetNumberOfConnectivityIds()));
+  offsets.reserve(size(mesh->GetNumberOfPolys()) + 1);
+  cells.reserve(size(mesh->GetNumberOfPolys()));
+  vtkNew<vtkIdList> points;
+  vtkIdType cell = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
+  for (vtkIdType c = 0; c < mesh->GetNumberOfPolys(); ++c, ++cell) {
+    mesh->GetPolys()->GetCellAtId(c, points);
+    if (points->GetNumberOfIds() < 3) continue;
+    for (const vtkIdType point : *points) corners.push_back(number(point));
+    end_face(cell);
   }
-  for (vtkIdType c = 0; c < mesh->GetNumberOfStrips(); ++c, ++number) {
-    mesh->GetStrips()->GetCellAtId(c, cell);
-    for (vtkIdType k = 0; k + 2 < cell->GetNumberOfIds(); ++k) {
+  for (vtkIdType c = 0; c < mesh->GetNumberOfStrips(); ++c, ++cell) {
+    mesh->GetStrips()->GetCellAtId(c, points);
+    for (vtkIdType k = 0; k + 2 < points->GetNumberOfIds(); ++k) {
       const vtkIdType turned = k % 2;  // every second triangle of a strip is wound the other way
-      faces.add({cell->GetId(k + turned), cell->GetId(k + 1 - turned), cell->GetId(k + 2)}, number);
+      for (const vtkIdType i : {k + turned, k + 1 - turned, k + 2}) corners.push_back(number(points->GetId(i)));
+      end_face(cell);
     }
   }
-  return faces;
+  Result<Topology> topology =
+      Topology::polygons(size(mesh->GetNumberOfPoints()), std::move(offsets), std::move(corners));
+  return {std::move(topology).value(), std::move(cells)};
 }
 
 // eq. 5 of docs/theory.md in double, for positions that are not in float: the edges e(t), f(t) of each triangle of the fan
@@ -140,28 +144,27 @@ ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std
   return {n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()};
 }
 
-std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to, const Faces& faces) {
-  if (faces.count() == 0) return {};
+std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to, const Topology& topology) {
+  const std::size_t points = topology.vertex_count(), faces = topology.face_count();
+  if (faces == 0) return {};
   vtkFloatArray* const before = vtkFloatArray::SafeDownCast(from->GetPoints()->GetData());
   vtkFloatArray* const after = vtkFloatArray::SafeDownCast(to->GetPoints()->GetData());
-  const std::size_t points = size(from->GetNumberOfPoints());
   if (before != nullptr && after != nullptr) {
-    const Result<Topology> topology = Topology::polygons(points, faces.offsets, faces.corners);
     Segment segment;
-    segment.topology = &topology.value();
+    segment.topology = &topology;
     segment.from = VectorView<const float>::packed(before->GetPointer(0), points);
     segment.to = VectorView<const float>::packed(after->GetPointer(0), points);
     return all_face_control_normals(segment);
   }
-  std::vector<ControlNormals> result(faces.count());
-  for_elements(faces.count(), [&](std::size_t f) { result[f] = control_normals_in_double(from, to, faces.face(f)); });
+  std::vector<ControlNormals> result(faces);
+  for_elements(faces, [&](std::size_t f) { result[f] = control_normals_in_double(from, to, topology.face(f)); });
   return result;
 }
 
 // The sum of terms in the order of their values, which knows nothing of the order in which a mesh or a piece of it has them.
 ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   const auto values = [](const ControlNormals& n) {
-    return std::array{n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z};
+    return std::tie(n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z);
   };
   std::sort(terms.begin(), terms.end(),
             [&](const ControlNormals& a, const ControlNormals& b) { return values(a) < values(b); });
@@ -187,14 +190,15 @@ struct Vectors {
 
 // Which faces each element has the sum of.
 struct Groups {
-  // element_of(k) and face_of(k) name an element and a face of it, `pairs` times.
-  template <class ElementOf, class FaceOf>
-  Groups(std::size_t elements, std::size_t pairs, const ElementOf& element_of, const FaceOf& face_of)
-      : ends(elements + 1, 0), faces(pairs) {
+  // for_pairs(body) calls body(element, face) for each face of each element, in the same order every time.
+  template <class ForPairs>
+  Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
     // By counting: ends[e + 1] counts e, then ends[e] is where e begins, and in the end where it ends.
-    for (std::size_t k = 0; k < pairs; ++k) ++ends[element_of(k) + 1];
+    for_pairs([this](std::size_t element, std::size_t) { ++ends[element + 1]; });
     for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
-    for (std::size_t k = 0; k < pairs; ++k) faces[ends[element_of(k)]++] = static_cast<std::uint32_t>(face_of(k));
+    faces.resize(ends.back());
+    for_pairs(
+        [this](std::size_t element, std::size_t face) { faces[ends[element]++] = static_cast<std::uint32_t>(face); });
   }
 
   [[nodiscard]] std::size_t size() const { return ends.size() - 1; }
@@ -237,22 +241,20 @@ Status check_motion(vtkPolyData* from, vtkPolyData* to) {
 MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells) {
   const bool in_double = from->GetPoints() != nullptr && from->GetPoints()->GetDataType() == VTK_DOUBLE;
   const Faces faces = find_faces(from);
-  const std::vector<ControlNormals> of_faces = normals_of_faces(from, to, faces);
+  const Topology& topology = faces.topology;
+  const std::vector<ControlNormals> of_faces = normals_of_faces(from, to, topology);
   MeshNormals result;
   if (points) {
-    std::vector<std::uint32_t> face_of_corner(faces.corners.size());
-    for (std::size_t f = 0; f < faces.count(); ++f)
-      std::fill(face_of_corner.begin() + faces.offsets[f], face_of_corner.begin() + faces.offsets[f + 1],
-                static_cast<std::uint32_t>(f));
-    const Groups groups(
-        size(from->GetNumberOfPoints()), faces.corners.size(), [&](std::size_t k) { return faces.corners[k]; },
-        [&](std::size_t k) { return face_of_corner[k]; });
+    const Groups groups(topology.vertex_count(), [&](const auto& body) {
+      for (std::size_t f = 0; f < topology.face_count(); ++f)
+        for (const std::uint32_t point : topology.face(f)) body(point, f);
+    });
     result.of_points = normals_of_groups(groups, of_faces, t, in_double);
   }
   if (cells) {
-    const Groups groups(
-        size(from->GetNumberOfCells()), faces.count(), [&](std::size_t k) { return size(faces.cells[k]); },
-        [](std::size_t k) { return k; });
+    const Groups groups(size(from->GetNumberOfCells()), [&](const auto& body) {
+      for (std::size_t f = 0; f < faces.cells.size(); ++f) body(faces.cells[f], f);
+    });
     result.of_cells = normals_of_groups(groups, of_faces, t, in_double);
   }
   return result;

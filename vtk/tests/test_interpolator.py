@@ -161,16 +161,21 @@ class ArraysTest(unittest.TestCase):
     def test_texts_are_those_of_the_step_before(self):
         def make(time):
             data = mesh(positions(time, 2), triangles(2))
-            texts = vtkStringArray()
-            texts.SetName("texts")
-            for k in range(4):
-                texts.InsertNextValue(f"{k} at {time}")
-            data.GetPointData().SetPedigreeIds(texts)
+            for name in ("names", "notes"):
+                texts = vtkStringArray()
+                texts.SetName(name)
+                for k in range(4):
+                    texts.InsertNextValue(f"{k} at {time}")
+                data.GetPointData().AddArray(texts)
+            data.GetPointData().SetActivePedigreeIds("names")
             return data
 
         source = Steps(make)
-        found = at(connected(vtkChronormalInterpolator, source), 0.7).GetPointData().GetPedigreeIds()
-        self.assertEqual([found.GetValue(k) for k in range(4)], [f"{k} at 0.0" for k in range(4)])
+        found = at(connected(vtkChronormalInterpolator, source), 0.7).GetPointData()
+        self.assertEqual(found.GetPedigreeIds().GetName(), "names")
+        for name in ("names", "notes"):
+            texts = found.GetAbstractArray(name)
+            self.assertEqual([texts.GetValue(k) for k in range(4)], [f"{k} at 0.0" for k in range(4)])
 
     def test_blocks_of_composite_data_are_interpolated_each(self):
         def make(time):

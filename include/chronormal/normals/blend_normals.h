@@ -26,7 +26,6 @@
 #define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,9 +49,12 @@ enum class BlendPath {
 /// "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
+/// A gigabyte: many dense targets have pairs beyond that, which would hardly ever be the cheapest way.
+inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
+
 struct BlendNormalsOptions {
   /// Of BlendCost::bytes. What is kept beside the terms, least_bytes, is kept in any case.
-  std::size_t max_bytes = std::numeric_limits<std::size_t>::max();
+  std::size_t max_bytes = kUsualBlendBytes;
   /// Takes this path whatever it costs.
   std::optional<BlendPath> forced = {};
 };

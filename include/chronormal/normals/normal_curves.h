@@ -123,6 +123,7 @@ class NormalCurves {
   [[nodiscard]] std::vector<ByteCount> byte_counts() const;
 
  private:
+  friend class CurvePreparation;
   friend class NormalPlayback;
 
   explicit NormalCurves(std::unique_ptr<CurveData> data) noexcept;

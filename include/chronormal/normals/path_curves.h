@@ -55,8 +55,6 @@ class PathCurves {
 
  private:
   struct Data;
-  [[nodiscard]] std::size_t evaluate(IndexRange range, double t, VectorView<float> result) const noexcept;
-
   std::unique_ptr<Data> data_;
 };
 

@@ -8,6 +8,7 @@
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 
+#include <memory>
 #include <span>
 
 #include "chronormal/core/parallel.h"
@@ -28,6 +29,24 @@ namespace chronormal::inline internal {
                                      CurveData* reuse);
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
+
+/// The same on one thread in slices, with the same bits: see CurvePreparation. The segment and the groups must outlive it.
+class CurveSlices {
+ public:
+  CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);
+  CurveSlices(const CurveSlices&) = delete;
+  CurveSlices& operator=(const CurveSlices&) = delete;
+  ~CurveSlices();
+
+  /// Does this share of the work, or what is left of it; returns whether all is done.
+  bool advance(double share);
+  /// Does what is left and returns the curves; once.
+  [[nodiscard]] CurveData finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace chronormal::inline internal
 

@@ -16,6 +16,7 @@
 #include "normals/control/local_time.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/kernels/evaluate_path.h"
+#include "normals/curves/outputs.h"
 
 namespace chronormal {
 namespace {
@@ -93,6 +94,9 @@ struct PathCurves::Data {
     }
     return carries;
   }
+
+  // Writes the unit normals of a range at t. Returns how many have no direction.
+  std::size_t evaluate(IndexRange range, double t, VectorView<float> result, MemoryAccess pass) const noexcept;
 };
 
 std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment) {
@@ -142,34 +146,40 @@ std::size_t PathCurves::unit_normals(double time, VectorView<float> result, Thre
   }
   const double t = local_time(time);
   std::atomic<std::size_t> without_direction = 0;
-  blocks_on(threads, size(), kPiece, [&](IndexRange range) { without_direction += evaluate(range, t, result); });
+  const MemoryAccess pass = access_of_pass(bytes(), size() * 3 * sizeof(float));
+  blocks_on(threads, size(), kPiece, [&](IndexRange range) {
+    without_direction += data_->evaluate(range, t, result, pass);
+    flush_stream();
+  });
   return without_direction;
 }
 
 // The range begins at a block.
-std::size_t PathCurves::evaluate(IndexRange range, double t, VectorView<float> result) const noexcept {
+std::size_t PathCurves::Data::evaluate(IndexRange range, double t, VectorView<float> result,
+                                       MemoryAccess pass) const noexcept {
   if (range.count == 0) return 0;
   const PathWeights weights = weights_at(t);
-  const float* const blocks = data_->blocks.data() + range.first / kTile * kPathBlock;
+  const float* const first_block = blocks.data() + range.first / kTile * kPathBlock;
   std::size_t done = range.count / kTile * kTile;  // in whole blocks, where the kernel may write all of them
   if (result.is_packed())
-    evaluate_path_blocks(blocks, done / kTile, weights, PackedResult{result.x + 3 * range.first});
+    evaluate_path_blocks(first_block, done / kTile, weights,
+                         PackedResult{result.x + 3 * range.first, access_to(pass, result.x)});
   else if (result.stride == 1)
-    evaluate_path_blocks(blocks, done / kTile, weights,
-                         PlanesResult{result.x + range.first, result.y + range.first, result.z + range.first});
+    evaluate_path_blocks(first_block, done / kTile, weights,
+                         PlanesResult{result.x + range.first, result.y + range.first, result.z + range.first,
+                                      access_to(pass, result.x, result.y, result.z)});
   else
     done = 0;
   alignas(64) float x[kTile], y[kTile], z[kTile];
   for (; done < range.count; done += kTile) {
-    evaluate_path_blocks(blocks + done / kTile * kPathBlock, 1, weights, PlanesResult{x, y, z});
+    evaluate_path_blocks(first_block + done / kTile * kPathBlock, 1, weights, PlanesResult{x, y, z});
     const std::size_t count = std::min(kTile, range.count - done);
     for (std::size_t i = 0; i < count; ++i) result.set(range.first + done + i, {x[i], y[i], z[i]});
   }
   std::size_t without_direction = 0;
-  const std::vector<std::size_t>& flagged = data_->flagged;
   auto at = std::lower_bound(flagged.begin(), flagged.end(), range.first);
   for (; at != flagged.end() && *at < range.end(); ++at) {
-    const UnitNormal u = unit_normal_at(data_->flagged_normals[static_cast<std::size_t>(at - flagged.begin())], t);
+    const UnitNormal u = unit_normal_at(flagged_normals[static_cast<std::size_t>(at - flagged.begin())], t);
     result.set(*at, to_float(u.vector));
     if (u.direction == Direction::kNone) ++without_direction;
   }

@@ -6,10 +6,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "chronormal/normals/control_normals.h"
+#include "core/memory.h"
 #include "motion/coherence.h"
+#include "normals/curves/curve_sources.h"
+#include "normals/curves/kernels/pack.h"
+#include "normals/curves/part_builder.h"
+#include "normals/recompute/kernels/recompute_tiles.h"
 
 namespace chronormal {
 namespace {
@@ -17,28 +23,36 @@ namespace {
 // Where the data of a pass lie, by their size: in the cache of a core, in the shared one, in memory.
 enum Level { kNear, kShared, kMemory };
 
-// Nanoseconds, one for each level. Medians of one core of a Zen 5 server, meshes of 15 k, 45 k, 1 M and 10 M triangles
-// in grid order and shuffled; see docs/benchmarks.md. What is added for polygons, and for a cache line that is far
-// away, is the difference between two of them.
+// Nanoseconds, one for each level: of one core of an Intel Xeon of 2.6 GHz with 2 MiB of its own, on meshes of 15 k, 45 k,
+// 1 M and 10 M triangles in grid order and shuffled, on a dance and on a sphere that turns inside out. What is added for
+// polygons, and for a cache line that is far away, is the difference between two of them.
 struct Row {
   std::array<double, 3> at;
 };
 
 // Recompute, faces: a triangle; the triangle of a polygon; a line of positions that was not at hand.
-constexpr Row kRecomputeTriangle = {1.9, 2.0, 2.5}, kRecomputePolygon = {12.7, 12.9, 13.3};
-constexpr Row kRecomputeMiss = {0.2, 0.64, 2.97};
-// Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand.
-constexpr Row kRecomputeKept = {2.1, 2.35, 2.75}, kRecomputeTerm = {0.55, 0.67, 0.7},
-              kRecomputeTermMiss = {0.02, 1.6, 3.5};
+constexpr Row kRecomputeTriangle = {3.4, 3.5, 4}, kRecomputePolygon = {17, 17.5, 18};
+constexpr Row kRecomputeMiss = {0.3, 1, 4.2};
+// Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand; one of a scattered element.
+constexpr Row kRecomputeKept = {3.7, 3.8, 4.2}, kRecomputeTerm = {0.75, 0.85, 1.1},
+              kRecomputeTermMiss = {0.04, 2.4, 5.2};
+constexpr double kRecomputeScattered = 9;
+// In float32: a triangle, a term of a sum, and one that was not at hand; a vertex whose position is interpolated.
+constexpr Row kFloatTriangle = {1.3, 1.5, 2.2}, kFloatTerm = {0.5, 0.6, 0.9}, kFloatMiss = {0.05, 1, 4};
+constexpr Row kFloatVertex = {0.25, 0.4, 1.2};
 
 // The same of preparing curves.
-constexpr Row kPrepareTriangle = {4.5, 4.7, 5.6}, kPreparePolygon = {22, 22, 22}, kPrepareMiss = {0.7, 2.05, 4};
-constexpr Row kPrepareKept = {5, 5.2, 6.2}, kPrepareTerm = {0.75, 0.83, 0.9}, kPrepareTermMiss = {1.1, 4.5, 16.4};
+constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kPrepareMiss = {1.1, 3, 6};
+constexpr Row kPrepareKept = {8, 8.2, 9}, kPrepareTerm = {1.5, 1.6, 1.8}, kPrepareTermMiss = {1.6, 6.5, 22};
+constexpr double kPrepareScattered = 2.6;
+// An element that is looked at one by one, and each of its faces.
+constexpr double kExamined = 100, kExaminedFace = 65;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
-// Evaluating curves: an element, and each byte read and written.
-constexpr Row kEvaluate = {0.19, 0, 0}, kEvaluateByte = {0.0003, 0.0083, 0.0195};
+// Evaluating curves: an element, and each byte read and written; and one in double.
+constexpr Row kEvaluate = {0.43, 0.2, 0}, kEvaluateByte = {0.0006, 0.015, 0.04};
+constexpr double kEvaluateFlagged = 7.5;
 
 constexpr double kResultBytes = 3 * sizeof(float);
 constexpr double kPositionBytes = 6 * sizeof(float);  // of both ends
@@ -74,6 +88,52 @@ double average_degree(const Segment& segment) {
     sum += degree(normals);
   }
   return sum / static_cast<double>(samples);
+}
+
+// Looks at tiles at a fixed stride as the preparation would.
+template <class Source>
+void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
+  constexpr std::size_t kSamples = 8;
+  const PrecisionLimits exact = PrecisionLimits::for_tolerance(kExactTolerance),
+                        compact = PrecisionLimits::for_tolerance(kCompactTolerance);
+  std::size_t seen = 0, doubtful = 0, flagged = 0, flagged_compact = 0;
+  const std::size_t tiles = (size + kTile - 1) / kTile, samples = std::min(tiles, kSamples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const std::size_t first = tiles * i / samples * kTile;
+    const IndexRange elements{first, std::min(kTile, size - first)};
+    AlignedArray<ControlTile> tile(1);
+    source.write(elements, std::span(tile.data(), 1));
+    TileSummary summary;
+    summarize_tiles(std::span(tile.data(), 1), exact, std::span(&summary, 1));
+    seen += elements.count;
+    for (std::size_t lane = 0; lane < elements.count; ++lane) {
+      if ((summary.uncertain >> lane & 1) == 0) continue;
+      ++doubtful;
+      if (doubtful % 4 != 1) continue;  // a quarter of them
+      const ControlNormals normals = source.in_double(first + lane).normals;
+      flagged += precision_for(normals, exact) ? 0U : 4U;
+      flagged_compact += precision_for(normals, compact) ? 0U : 4U;
+    }
+  }
+  if (seen == 0) return;
+  const auto share = [seen](std::size_t count) { return static_cast<double>(count) / static_cast<double>(seen); };
+  shape.doubtful = share(doubtful);
+  shape.flagged = std::min(shape.doubtful, share(flagged));
+  shape.flagged_compact = std::min(shape.flagged, share(flagged_compact));
+}
+
+// The share of the elements whose faces no window holds, on a sample of the batches of NormalRecompute.
+double scattered_share(const NormalGroups& groups) {
+  constexpr std::size_t kSamples = 32, kBatch = 256, kWindow = std::size_t{1} << 14;
+  const std::size_t batches = groups.size() / kBatch, samples = std::min(batches, kSamples);
+  std::size_t scattered = 0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const std::size_t first = batches * i / samples * kBatch;
+    const auto begin = groups.faces(first), last = groups.faces(first + kBatch - 1);
+    const std::span<const std::uint32_t> faces(begin.data(), last.data() + last.size());
+    if (!faces.empty() && range_of(faces).count > kWindow) ++scattered;
+  }
+  return samples == 0 ? 0 : static_cast<double>(scattered) / static_cast<double>(samples);
 }
 
 template <class... Values>
@@ -122,6 +182,8 @@ MeshShape shape_of(const Segment& segment) {
       static_cast<double>(topology.corner_count()) / static_cast<double>(topology.face_count()) - 2;
   shape.lines_per_face = lines_per_face(topology);
   shape.degree = average_degree(segment);
+  FaceNormals source(segment);
+  find_doubtful(source, shape.elements, shape);
   return shape;
 }
 
@@ -131,6 +193,11 @@ MeshShape shape_of(const Segment& segment, const NormalGroups& groups) {
   if (shape.elements > 0) {
     shape.faces_per_element =
         static_cast<double>(segment.topology->corner_count()) / static_cast<double>(shape.elements);
+    shape.scattered = scattered_share(groups);
+    if (shape.faces > 0) {
+      GroupNormals source(segment, groups);
+      find_doubtful(source, shape.elements, shape);
+    }
   }
   return shape;
 }
@@ -161,14 +228,24 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
     return faces / elements * face +
            shape.faces_per_element * (cost(term, level) + misses * cost(miss, level_of_terms));
   };
+  const double terms = is_sum ? shape.faces_per_element : 1;
   if (is_sum) {
     costs.recompute =
         sum_of(front_end(kRecomputeKept, kRecomputePolygon, kRecomputeMiss), kRecomputeTerm, kRecomputeTermMiss);
     costs.prepare = sum_of(front_end(kPrepareKept, kPreparePolygon, kPrepareMiss), kPrepareTerm, kPrepareTermMiss);
+    costs.in_float32 = terms * (cost(kFloatTerm, level) + misses * cost(kFloatMiss, level_of_positions));
+    // A mesh in no order keeps the normals of all faces, and needs no window.
+    if (shape.lines_per_face <= kScatteredLines) {
+      costs.recompute += kRecomputeScattered * shape.scattered * terms;
+      costs.prepare += kPrepareScattered * shape.scattered * terms;
+    }
   } else {
     costs.recompute = front_end(kRecomputeTriangle, kRecomputePolygon, kRecomputeMiss);
     costs.prepare = front_end(kPrepareTriangle, kPreparePolygon, kPrepareMiss);
+    costs.in_float32 = front_end(kFloatTriangle, kFloatTriangle, kFloatMiss);
   }
+  costs.in_float32 += vertices / elements * cost(kFloatVertex, level);
+  costs.prepare += shape.doubtful * (kExamined + kExaminedFace * terms);
 
   const double kept = curve_bytes_of_element(shape.degree, tolerance);
   costs.curve_bytes = kept * elements;
@@ -176,6 +253,7 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   costs.prepare += kNewByte * (kept + scratch);
   const Level level_of_curves = level_of((kept + kResultBytes) * elements);
   costs.evaluate = cost(kEvaluate, level_of_curves) + cost(kEvaluateByte, level_of_curves) * (kept + kResultBytes);
+  costs.evaluate += kEvaluateFlagged * (tolerance <= kExactTolerance ? shape.flagged : shape.flagged_compact);
   return costs;
 }
 

@@ -79,18 +79,33 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   result.elements.resize(elements_.size());
   result.sizes.resize(elements_.size());
   parallel_each(result.faces.size(), kRange, [&](std::size_t f) { result.faces[f] = face_normal(positions, f); });
-  parallel_each(result.elements.size(), kRange, [&](std::size_t e) {
-    Vec3d sum;
-    double size = 0;
-    for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
-      const std::uint32_t f = faces_of_element_[i];
-      const Vec3d normal = keeps_faces_ ? result.faces[f] : face_normal(positions, f);
-      const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
-      sum = sum + added;
-      size += max_abs(added);
+  numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
+    // The faces that were computed lately: neighbours ask for them again.
+    struct Known {
+      std::uint32_t face = kUnused;
+      Vec3d normal;
+    };
+    constexpr std::size_t kKnown = 4096;
+    std::vector<Known> lately(keeps_faces_ ? 0 : kKnown);
+    const auto normal_of = [&](std::uint32_t f) -> const Vec3d& {
+      if (keeps_faces_) return result.faces[f];
+      Known& known = lately[f % kKnown];
+      if (known.face != f) known = {f, face_normal(positions, f)};
+      return known.normal;
+    };
+    for (std::size_t e = first; e < last; ++e) {
+      Vec3d sum;
+      double size = 0;
+      for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
+        const std::uint32_t f = faces_of_element_[i];
+        const Vec3d& normal = normal_of(f);
+        const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
+        sum = sum + added;
+        size += max_abs(added);
+      }
+      result.sizes[e] = size;
+      result.elements[e] = without_rounding(sum, kRoundingOfTerms * size);
     }
-    result.sizes[e] = size;
-    result.elements[e] = without_rounding(sum, kRoundingOfTerms * size);
   });
 }
 

@@ -85,7 +85,8 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle.
+/// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle. (On
+/// curved paths they are those of the parabola through these, which is near enough for a scale.)
 template <class Source>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, std::size_t segments,
                                                                   PlacedPart& placed) {

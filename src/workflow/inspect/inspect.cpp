@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "analysis/signs/near_collapse.h"
 #include "chronormal/analysis/collapse.h"
@@ -13,6 +15,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
+#include "core/portable_math.h"
 
 namespace chronormal {
 namespace {
@@ -115,15 +118,29 @@ void inspect_vertices(const Segment& segment, SegmentInspection& result) {
   }
 }
 
+// Two vectors with a larger share than this of their squared lengths in the square of their product, which is positive,
+// turn by less than the angle for certain.
+double square_of_cosine_above(double angle) {
+  const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
+  return cosine * cosine * (1 + 1e-12);
+}
+
 SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNormals> normals, FaceMarks& marks) {
   SegmentTally tally;
   SegmentInspection& result = tally.inspection;
   inspect_vertices(segment, result);
+  double most_of_square = square_of_cosine_above(0);
   for (std::size_t f = 0; f < normals.size(); ++f) {
     const ControlNormals& c = normals[f];
-    if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value)
-      result.turn = {angle, segment.index, f};
-    if (dot(c.n0, c.n1) < 0) tally.turned_far.add(f, kTurnsFar, marks);
+    const double along = dot(c.n0, c.n1);
+    const bool turns_less = along > 0 && along * along > most_of_square * (dot(c.n0, c.n0) * dot(c.n1, c.n1));
+    if (!turns_less) {
+      if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value) {
+        result.turn = {angle, segment.index, f};
+        most_of_square = square_of_cosine_above(angle);
+      }
+    }
+    if (along < 0) tally.turned_far.add(f, kTurnsFar, marks);
     const Collapses exact = find_collapses(segment, f, c);
     const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
       return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
@@ -217,6 +234,7 @@ Result<Inspection> inspect(MotionStream& stream,
   std::vector<KeyframeTally> keyframes(result.keyframes);
   std::vector<SegmentTally> segments(segment_count);
   const std::size_t total = segment_count + still.size(), wave = std::max<std::size_t>(thread_count(), 1);
+  std::vector<std::vector<ControlNormals>> normals_of_wave(wave);  // kept, since so much memory takes long to get
   for (std::size_t first = 0; first < total; first += wave) {
     const std::size_t count = std::min(wave, total - first);
     const auto keys_of = [&](std::size_t s) {
@@ -231,7 +249,8 @@ Result<Inspection> inspect(MotionStream& stream,
       const std::size_t s = first + i;
       const bool moves = s < segment_count;
       const Segment segment = moves ? motion.segment(s) : still_segment(motion, still[s - segment_count]);
-      std::vector<ControlNormals> normals(result.faces);
+      std::vector<ControlNormals>& normals = normals_of_wave[i];
+      normals.resize(result.faces);
       face_control_normals(segment, {0, result.faces}, normals);
       const auto at_start = [&normals](std::size_t f) { return normals[f].n0; };
       const auto at_end = [&normals](std::size_t f) { return normals[f].n1; };

@@ -38,8 +38,9 @@ Segment standing_still(const Motion& motion) {
 std::vector<float> positions_at(const Segment& segment, double t) {
   std::vector<float> positions(3 * segment.from.count);
   const auto result = VectorView<float>::packed(positions.data(), segment.from.count);
-  for (std::size_t v = 0; v < segment.from.count; ++v)
+  parallel_each(segment.from.count, kBlock, [&](std::size_t v) {
     result.set(v, to_float(lerp(to_double(segment.from[v]), to_double(segment.to[v]), t)));
+  });
   return positions;
 }
 
@@ -157,12 +158,12 @@ std::vector<float> NormalSampler::normals_anew(const Segment& segment, double t)
   }
   const std::vector<Vec3d> exact =
       are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, *groups_, options_.weighting, t);
-  std::vector<float> normals;
-  normals.reserve(3 * exact.size());
-  for (const Vec3d& n : exact) {
-    const Vec3d scaled = options_.length == NormalLength::kArea ? n : unit(n);
-    for (const double component : {scaled.x, scaled.y, scaled.z}) normals.push_back(clamped_to_float(component));
-  }
+  std::vector<float> normals(3 * exact.size());
+  const auto result = VectorView<float>::packed(normals.data(), exact.size());
+  parallel_each(exact.size(), kBlock, [&](std::size_t i) {
+    const Vec3d scaled = options_.length == NormalLength::kArea ? exact[i] : unit(exact[i]);
+    result.set(i, {clamped_to_float(scaled.x), clamped_to_float(scaled.y), clamped_to_float(scaled.z)});
+  });
   return normals;
 }
 
@@ -186,13 +187,15 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = stream_->hold_all(); !status) return status.error();
   const auto base = positions_of(*motion_, 0);
   std::vector<Vec3d> positions(base.count);
-  for (std::size_t v = 0; v < base.count; ++v) positions[v] = to_double(base[v]);
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] == 0) continue;
-    const auto target = positions_of(*motion_, i + 1);
-    for (std::size_t v = 0; v < base.count; ++v)
-      positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
-  }
+  parallel_blocks(base.count, kBlock, [&](IndexRange vertices) {
+    for (std::size_t v = vertices.first; v < vertices.end(); ++v) positions[v] = to_double(base[v]);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] == 0) continue;
+      const auto target = positions_of(*motion_, i + 1);
+      for (std::size_t v = vertices.first; v < vertices.end(); ++v)
+        positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
+    }
+  });
 
   return pose_at(positions, "these weights move");
 }

@@ -112,6 +112,52 @@ TEST(SegmentNormals, the_choice_is_what_runs) {
   EXPECT_EQ(evaluate(often, 0.3), values());
 }
 
+TEST(SegmentNormals, normals_in_float32_are_made_by_whoever_was_given) {
+  const Motion motion = fixtures::smooth_morph(8);
+  const Segment segment = motion.segment(0);
+  const NormalGroups groups = vertices_of(motion);
+  FloatRecompute faces(motion.topology), vertices(motion.topology, groups);
+  SegmentNormals of_faces(segment, {.float_recompute = &faces}),
+      of_vertices(segment, groups, {.float_recompute = &vertices});
+  for (auto* const each : {&of_faces, &of_vertices}) {
+    FloatRecompute& recompute = each == &of_faces ? faces : vertices;
+    EXPECT_EQ(each->choice().strategy, NormalStrategy::kRecompute);
+    EXPECT_EQ(each->choice().reason.rfind("recompute in float32: ", 0), 0U) << each->choice().reason;
+    EXPECT_EQ(each->size(), recompute.size());
+    EXPECT_EQ(each->bytes(), recompute.bytes());
+    std::vector<float> packed(3 * recompute.size());
+    (void)recompute.unit_normals(segment, 0.3, VectorView<float>::packed(packed));
+    const Normals normals = evaluate(*each, 0.3);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      EXPECT_EQ(normals[i], (Vec3f{packed[3 * i], packed[3 * i + 1], packed[3 * i + 2]}));
+  }
+  SegmentNormals often(segment, {.evaluations = 1000, .float_recompute = &faces});
+  EXPECT_EQ(often.choice().strategy, NormalStrategy::kPolynomial);
+  EXPECT_NE(often.choice().reason.find("by recompute in float32"), std::string::npos) << often.choice().reason;
+}
+
+TEST(Strategy, curves_pay_later_against_float32) {
+  for (const std::size_t faces : {std::size_t{15'000}, std::size_t{1'000'000}, std::size_t{10'000'000}}) {
+    for (const bool vertices : {false, true}) {
+      const StrategyCosts costs = model_costs(shape(faces, vertices), kExactTolerance);
+      EXPECT_GT(costs.break_even_in_float32(), costs.break_even());
+      EXPECT_GT(costs.in_float32, costs.evaluate);
+    }
+  }
+}
+
+TEST(MeshShape, what_nearly_collapses_is_seen_and_costs) {
+  const Motion smooth = fixtures::smooth_morph(60), collapsing = fixtures::collapsing_soup(1e-6, 3000);
+  const MeshShape good = shape_of(smooth.segment(0)), bad = shape_of(collapsing.segment(0));
+  EXPECT_LT(good.doubtful, 0.05);
+  EXPECT_EQ(good.flagged, 0);
+  EXPECT_GT(bad.doubtful, 0.9);
+  const NormalCurves curves = NormalCurves::of_faces(collapsing.segment(0));
+  EXPECT_NEAR(bad.flagged, static_cast<double>(curves.flagged_count()) / 3000, 0.2);
+  EXPECT_GT(model_costs(bad, kExactTolerance).prepare, 5 * model_costs(good, kExactTolerance).prepare);
+  EXPECT_GT(shape_of(collapsing.segment(0), vertices_of(collapsing)).doubtful, 0.9);
+}
+
 TEST(SegmentNormals, a_looser_tolerance_keeps_fewer_bytes) {
   const Motion motion = fixtures::smooth_morph(16);
   const StrategyOptions exact{.evaluations = 100}, compact{.evaluations = 100, .tolerance = kCompactTolerance};

@@ -5,6 +5,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate_path.cpp"
 #include <hwy/foreach_target.h>
+// After it, so that it is of one instruction set at a time.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "simd/intrinsics-inl.h"
@@ -19,6 +21,10 @@ HWY_INLINE void EvaluatePath(const float* blocks, std::size_t block_count, const
                w3 = hn::Set(kFloats, weights[3]), w4 = hn::Set(kFloats, weights[4]), w5 = hn::Set(kFloats, weights[5]),
                w6 = hn::Set(kFloats, weights[6]);
   for (std::size_t b = 0; b < block_count; ++b) {
+    // Measured: less far ahead, or left to the hardware, a pass over memory takes a quarter more.
+    constexpr std::size_t kCacheLine = 16, kAhead = 6 * kPathBlock;  // floats
+    for (std::size_t line = 0; line < kPathBlock; line += kCacheLine)
+      hwy::Prefetch(blocks + b * kPathBlock + kAhead + line);
     for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
       const float* const p = blocks + b * kPathBlock + lane;
       const auto term = [p](Floats w, std::size_t k) HWY_ATTR {
@@ -33,17 +39,35 @@ HWY_INLINE void EvaluatePath(const float* blocks, std::size_t block_count, const
   }
 }
 
-void EvaluatePathPacked(const float* blocks, std::size_t block_count, const PathWeights& weights, PackedResult result) {
+template <bool kStream>
+HWY_INLINE void ToPacked(const float* blocks, std::size_t block_count, const PathWeights& weights, float* xyz) {
   EvaluatePath(blocks, block_count, weights,
-               [result](const Lanes3& u, std::size_t i) HWY_ATTR { StorePacked<false>(u, result.xyz + 3 * i); });
+               [xyz](const Lanes3& u, std::size_t i) HWY_ATTR { StorePacked<kStream>(u, xyz + 3 * i); });
+}
+
+void EvaluatePathPacked(const float* blocks, std::size_t block_count, const PathWeights& weights, PackedResult result) {
+  if (result.access.stream)
+    ToPacked<true>(blocks, block_count, weights, result.xyz);
+  else
+    ToPacked<false>(blocks, block_count, weights, result.xyz);
+}
+
+template <bool kStream>
+HWY_INLINE void ToPlanes(const float* blocks, std::size_t block_count, const PathWeights& weights,
+                         const PlanesResult& result) {
+  EvaluatePath(blocks, block_count, weights,
+               [x = result.x, y = result.y, z = result.z](const Lanes3& u, std::size_t i) HWY_ATTR {
+                 StoreOne<kStream>(u.x, x + i);
+                 StoreOne<kStream>(u.y, y + i);
+                 StoreOne<kStream>(u.z, z + i);
+               });
 }
 
 void EvaluatePathPlanes(const float* blocks, std::size_t block_count, const PathWeights& weights, PlanesResult result) {
-  EvaluatePath(blocks, block_count, weights, [result](const Lanes3& u, std::size_t i) HWY_ATTR {
-    hn::StoreU(u.x, kFloats, result.x + i);
-    hn::StoreU(u.y, kFloats, result.y + i);
-    hn::StoreU(u.z, kFloats, result.z + i);
-  });
+  if (result.access.stream)
+    ToPlanes<true>(blocks, block_count, weights, result);
+  else
+    ToPlanes<false>(blocks, block_count, weights, result);
 }
 
 }  // namespace chronormal::inline internal::HWY_NAMESPACE

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/blocks.h"
 #include "normals/control/kernels/exact_tile.h"
 #include "normals/groups/group_sum.h"
 
@@ -384,13 +383,11 @@ void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups
   }
 }
 
-AllFaceRows::AllFaceRows(const Segment& segment, Threads threads) {
-  constexpr std::size_t kBlock = 16384;
-  const std::size_t count = segment.topology->face_count();
-  rows_ = AlignedArray<double>((count + kTile - 1) / kTile * kTile * RowWindow::kRow);
-  blocks_on(threads, count, kBlock, [&](IndexRange faces) {
-    HWY_DYNAMIC_DISPATCH(FaceRows)(segment, faces, rows_.data() + faces.first * RowWindow::kRow);
-  });
+AllFaceRows::AllFaceRows(std::size_t face_count) : rows_((face_count + kTile - 1) / kTile * kTile * RowWindow::kRow) {}
+
+void AllFaceRows::write(const Segment& segment, IndexRange faces) noexcept {
+  assert(faces.first % kTile == 0 && faces.end() <= segment.topology->face_count());
+  HWY_DYNAMIC_DISPATCH(FaceRows)(segment, faces, rows_.data() + faces.first * RowWindow::kRow);
 }
 
 GroupTiles::GroupTiles(const Segment& segment, const NormalGroups& groups, const AllFaceRows* all_rows)

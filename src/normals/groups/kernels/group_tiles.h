@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <span>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
@@ -35,8 +34,11 @@ struct RowWindow : FaceWindow {
 /// face, shared by all threads.
 class AllFaceRows {
  public:
-  /// Throws std::bad_alloc.
-  AllFaceRows(const Segment& segment, Threads threads);
+  /// Room for so many faces. Throws std::bad_alloc.
+  explicit AllFaceRows(std::size_t face_count);
+
+  /// Writes those of a range of faces, which begins at a multiple of 16.
+  void write(const Segment& segment, IndexRange faces) noexcept;
 
   [[nodiscard]] double* data() const noexcept { return rows_.data(); }
 

@@ -267,12 +267,13 @@ std::string titles_of_others(std::span<const Host> hosts) {
 }
 
 void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size_t targets, std::size_t without_room,
-                   std::vector<std::string>& warnings) {
+                   PathKind path, std::vector<std::string>& warnings) {
   if (const std::string titles = titles_of_others(hosts); encoding != BakeEncoding::kHarmless && !titles.empty())
     warnings.push_back(
         "by --encode " + std::string(name_of(encoding)) +
         " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + titles +
-        ": --encode harmless is for all of these");
+        (path == PathKind::kLinear ? ": --encode harmless is for all of these"
+                                   : ": --encode harmless is for all of these, and has straight paths alone"));
   if (without_room > 0)
     warnings.push_back(std::to_string(without_room) +
                        " normals turn so far from those of keyframe 0 that compressors cut their deltas");
@@ -341,7 +342,7 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (is_curved) {
     Result<std::string> bytes = write_curved(motion, normals, curved, options.path, times.value(), file, report);
     if (!bytes) return bytes.error();
-    warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, report.warnings);
+    warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, options.path, report.warnings);
     glb = std::move(bytes).value();
     report.bytes = glb.size();
     return report;
@@ -359,7 +360,8 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(targets.encoding, options.hosts, targets.count(), made_elements.without_room, report.warnings);
+  warn_of_hosts(targets.encoding, options.hosts, targets.count(), made_elements.without_room, options.path,
+                report.warnings);
   Result<std::string> bytes = file.finish(targets, times.value());
   if (!bytes) return bytes.error();
   glb = std::move(bytes).value();

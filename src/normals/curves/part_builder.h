@@ -1,0 +1,325 @@
+/// Makes a part of some curves: chunk by chunk, from tiles of control normals to packed blocks. What curve_builder.cpp is
+/// made of.
+#ifndef CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
+#define CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/polynomial.h"
+#include "core/memory.h"
+#include "normals/curves/certificate.h"
+#include "normals/curves/curve_data.h"
+#include "normals/curves/curve_sources.h"
+#include "normals/curves/kernels/curve_blocks.h"
+#include "normals/curves/kernels/pack.h"
+
+namespace chronormal::inline internal {
+
+inline constexpr std::size_t kChunkTiles = 32;
+inline constexpr std::size_t kChunk = kChunkTiles * kTile;
+inline constexpr std::size_t kWrittenTiles = 4;  // by one call of a source
+
+inline constexpr std::size_t kShortestRun = 4;  // blocks
+
+// Blocks are scaled so that no component is above 2^50 and no end that counts below 2^-52: then |n(t)|^2, at worst that
+// of 2^-53 / 64, stays in the range of float32.
+inline constexpr int kLargestExponent = 50;
+inline constexpr double kLargestComponent = 0x1p50;
+inline constexpr double kSmallestEnd = 0x1p-52;
+inline constexpr double kSmallestShare = kSmallestEnd / kLargestComponent;
+// Below this, that scale itself would leave the range of double.
+inline constexpr double kSmallestMesh = 0x1p-900;
+
+inline double smaller_end(const ControlNormals& c) { return std::min(max_abs(c.n0), max_abs(c.n1)); }
+
+// The fewest bits that keep the tolerance for this element at every t; nothing where double is needed.
+inline std::optional<Precision> precision_for(const ControlNormals& normals, const PrecisionLimits& limits) {
+  const double largest = largest_component(normals);
+  if (!(largest >= kSmallestMesh)) return std::nullopt;
+  const double scale = 1 / largest;
+  const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
+  const Bernstein<double, 2> one = {1, 1, 1}, lengths = {length(n[0]), length(n[1]), length(n[2])};
+  if (limits.largest_ratio16 > 0 && stays_above(n, limits.largest_ratio16, one))
+    return stays_above(n, limits.largest_ratio11, one) ? Precision::k11 : Precision::k16;
+  if (limits.sum_ratio_scaled16 > 0) {
+    constexpr double kSmallestScale = 0x1p-30;  // exponents end there
+    const Bernstein<double, 2> scales = {lengths[0] + kSmallestScale, lengths[1] + kSmallestScale,
+                                         lengths[2] + kSmallestScale};
+    if (stays_above(n, limits.sum_ratio_scaled16, scales)) return Precision::kScaled16;
+  }
+  if (stays_above(n, limits.sum_ratio32, lengths)) return Precision::k32;
+  return std::nullopt;
+}
+
+inline ControlNormals scaled(double scale, const ControlNormals& c) {
+  return {scale * c.n0, scale * c.m, scale * c.n1};
+}
+
+// What a flagged element leaves in its block, whatever the kind.
+inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+
+// What a block must be able to hold.
+struct Need {
+  Precision precision = Precision::k11;
+  int degree = 0;
+
+  [[nodiscard]] bool fits_into(const Need& other) const {
+    return precision <= other.precision && degree <= other.degree;
+  }
+  friend bool operator==(const Need&, const Need&) = default;
+};
+
+struct NeedRun {
+  std::size_t blocks;
+  Need need;
+};
+
+// Joins runs that are too short to pay into a neighbour that can hold them.
+inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
+  std::vector<NeedRun> runs;
+  const auto append = [](std::vector<NeedRun>& to, const NeedRun& run) {
+    if (!to.empty() && to.back().need == run.need) {
+      to.back().blocks += run.blocks;
+    } else {
+      to.push_back(run);
+    }
+  };
+  for (const Need& need : needs) append(runs, {1, need});
+  if (runs.size() == 1) return runs;
+
+  for (bool joined = true; joined;) {
+    joined = false;
+    std::vector<NeedRun> longer;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      NeedRun run = runs[i];
+      if (run.blocks < kShortestRun) {
+        const Need* into = nullptr;
+        if (i + 1 < runs.size() && run.need.fits_into(runs[i + 1].need)) into = &runs[i + 1].need;
+        if (!longer.empty() && run.need.fits_into(longer.back().need) &&
+            (into == nullptr || longer.back().need.fits_into(*into)))
+          into = &longer.back().need;
+        if (into != nullptr && !(*into == run.need)) {
+          run.need = *into;
+          joined = true;
+        }
+      }
+      append(longer, run);
+    }
+    runs = std::move(longer);
+  }
+  return runs;
+}
+
+// What one thread makes at a time.
+struct CurvePart {
+  IndexRange elements;
+  std::byte* begin = nullptr;  // of its blocks
+  std::size_t bytes = 0;
+  std::vector<CurveData::Run> runs;  // offsets from begin
+  std::vector<std::size_t> flagged;
+  std::vector<FlaggedNormals> flagged_normals;
+  std::vector<CurveData::ExactElement> exact;
+  std::vector<std::int32_t> exact_digits;
+  std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
+  std::array<std::size_t, 3> degree_counts{};
+};
+
+// The result of examining one element that the quick test in float32 did not settle.
+struct Examined {
+  ControlNormals normals;              // in double, as right as its direction needs
+  std::optional<Precision> precision;  // nothing: it is flagged
+  double certain = 0;                  // where it is flagged: the share above which double has a direction
+  bool needs_exact = false;            // flagged, and n(t) is not above that share at every t
+};
+
+template <class Source>
+Examined examined(const Source& source, std::size_t element, const PrecisionLimits& limits) {
+  const BoundedNormals rounded = source.in_double(element);
+  Examined result;
+  result.normals = rounded.normals;
+  double share = rounded.largest_share();
+  // Control normals that a caller gave are exact by definition: there are no positions to compute better ones from.
+  constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
+  if constexpr (kHasExact) {
+    if (!(share <= kLargestShare)) {
+      result.normals = source.exact(element).rounded();
+      share = 0;
+    }
+  }
+  result.precision = precision_for(result.normals, limits);
+  result.certain = smallest_certain(share);
+  result.needs_exact = kHasExact && !result.precision && !stays_certain(result.normals, result.certain);
+  return result;
+}
+
+class PartBuilder {
+ public:
+  PartBuilder(CurvePart& part, const PrecisionLimits& limits, bool with_lengths)
+      : part_(part), limits_(limits), with_lengths_(with_lengths), tiles_(kChunkTiles) {}
+
+  // Makes the next chunk of the part; returns whether there are more.
+  template <class Source>
+  bool make_chunk(Source& source) {
+    const IndexRange elements{part_.elements.first + made_, std::min(kChunk, part_.elements.count - made_)};
+    add_chunk(source, elements);
+    made_ += elements.count;
+    return made_ < part_.elements.count;
+  }
+
+ private:
+  template <class Source>
+  void add_chunk(Source& source, IndexRange elements) {
+    const std::size_t tile_count = (elements.count + kTile - 1) / kTile;
+    const std::span<ControlTile> tiles(tiles_.data(), tile_count);
+    for (std::size_t k = 0; k < tile_count; k += kWrittenTiles) {
+      const std::size_t count = std::min(kWrittenTiles, tile_count - k), first = k * kTile;
+      fetch_destination(k, count);
+      source.write({elements.first + first, std::min(count * kTile, elements.count - first)}, tiles.subspan(k, count));
+    }
+    TileSummary summaries[kChunkTiles];
+    summarize_tiles(tiles, limits_, std::span(summaries, tile_count));
+
+    Need needs[kChunkTiles];
+    for (std::size_t k = 0; k < tile_count; ++k) {
+      const IndexRange range{elements.first + k * kTile, std::min(kTile, elements.count - k * kTile)};
+      needs[k].precision = summaries[k].precision;
+      const std::uint32_t all = range.count == kTile ? 0xFFFF : (1u << range.count) - 1;
+      std::uint32_t counted = all;
+      if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], tiles[k], needs[k]);
+      const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
+      if (bending == all) {
+        part_.degree_counts[2] += range.count;
+      } else {
+        part_.degree_counts[0] += static_cast<std::size_t>(std::popcount(all & ~moving));
+        part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
+        part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
+      }
+      needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : 0;
+    }
+
+    const std::size_t bytes_before = part_.bytes;
+    std::size_t k = 0;
+    for (const NeedRun& run : runs_of(std::span(needs, tile_count))) {
+      const BlockKind kind = kind_for(run.need.precision, run.need.degree, with_lengths_);
+      pack_tiles(tiles.subspan(k, run.blocks), kind, part_.begin + part_.bytes);
+      append_run(elements.first / kTile + k, run.blocks, kind);
+      k += run.blocks;
+    }
+    chunk_bytes_ = part_.bytes - bytes_before;
+  }
+
+  // Asks for the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had: it
+  // comes while tiles are computed, a little at a time, for the core would wait where more is asked for than can be
+  // under way.
+  void fetch_destination(std::size_t tile, std::size_t count) const {
+#if defined(__GNUC__)
+    constexpr std::size_t kCacheLine = 64;
+    const std::size_t each = chunk_bytes_ / kChunkTiles;
+    const std::byte* const destination = part_.begin + part_.bytes + tile * each;
+    for (std::size_t i = 0; i < count * each; i += kCacheLine) __builtin_prefetch(destination + i, 1);
+#endif
+  }
+
+  // Looks in double at the elements of a tile that a glance cannot judge. Returns those that are flagged, as bits.
+  template <class Source>
+  std::uint32_t examine(Source& source, IndexRange elements, TileSummary& summary, ControlTile& tile, Need& need) {
+    std::uint32_t flagged = 0, needs_exact = 0;
+    bool out_of_range = false;
+    Examined found[kTile];
+    for (std::size_t lane = 0; lane < kTile; ++lane) {
+      if ((summary.uncertain >> lane & 1) == 0) continue;
+      if (lane >= elements.count) {  // a repetition of the last element
+        for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
+        continue;
+      }
+      found[lane] = examined(source, elements.first + lane, limits_);
+      const auto& [normals, precision, certain, lane_needs_exact] = found[lane];
+      set_degree(summary, lane, degree(normals));
+      if (precision) {
+        need.precision = std::max(need.precision, *precision);
+        put(tile, lane, normals);
+        out_of_range |= largest_component(normals) > kLargestComponent || smaller_end(normals) < kSmallestEnd;
+      } else {
+        flagged |= 1u << lane;
+        needs_exact |= static_cast<std::uint32_t>(lane_needs_exact) << lane;
+      }
+    }
+    if (out_of_range) {
+      for (std::size_t lane = 0; lane < elements.count; ++lane) {
+        if ((summary.uncertain >> lane & 1) == 0) found[lane] = examined(source, elements.first + lane, limits_);
+      }
+      flagged |= rescale(found, elements, flagged, tile);
+    }
+    for (std::size_t lane = 0; lane < elements.count; ++lane) {
+      if ((flagged >> lane & 1) == 0) continue;
+      put(tile, lane, kPlaceHolder);
+      part_.flagged.push_back(elements.first + lane);
+      part_.flagged_normals.push_back({found[lane].normals, found[lane].certain});
+      if constexpr (!std::is_same_v<Source, GivenNormals>) {
+        if ((needs_exact >> lane & 1) == 0) continue;
+        part_.exact.push_back({elements.first + lane, part_.exact_digits.size()});
+        source.exact(elements.first + lane).append_to(part_.exact_digits);
+      }
+    }
+    for (std::size_t lane = elements.count; lane < kTile; ++lane)
+      for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
+    return flagged;
+  }
+
+  static void set_degree(TileSummary& summary, std::size_t lane, int element_degree) {
+    const std::uint32_t bit = 1u << lane;
+    summary.moving = element_degree > 0 ? summary.moving | bit : summary.moving & ~bit;
+    summary.bending = element_degree > 1 ? summary.bending | bit : summary.bending & ~bit;
+  }
+
+  // Gives a tile an exponent of its own. Returns the elements that are too small for it beside the others.
+  std::uint32_t rescale(const Examined* found, IndexRange elements, std::uint32_t flagged, ControlTile& tile) {
+    double largest = 0;
+    for (std::size_t lane = 0; lane < elements.count; ++lane) {
+      if ((flagged >> lane & 1) == 0) largest = std::max(largest, largest_component(found[lane].normals));
+    }
+    const int exponent = std::ilogb(largest) - kLargestExponent;
+    std::uint32_t too_small = 0;
+    for (std::size_t lane = 0; lane < elements.count; ++lane) {
+      if ((flagged >> lane & 1) != 0) continue;
+      if (!(smaller_end(found[lane].normals) >= kSmallestShare * largest)) {
+        too_small |= 1u << lane;
+      } else {
+        put(tile, lane, scaled(std::ldexp(1.0, -exponent), found[lane].normals));
+      }
+    }
+    if (part_.exponents.empty()) part_.exponents.resize((part_.elements.count + kTile - 1) / kTile);
+    part_.exponents[(elements.first - part_.elements.first) / kTile] = static_cast<std::int16_t>(exponent);
+    return too_small;
+  }
+
+  void append_run(std::size_t first_block, std::size_t block_count, BlockKind kind) {
+    if (!part_.runs.empty() && part_.runs.back().kind == kind) {
+      part_.runs.back().block_count += block_count;
+    } else {
+      part_.runs.push_back({first_block, block_count, part_.bytes, kind});
+    }
+    part_.bytes += block_count * kTile * bytes_of(kind);
+  }
+
+  CurvePart& part_;
+  const PrecisionLimits& limits_;
+  bool with_lengths_;
+  AlignedArray<ControlTile> tiles_;
+  std::size_t made_ = 0;         // elements
+  std::size_t chunk_bytes_ = 0;  // of the last chunk
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
