@@ -13,7 +13,7 @@ int main(int argument_count, char** arguments) {
   prepare_process();
   try {
     return run_program({audit_command(), bake_command(), compare_command(), convert_command(), inspect_command(),
-                        query_command(), report_command(), sample_command()},
+                        merge_command(), query_command(), report_command(), sample_command()},
                        argument_count, arguments);
   } catch (const std::bad_alloc&) {
     say_raw("chronormal: out of memory\n");

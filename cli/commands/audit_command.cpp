@@ -10,6 +10,7 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/json.h"
+#include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
 #include "cli/reports/audit_files.h"
 #include "cli/reports/audit_report.h"
@@ -29,6 +30,7 @@ struct Options {
   PathArgument path;
   std::optional<double> tolerance;
   std::optional<std::string> errors;  // where to write every single one
+  ShardArgument shard;
   bool no_weld = false;
   bool json = false;
 };
@@ -55,7 +57,7 @@ std::string words_of(const InputOptions& input) {
 }
 
 Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
-  const Result<const Motion*> motion = input.motion();
+  const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   const Result<const StoredNormals*> normals = input.normals();
   if (!normals) return normals.error();
@@ -65,17 +67,20 @@ Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
 Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
+  wanted.stream = true;
   Result<Input> opened = open_input(std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
+  if (document != nullptr && how.shard)
+    return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path(input, how.path); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   progress.clear();
   warn_if_sparse("audit", found.value().path, found.value().bend);
-  const bool can_be_baked = document != nullptr || input.motion().value()->kind != MotionKind::kTargets;
+  const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.tolerance,
                  can_be_baked ? words_of(options.input) : ""};
 }
@@ -101,6 +106,10 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }
+  const Result<std::optional<Shard>> shard = options.shard.read();
+  if (!shard) return shard.error();
+  how.shard = shard.value();
+  if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
@@ -150,10 +159,12 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const std::string text = options.json ? audit_json(found.name(), found.audit, found.tolerance) : audit_text(found);
+  const std::string text = options.shard.text ? audit_part(found.name(), found.audit, found.tolerance)
+                           : options.json     ? audit_json(found.name(), found.audit, found.tolerance)
+                                              : audit_text(found);
   if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
-  return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
+  return options.shard.text || say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
 // Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
@@ -228,6 +239,8 @@ Command audit_command() {
          "write the error of every vertex at every sample: .npz for programs, or .ply\n"
          "with the worst of each vertex as its quality, for MeshLab and Blender"},
         {"--no-weld", &options->no_weld, "sequences: keep vertices apart that are at one point in all keyframes"},
+        options->shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
+                              "for chronormal merge"),
         {"--json", &options->json, "print one JSON object, for programs"}},
        options->common.table(false)},
       "A host is a program that shows meshes, such as three.js or Godot. "

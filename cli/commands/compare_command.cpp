@@ -5,6 +5,7 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
+#include "chronormal/workflow/parts.h"
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
@@ -33,6 +34,7 @@ struct Options {
   bool certify = false;
   std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
+  ShardArgument shard;
   BlendArguments blend;
   TruthArguments truth;
   PathArgument path;
@@ -63,6 +65,7 @@ std::string option_of_schemes(const Options& options) {
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
+  if (options.shard.text) return "--shard";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.path.name != "linear") return "--path";
@@ -87,7 +90,7 @@ std::string footer() {
 }
 
 Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
-  const Result<const Motion*> motion = input.motion();
+  const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
                                  options.sample_count(),
@@ -97,6 +100,7 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
+  compare_options.shard = options.shard.read().value();
   compare_options.path = options.path.read().value();
   if (const Status status = check_path(input, compare_options.path); !status) return status.error();
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
@@ -129,7 +133,8 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
     if (const Status status = check_input(input); options.each && !status) return status.error();
   }
   std::vector<NamedComparison> comparisons;
-  for (const InputOptions& wanted : inputs) {
+  for (InputOptions& wanted : inputs) {
+    wanted.stream = true;
     Result<Input> input = open_input(wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());
@@ -170,6 +175,7 @@ std::string option_of_samples(const Options& options) {
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
+  if (options.shard.text) return "--shard";
   if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
@@ -213,6 +219,10 @@ Result<int> run(const Options& options) {
                   "certificates are of straight paths: leave out --path, or compare at samples");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
+  const Result<std::optional<Shard>> shard = options.shard.read();
+  if (!shard) return shard.error();
+  if (options.shard.text && options.each) return misuse("--shard", "it divides one motion: leave out --each");
+  if (options.shard.text && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
     if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
@@ -231,7 +241,9 @@ Result<int> run(const Options& options) {
   }
   const bool with_times = !options.no_times;
   std::string text;
-  if (options.json)
+  if (options.shard.text)
+    text = compare_part(comparisons.value().front());
+  else if (options.json)
     text = compare_json(comparisons.value(), options.each, with_times);
   else if (options.csv)
     text = compare_csv(comparisons.value(), with_times);
@@ -243,7 +255,7 @@ Result<int> run(const Options& options) {
     return written.error();
   int exit = kExitDone;
   for (const NamedComparison& input : comparisons.value()) {
-    if (!options.tolerance || input.comparison.cheapest) continue;
+    if (!options.tolerance || input.comparison.cheapest || options.shard.text) continue;
     say("compare",
         formatted("{}: no scheme is within the tolerance of {:g} degrees at every time", printable(input.name),
                   *options.tolerance),
@@ -260,36 +272,39 @@ Command compare_command() {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
   auto options = std::make_shared<Options>();
-  return {"compare",
-          "Compare ways to interpolate normals with the exact normals, on your mesh",
-          {input_table(options->input),
-           {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
-            {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
-            {"--samples N",
-             &options->samples,
-             "how many moments of each segment are compared, its ends included (default 21)",
-             {.check = check_whole(2, kMostSamples)}}},
-           options->elements.table(),
-           {{"--access KIND",
-             &options->access,
-             "random (default): each moment on its own; sequential: each from the one before",
-             {.check = check_access}}},
-           options->path.table("every scheme is held against the exact normals of this path"),
-           {{"--certify", &options->certify,
-             "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
-            {"--tolerance DEG", &options->tolerance,
-             "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
-           options->blend.table(),
-           options->truth.table(),
-           {{"--errors FILE", &options->errors,
-             "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-             "scheme with the worst of each as its quality, for MeshLab and Blender"},
-            {"--json", &options->json, "print one JSON object, for programs"},
-            {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
-            {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
-           options->common.table(false)},
-          footer(),
-          [options] { return run(*options); }};
+  return {
+      "compare",
+      "Compare ways to interpolate normals with the exact normals, on your mesh",
+      {input_table(options->input),
+       {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
+        {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
+        {"--samples N",
+         &options->samples,
+         "how many moments of each segment are compared, its ends included (default 21)",
+         {.check = check_whole(2, kMostSamples)}}},
+       options->elements.table(),
+       {{"--access KIND",
+         &options->access,
+         "random (default): each moment on its own; sequential: each from the one before",
+         {.check = check_access}}},
+       options->path.table("every scheme is held against the exact normals of this path"),
+       {{"--certify", &options->certify,
+         "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+        {"--tolerance DEG", &options->tolerance,
+         "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+       options->blend.table(),
+       options->truth.table(),
+       {{"--errors FILE", &options->errors,
+         "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+         "scheme with the worst of each as its quality, for MeshLab and Blender"},
+        options->shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
+                              "merge"),
+        {"--json", &options->json, "print one JSON object, for programs"},
+        {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+        {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
+       options->common.table(false)},
+      footer(),
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -36,9 +36,10 @@ Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
+  wanted.stream = true;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  const Result<const Motion*> motion = input.value().motion();
+  const Result<MotionStream*> motion = input.value().stream();
   if (!motion) return motion.error();
   const Status written =
       write_motion(*motion.value(), options.common.output, options.common.force, input.value().expansion());

@@ -19,6 +19,7 @@ struct Options {
 Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progress) {
   InputOptions wanted = options;
   wanted.allow_mesh = true;
+  wanted.stream = true;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
   Result<Inspected> result =

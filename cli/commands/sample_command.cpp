@@ -22,6 +22,7 @@ struct Options {
   PathArgument path;
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
+  ShardArgument shard;
 };
 
 std::string footer() {
@@ -94,8 +95,11 @@ Result<Request> understand(const Options& options) {
   if (!format) return format.error();
   Result<AskedMoments> asked = understand(options.moments);
   if (!asked) return asked.error();
-  Request request{
-      sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}};
+  const Result<std::optional<Shard>> shard = options.shard.read();
+  if (!shard) return shard.error();
+  Request request{sample.value(),
+                  std::move(asked).value(),
+                  {options.common.output, format.value(), options.common.force, shard.value().value_or(Shard{})}};
   if (const Status status = check_input(options.input); !status) return status.error();
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();
@@ -146,15 +150,18 @@ Result<int> run(const Options& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
+  wanted.stream = true;
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
-  const Result<const Motion*> read = input.value().motion();
+  const Result<MotionStream*> read = input.value().stream();
   if (!read) return read.error();
-  const Motion& motion = *read.value();
+  const Motion& motion = read.value()->motion();
   if (request.sample.path != PathKind::kLinear) {
     if (const Status status = check_path(input.value(), request.sample.path); !status) return status.error();
-    warn_if_sparse("sample", request.sample.path, bend_of(motion));
+    const Result<double> bend = bend_of(*read.value());
+    if (!bend) return bend.error();
+    warn_if_sparse("sample", request.sample.path, bend.value());
   }
   const Result<Moments> moments = moments_of(input.value(), request.asked);
   if (!moments) return moments.error();
@@ -164,7 +171,7 @@ Result<int> run(const Options& options) {
     if (!status) return status.error();
   }
   const auto written =
-      write_samples(motion, request.sample, moments.value(), request.output, progress.callback("sampling"));
+      write_samples(*read.value(), request.sample, moments.value(), request.output, progress.callback("sampling"));
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)
@@ -179,23 +186,26 @@ Result<int> run(const Options& options) {
 
 Command sample_command() {
   auto options = std::make_shared<Options>();
-  return {"sample",
-          "Write the normals of a motion at chosen times, or of targets at chosen weights",
-          {input_table(options->input),
-           options->moments.table(),
-           options->elements.table(),
-           {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-            {"--length KIND", &options->length,
-             "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-             "around a vertex (with --weighting area)"}},
-           options->path.table("normals are exact on all of them"),
-           {{"--hard-edges KIND", &options->hard_edges,
-             "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-             "file, by its smoothing groups (groups) or its own normals (normals)"},
-            {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"}},
-           options->common.table(true)},
-          footer(),
-          [options] { return run(*options); }};
+  return {
+      "sample",
+      "Write the normals of a motion at chosen times, or of targets at chosen weights",
+      {input_table(options->input),
+       options->moments.table(),
+       options->elements.table(),
+       {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
+        {"--length KIND", &options->length,
+         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+         "around a vertex (with --weighting area)"}},
+       options->path.table("normals are exact on all of them"),
+       {{"--hard-edges KIND", &options->hard_edges,
+         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+         "file, by its smoothing groups (groups) or its own normals (normals)"},
+        {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"},
+        options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
+                              ".obj with the numbers that they have among all")},
+       options->common.table(true)},
+      footer(),
+      [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

@@ -1,11 +1,14 @@
 #include "cli/options/command.h"
 
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "core/charconv.h"
 
 namespace chronormal::cli {
 namespace {
@@ -47,6 +50,23 @@ Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<
   return Success{};
 }
 
+Option ShardArgument::option(const std::string& of_what) { return {"--shard I/N", &text, of_what}; }
+
+Result<std::optional<Shard>> ShardArgument::read() const {
+  if (!text) return std::optional<Shard>();
+  const std::string_view words = *text;
+  const std::size_t slash = words.find('/');
+  std::size_t index = 0, count = 0;
+  const auto is_number = [](std::string_view digits, std::size_t& value) {
+    const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
+    return code == std::errc{} && end == digits.data() + digits.size();
+  };
+  const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
+                        is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
+  if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
+  return std::optional(Shard{index - 1, count});
+}
+
 std::vector<Option> PathArgument::table(const std::string& what) {
   return {{"--path NAME", &name,
            "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
@@ -64,9 +84,9 @@ Status check_path(Input& input, PathKind path) {
   if (path == PathKind::kLinear) return Success{};
   if (input.document() != nullptr)
     return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
-  const Result<const Motion*> motion = input.motion();
-  if (!motion) return motion.error();
-  if (const Status status = chronormal::check_path(*motion.value(), path); !status)
+  const Result<MotionStream*> stream = input.stream();
+  if (!stream) return stream.error();
+  if (const Status status = chronormal::check_path(stream.value()->motion(), path); !status)
     return misuse("--path", status.error().message);
   return Success{};
 }
@@ -125,7 +145,16 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        "32 MiB are always allowed)",
        {.check = check_whole(0)}},
       {"--sample NAME", &input.samples, morph_names()},
-      {"--fps N", &input.frames_per_second, "how many keyframes a second has, in formats without times (default 1)"}};
+      {"--fps N", &input.frames_per_second, "how many keyframes a second has, in formats without times (default 1)"},
+      {"--from K",
+       &input.from,
+       "the first keyframe of a sequence that counts, from 0 (default 0)",
+       {.check = check_whole(0)}},
+      {"--to K",
+       &input.to,
+       "the last keyframe of a sequence that counts (default: the last there is)",
+       {.check = check_whole(0)}},
+      {"--every N", &input.every, "take every Nth keyframe of a sequence (default 1)", {.check = check_whole(1)}}};
   for (const RefusedOption& option : refused)
     std::erase_if(table,
                   [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });

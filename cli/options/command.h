@@ -15,6 +15,7 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/shard.h"
 #include "cli/options/options.h"
 #include "cli/terminal/progress.h"
 
@@ -64,6 +65,16 @@ struct JudgeArguments {
   [[nodiscard]] Status read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const;
 };
 
+/// The option that takes a share of the work: --shard I/N.
+struct ShardArgument {
+  std::optional<std::string> text;
+
+  /// of_what is what is divided, and what OUT is then, for the help.
+  [[nodiscard]] Option option(const std::string& of_what);
+  /// Errors: kUsage where it is no such share.
+  [[nodiscard]] Result<std::optional<Shard>> read() const;
+};
+
 /// The option --path: how vertices move between the keyframes of a sequence.
 struct PathArgument {
   std::string name = "linear";
@@ -93,6 +104,7 @@ void warn_if_sparse(const std::string& command, PathKind path, double bend);
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command inspect_command();
+[[nodiscard]] Command merge_command();
 [[nodiscard]] Command query_command();
 [[nodiscard]] Command report_command();
 [[nodiscard]] Command sample_command();

@@ -268,9 +268,13 @@ std::string help_of_command(const Command& command, std::size_t columns) {
   text += "\nOptions:\n";
   for (auto table = command.tables.begin() + 1; table != command.tables.end(); ++table)
     std::for_each(table->begin(), table->end(), add_row);
-  text += row("-h, --help", "print this", columns) + "\nOptions for what is read:\n";
-  for (const Option& option : command.tables.front())
-    if (!names_of(option).empty()) add_row(option);
+  text += row("-h, --help", "print this", columns);
+  std::string heading = "\nOptions for what is read:\n";  // where there are any
+  for (const Option& option : command.tables.front()) {
+    if (names_of(option).empty()) continue;
+    text += std::exchange(heading, "");
+    add_row(option);
+  }
   if (!command.footer.empty()) text += formatted("\n{}\n", flowing(command.footer, 0, columns));
   return with_headings(text);
 }

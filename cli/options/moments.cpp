@@ -224,11 +224,12 @@ Result<AskedMoments> understand(const MomentArguments& arguments) {
 }
 
 Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
-  const Result<const Motion*> motion = input.motion();
-  if (!motion) return motion.error();
-  if (const Status status = check_kind(*motion.value(), asked); !status) return status.error();
+  const Result<MotionStream*> stream = input.stream();
+  if (!stream) return stream.error();
+  const Motion& motion = stream.value()->motion();
+  if (const Status status = check_kind(motion, asked); !status) return status.error();
   Moments moments;
-  if (motion.value()->segments.empty()) return moments;
+  if (motion.segments.empty()) return moments;
   moments.times = asked.at_keys ? input.key_times().value() : asked.times;
   const Result<TargetNames> names = target_names(input);
   if (!names) return names.error();

@@ -9,9 +9,10 @@
 #include "chronormal/core/vec3.h"        // three-component vectors over any scalar
 #include "chronormal/core/views.h"       // vectors in the caller's memory, as planes or packed
 
-#include "chronormal/motion/blend_set.h"  // a base and targets, with any weights at once
-#include "chronormal/motion/motion.h"     // keyframes, the straight segments between them, and where a time lies
-#include "chronormal/motion/topology.h"   // which vertices make which face
+#include "chronormal/motion/blend_set.h"      // a base and targets, with any weights at once
+#include "chronormal/motion/motion.h"         // keyframes, the straight segments between them, and where a time lies
+#include "chronormal/motion/motion_stream.h"  // keyframes that are read when they are needed
+#include "chronormal/motion/topology.h"       // which vertices make which face
 
 #include "chronormal/normals/blend_normals.h"      // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
@@ -61,9 +62,11 @@
 #include "chronormal/workflow/hosts.h"    // programs that show glTF files, and what they make of stored normals
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
 #include "chronormal/workflow/json.h"     // the results of these as JSON
+#include "chronormal/workflow/parts.h"    // what shards leave in files, and how it is put together
 #include "chronormal/workflow/query.h"    // questions about whole intervals of time, answered as arrays
 #include "chronormal/workflow/report.h"   // what a page needs to show an input as it is shown beside as it should be
-#include "chronormal/workflow/sample.h"
-#include "chronormal/workflow/truth.h"  // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/sample.h"   // normals at chosen times, or at weights of targets, and files of them
+#include "chronormal/workflow/shard.h"    // a share of the segments of a motion, for many machines
+#include "chronormal/workflow/truth.h"
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

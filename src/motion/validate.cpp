@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "motion/outline.h"
+
 namespace chronormal {
 namespace {
 
@@ -27,37 +29,30 @@ const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::Se
   return nullptr;
 }
 
-}  // namespace
-
-Status validate(const Motion& motion) {
-  const std::size_t vertex_count = motion.topology.vertex_count();
+Status check_mesh(const Motion& motion) {
   if (motion.topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
-
-  if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != vertex_count)
+  if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != motion.topology.vertex_count())
     return invalid_input("", "there are " + std::to_string(motion.body_of_vertex.size()) + " bodies for " +
-                                 std::to_string(vertex_count) + " vertices");
+                                 std::to_string(motion.topology.vertex_count()) + " vertices");
+  return Success{};
+}
 
-  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
-    const Motion::Keyframe& keyframe = motion.keyframes[k];
-    if (keyframe.positions.size() % 3 != 0 || keyframe.positions.size() / 3 != vertex_count)
-      return invalid_input(keyframe_place(motion, k), "the frame has " + std::to_string(keyframe.positions.size()) +
-                                                          " coordinates, but " + std::to_string(vertex_count) +
-                                                          " vertices need three each");
-    for (std::size_t i = 0; i < keyframe.positions.size(); ++i) {
-      if (!std::isfinite(keyframe.positions[i]))
-        return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                             "the position is not a finite number");
-    }
-    if (!keyframe.velocities.empty() && keyframe.velocities.size() != keyframe.positions.size())
-      return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
-    for (std::size_t i = 0; i < keyframe.velocities.size(); ++i) {
-      if (!std::isfinite(keyframe.velocities[i]))
-        return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                             "the velocity is not a finite number");
-    }
-    if (!std::isfinite(keyframe.time)) return invalid_input(keyframe_place(motion, k), "the time is not finite");
+// What a keyframe has beside its positions.
+Status check_rest(const Motion& motion, std::size_t k) {
+  const Motion::Keyframe& keyframe = motion.keyframes[k];
+  if (!keyframe.velocities.empty() && keyframe.velocities.size() != 3 * motion.topology.vertex_count())
+    return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
+  for (std::size_t i = 0; i < keyframe.velocities.size(); ++i) {
+    if (!std::isfinite(keyframe.velocities[i]))
+      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                           "the velocity is not a finite number");
   }
+  if (!std::isfinite(motion.keyframes[k].time))
+    return invalid_input(keyframe_place(motion, k), "the time is not finite");
+  return Success{};
+}
 
+Status check_segments(const Motion& motion) {
   if (motion.segments.empty()) return invalid_input("", "there is no motion: it takes two keyframes or more");
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const auto [from, to] = motion.segments[s];
@@ -72,6 +67,38 @@ Status validate(const Motion& motion) {
     return invalid_input("", "there are " + std::to_string(motion.segments.size()) + " segments for " +
                                  std::to_string(motion.keyframes.size()) + " keyframes");
   return Success{};
+}
+
+}  // namespace
+
+Status internal::validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions) {
+  const std::size_t vertex_count = motion.topology.vertex_count();
+  if (positions.size() % 3 != 0 || positions.size() / 3 != vertex_count)
+    return invalid_input(keyframe_place(motion, k), "the frame has " + std::to_string(positions.size()) +
+                                                        " coordinates, but " + std::to_string(vertex_count) +
+                                                        " vertices need three each");
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i]))
+      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                           "the position is not a finite number");
+  }
+  return Success{};
+}
+
+Status internal::validate_outline(const Motion& motion) {
+  if (Status status = check_mesh(motion); !status) return status;
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
+    if (Status status = check_rest(motion, k); !status) return status;
+  return check_segments(motion);
+}
+
+Status validate(const Motion& motion) {
+  if (Status status = check_mesh(motion); !status) return status;
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    if (Status status = validate_positions(motion, k, motion.keyframes[k].positions); !status) return status;
+    if (Status status = check_rest(motion, k); !status) return status;
+  }
+  return check_segments(motion);
 }
 
 }  // namespace chronormal

@@ -222,17 +222,23 @@ const std::map<std::string, std::string> kUses = {
     {"--no-weld", "a.obj b.obj --no-weld"},
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
     {"--output", "a.obj b.obj"},
-    {"--path", "a.obj b.obj --times 0.5 --path catmull-rom"},
+    {"--path", "a.obj b.obj --path catmull-rom"},
     {"--plan", "face.glb --plan"},
     {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},
+    {"merge --force", "part.json --force"},
+    {"merge --output", "part.json"},
+    {"merge --quiet", "part.json --quiet"},
     {"query --direction", "facing a.obj b.obj --direction 0,0,1"},
     {"query --eye", "facing a.obj b.obj --eye 1,2,3"},
     {"query --points", "contain closed.obj moved.obj --points points.npy"},
     {"query --silhouettes", "facing a.obj b.obj --direction 0,0,1 --silhouettes"},
-    {"--from", "a.obj b.obj --from 0.25"},
+    {"--every", "a.obj b.obj --every 1"},
+    {"--from", "a.obj b.obj --from 0"},
+    {"query --from", "collapse a.obj b.obj --from 0.25"},
     {"query --meshlets", "cones a.obj b.obj --meshlets 8"},
-    {"--to", "a.obj b.obj --to 0.75"},
+    {"--to", "a.obj b.obj --to 1"},
+    {"query --to", "collapse a.obj b.obj --to 0.75"},
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},
     {"report --animation", "shaded.glb --animation 0"},
@@ -241,6 +247,7 @@ const std::map<std::string, std::string> kUses = {
     {"--rule", "a.obj b.obj --rule slerp"},
     {"--sample", "--sample twist"},
     {"--samples", "a.obj b.obj --samples 3"},
+    {"--shard", "a.obj b.obj --shard 1/1"},
     {"--schemes", "a.obj b.obj --schemes linear"},
     {"--seed", "--base a.obj b.obj --blend 2 --seed 7"},
     {"--smooth", "face.glb --smooth"},
@@ -282,6 +289,7 @@ TEST_F(Cli, help_lists_what_a_command_takes_and_nothing_else) {
   write("points.npy", NpyBytes({1, 3}, std::vector<double>{1, 2, 3}).bytes());
   write("poses.json", "[[1, 1]]");
   write("page.html", "<!--chronormal-data-->");
+  ASSERT_EQ(run("compare a.obj b.obj --shard 1/1 -o part.json").exit_code, 0);
   std::set<std::string> all;
   for (const std::string& command : command_names())
     for (const std::string& name : option_names(command)) all.insert(name);

@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 
 namespace chronormal {
 
@@ -60,6 +62,18 @@ struct InputOptions {
   FileResolver resolve = {};
   /// Called after each file that was read.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
+  /// Which keyframes of a sequence count: the first, the last, and how far it is from one to the next.
+  std::size_t from = 0;
+  std::optional<std::size_t> to = {};
+  std::size_t every = 1;
+  /// Leave positions in the files until they are asked for: of mesh files, .pc2, .mdd, .npy and .npz that are stored and
+  /// in C order. Who sets it asks for Input::stream(); other inputs are read at once, and so are meshes where the normals
+  /// of all of them are kept. What is wrong in a keyframe is found when that is read.
+  bool stream = false;
+  /// Keyframes that take no more bytes together than this stay in memory, once they were read.
+  std::size_t kept_bytes = MotionStream::kUsuallyKept;
+
+  [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1; }
 };
 
 /// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
@@ -98,13 +112,17 @@ class Input {
 
   /// What moves: of a document what the options chose (and read now, when it is asked for the first time); with
   /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All
-  /// keyframes are in memory, as most who compute want them; those who need them one by one should ask for keyframe().
-  /// Errors: of a document only: of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
-  /// nothing moves, or keyframes would take more than 4 GiB.
+  /// keyframes are in memory, as most who compute want them; those who need them one by one should ask for stream().
+  /// Errors: of a document: of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
+  /// nothing moves, or keyframes would take more than 4 GiB. Of keyframes that were left in files: of reading them.
   [[nodiscard]] Result<const Motion*> motion();
 
-  /// Keyframe k of the motion, from 0, in any order. It is good until the next call: today all are in memory, but a
-  /// sequence that is longer than memory will be read as it goes. Errors: those of motion(), and of reading the file.
+  /// The same motion, of which keyframes are there as they are asked for; it lives as long as the input. Errors: those of
+  /// motion(), but for reading keyframes.
+  [[nodiscard]] Result<MotionStream*> stream();
+
+  /// Keyframe k of the motion, from 0, in any order. It is good until the next call of anything that reads keyframes.
+  /// Errors: those of motion(), and of reading the file.
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
@@ -136,7 +154,7 @@ class Input {
 
 /// Opens what the options name, and reads it, but for a glTF document, of which nothing but its JSON is read.
 ///
-/// Errors: those of check_input(); kFailed for files that are not there or can not be read; those of the readers, with
+/// Errors: those of check_input(); kUsage for keyframes to choose among that are not there, or none of a sequence; kFailed for files that are not there or can not be read; those of the readers, with
 /// the file in the place ("frame 3 (walk_3.obj), line 17"); kInvalidInput for fewer than two keyframes, vertices or
 /// faces that change between them, folders without meshes or with several formats; kUsage for inputs that do not go
 /// together.

@@ -11,6 +11,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
@@ -40,6 +41,8 @@ struct ElementOptions {
 /// [0, 180]; kInvalidInput where there is not one smoothing group for each face, or one finite normal for each corner.
 /// The motion may stand still: a keyframe without segments. Preconditions: it is valid else, and the kind is not faces
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
+/// The same of a stream: reads keyframes as weld_coincident() does. Errors: those of the stream, too.
+[[nodiscard]] Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options);
 
 }  // namespace chronormal
 

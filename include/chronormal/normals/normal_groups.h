@@ -45,6 +45,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/topology.h"
 #include "chronormal/normals/control_normals.h"
 
@@ -64,6 +65,8 @@ struct Points {
 /// may belong to two sides of a slit. Faces are not looked at. O(V log V), and the number of keyframes times as much
 /// where vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
+/// The same of a stream: reads keyframes until no two vertices coincide. Errors: those of the stream.
+[[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
 /// Stored normals closer than this are one normal that was rounded twice.
 inline constexpr double kSplitNormalTolerance = 0.1;  // degrees

@@ -27,6 +27,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 
@@ -100,6 +101,8 @@ struct VelocityShares {
 /// the second difference of a vertex against the way that it went, added up over all. A rigid turn by an angle a
 /// from keyframe to keyframe has sin(a / 2).
 [[nodiscard]] double bend_of(const Motion& motion, std::size_t every = 1);
+/// The same of a stream, of which three keyframes are held at a time. Errors: those of the stream.
+[[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
 /// Above this bend, a curve through the keyframes means little.
 inline constexpr double kTooSparse = 0.5;
 

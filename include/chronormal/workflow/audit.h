@@ -38,10 +38,12 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -84,6 +86,9 @@ struct AuditOptions {
   PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
   bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
   bool keep_errors = false;           ///< every single one, in Audit::errors
+  /// Of a sequence of straight paths: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
+  /// asked of the whole motion (which vertices move, how long a normal gets) is found anew by every shard.
+  std::optional<Shard> shard = {};
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -195,6 +200,12 @@ struct HostAudit {
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.is_within(degrees); }
 };
 
+/// What was found in one segment, and at its ends.
+struct SegmentErrors {
+  std::size_t segment = 0;
+  MotionError error, at_keys;
+};
+
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
   /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
@@ -213,6 +224,7 @@ struct Audit {
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
+  std::vector<SegmentErrors> measured;  ///< of a shard: of each of its segments; the rest is of them alone
 
   /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
   [[nodiscard]] bool is_within(double degrees) const noexcept {
@@ -243,6 +255,14 @@ struct Audit {
 /// between. Errors: kUsage for the rule gltf, for hosts, for fewer than 2 samples, and of check_path(); kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
+/// The same of a stream, of which two keyframes are held at a time; it is read twice, and up to where all vertices have moved
+/// and none coincide any more once again for each of the two. Errors: those of the stream, too.
+[[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
+
+/// Puts the shards of one audit together, in any order: the audit that one run would have made. Errors: kUsage where they are
+/// not shards of the same audit, or not each segment is in one of them.
+/// There must be one at least
+[[nodiscard]] Result<Audit> merge(std::vector<Audit> shards);
 
 }  // namespace chronormal
 

@@ -30,10 +30,12 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
+#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -58,6 +60,8 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
+  /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared. Of straight paths.
+  std::optional<Shard> shard = {};
   /// How the vertices of a sequence move: on curved paths every scheme is held against the exact normals of these curves,
   /// and one more row, "exact", is PathCurves (normals/path_curves.h).
   PathKind path = PathKind::kLinear;
@@ -75,8 +79,8 @@ struct CertifiedError {
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element; times are those of a thread among all that work, the median over blocks of up to 1,024 elements that stay
-/// in cache (on a smaller mesh, the calls themselves are most of it).
+/// element; times are those of a thread among all that work, the median over segments of that over blocks of up
+/// to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves are most of it).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
@@ -90,6 +94,20 @@ struct SchemeComparison {
   OperationCounts operations;                    ///< of the access that was measured
   std::vector<Quality> samples = {};             ///< with keep_samples: of each sample, segment after segment
   std::optional<CertifiedError> certified = {};  ///< where it was asked for
+};
+
+/// What one scheme did in one segment.
+struct SchemeTally {
+  Quality quality;
+  std::size_t fallbacks = 0, flagged = 0;
+  double bytes = 0;  ///< of all elements together
+  CertifiedError certified = {};
+};
+
+/// What all schemes did in one segment: every row, and linear behind them where it is none of them.
+struct ComparedSegment {
+  std::size_t segment = 0;
+  std::vector<SchemeTally> schemes;
 };
 
 struct Comparison {
@@ -106,6 +124,8 @@ struct Comparison {
   PathKind path = PathKind::kLinear;          ///< that all of them are held against
   double bend = 0;                            ///< of a curved path: bend_of(), to hold against kTooSparse
   std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
+  std::vector<ComparedSegment> compared =
+      {};  ///< of a shard: of each of its segments; the rows are those of them alone
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
@@ -113,11 +133,19 @@ struct Comparison {
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
 ///            tolerance, certificates of sequential access or of curved paths, those of check_path(), and errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
-/// Memory     a few MB beyond the motion, and 8 bytes per scheme and block of 1,024 elements for the times; for
+/// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
+/// The same of a stream, a few segments of which are held at a time: as many as have a few thousand elements for each
+/// thread, but at least one. Errors: those of the stream, too.
+[[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
+
+/// Puts the shards of one comparison together, in any order: the comparison that one run would have made, but that no times
+/// are measured. Errors: kUsage where they are not shards of the same comparison, or not each segment is in one of them.
+/// There must be one at least
+[[nodiscard]] Result<Comparison> merge(std::vector<Comparison> shards);
 
 /// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
 /// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.

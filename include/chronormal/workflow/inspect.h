@@ -21,6 +21,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 
 namespace chronormal {
 
@@ -89,6 +90,9 @@ struct Inspection {
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+/// The same of a stream: as many keyframes are held as threads work, and one more. Errors: those of the stream.
+[[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
+                                         const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 /// One primitive that has faces; what is not here is in GltfPrimitive.
 struct GltfPrimitiveInspection {

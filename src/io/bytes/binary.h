@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -59,6 +60,14 @@ template <class Real>
     result[i] = static_cast<float>(value);
   }
   return count;
+}
+
+/// The bytes of numbers: where they lie, or in storage where they have another order there.
+[[nodiscard]] inline std::string_view bytes_of(std::span<const float> values, std::endian order, std::string& storage) {
+  if (order == std::endian::native) return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+  storage.resize(values.size_bytes());
+  for (std::size_t i = 0; i < values.size(); ++i) store(storage.data() + i * sizeof(float), values[i], order);
+  return storage;
 }
 
 /// Whether count items of item_size bytes fit into so many bytes.

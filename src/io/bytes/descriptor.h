@@ -3,11 +3,15 @@
 #define CHRONORMAL_IO_BYTES_DESCRIPTOR_H_
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <string>
+#include <system_error>
 #include <utility>
+
+#include "chronormal/core/result.h"
 
 namespace chronormal::inline internal {
 
@@ -41,6 +45,19 @@ class Descriptor {
   do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
   while (descriptor < 0 && errno == EINTR);
   return descriptor;
+}
+
+/// What the system says to a path. errno is not looked at.
+[[nodiscard]] inline Error failure(const std::string& path, int system_error) {
+  return Error{ErrorCode::kFailed, path, std::generic_category().message(system_error)};
+}
+
+/// Waits where the other side set a pipe to non-blocking. False for any other error in errno.
+[[nodiscard]] inline bool may_go_on(int descriptor, short events) {
+  if (errno == EINTR) return true;
+  if (errno != EAGAIN) return false;
+  pollfd waiting{descriptor, events, 0};
+  return ::poll(&waiting, 1, -1) >= 0 || errno == EINTR;
 }
 
 }  // namespace chronormal::inline internal

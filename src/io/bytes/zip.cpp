@@ -113,11 +113,11 @@ std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end
   return result;
 }
 
-std::uint32_t checksum_of(std::string_view text) {
-  return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
-}
-
 }  // namespace
+
+std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far) {
+  return static_cast<std::uint32_t>(::crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name) {
   const std::optional<std::size_t> end = find_end(file);
@@ -193,13 +193,15 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
       return error("the deflated data are damaged, or more than the directory says");
     result = storage;
   }
-  if (result.size() == member.size && checksum_of(result) != member.checksum)
+  if (result.size() == member.size && checksum(result) != member.checksum)
     return error("the data do not have the checksum that the directory says");
   return result;
 }
 
-std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
-  std::string file, directory;
+Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) {
+  Frame frame;
+  std::uint64_t end = 0;  // of the file so far
+  std::string& directory = frame.directory.bytes;
   const auto put16 = [](std::string& text, std::uint64_t value) {
     binary::append(text, static_cast<std::uint16_t>(value), kOrder);
   };
@@ -209,41 +211,39 @@ std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
   const auto put64 = [](std::string& text, std::uint64_t value) { binary::append(text, value, kOrder); };
   const auto short_form = [&](std::uint64_t value) { return value >= zip64_from ? std::uint64_t{kSaturated} : value; };
 
-  std::size_t total = 1024;
-  for (const Part& part : parts) total += part.bytes.size() + 256;
-  file.reserve(total);
   // The fields that both headers of a member have, from "version needed" on.
-  const auto put_common = [&](std::string& text, const Part& part, std::uint32_t checksum, bool is_large) {
+  const auto put_common = [&](std::string& text, const StoredMember& member, bool is_large) {
     put16(text, is_large ? 45 : 20);  // version needed
     put16(text, 0);                   // flags
     put16(text, kStored);
     put16(text, 0);     // time
     put16(text, 0x21);  // date
-    put32(text, checksum);
-    put32(text, is_large ? kSaturated : part.bytes.size());
-    put32(text, is_large ? kSaturated : part.bytes.size());
-    put16(text, part.name.size());
+    put32(text, member.checksum);
+    put32(text, is_large ? kSaturated : member.size);
+    put32(text, is_large ? kSaturated : member.size);
+    put16(text, member.name.size());
   };
 
-  for (const Part& part : parts) {
-    const std::uint64_t header = file.size();
-    const bool is_large = part.bytes.size() >= zip64_from, is_far = header >= zip64_from;
-    const std::uint32_t checksum = checksum_of(part.bytes);
+  for (const StoredMember& member : members) {
+    const std::uint64_t header = end;
+    std::string file;
+    const bool is_large = member.size >= zip64_from, is_far = header >= zip64_from;
     put32(file, kMemberWord);
-    put_common(file, part, checksum, is_large);
+    put_common(file, member, is_large);
     put16(file, is_large ? 20 : 0);
-    file += part.name;
+    file += member.name;
     if (is_large) {
       put16(file, kZip64Field);
       put16(file, 16);
-      put64(file, part.bytes.size());
-      put64(file, part.bytes.size());
+      put64(file, member.size);
+      put64(file, member.size);
     }
-    file += part.bytes;
+    end += file.size() + member.size;
+    frame.headers.push_back({header, std::move(file)});
 
     put32(directory, kEntryWord);
     put16(directory, 45);  // made by
-    put_common(directory, part, checksum, is_large);
+    put_common(directory, member, is_large);
     const std::size_t field = (is_large ? 16U : 0U) + (is_far ? 8U : 0U);
     put16(directory, field == 0 ? 0 : field + 4);
     put16(directory, 0);  // comment
@@ -251,29 +251,30 @@ std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
     put16(directory, 0);  // internal attributes
     put32(directory, 0);  // external attributes
     put32(directory, short_form(header));
-    directory += part.name;
+    directory += member.name;
     if (field != 0) {
       put16(directory, kZip64Field);
       put16(directory, field);
-      if (is_large) put64(directory, part.bytes.size());
-      if (is_large) put64(directory, part.bytes.size());
+      if (is_large) put64(directory, member.size);
+      if (is_large) put64(directory, member.size);
       if (is_far) put64(directory, header);
     }
   }
 
-  const std::uint64_t begin = file.size();
-  file += directory;
-  if (begin >= zip64_from || directory.size() >= zip64_from) {
-    const std::uint64_t end64 = file.size();
+  const std::uint64_t begin = end, size = directory.size();
+  frame.directory.at = begin;
+  std::string& file = directory;
+  if (begin >= zip64_from || size >= zip64_from) {
+    const std::uint64_t end64 = begin + size;
     put32(file, kEnd64Word);
     put64(file, kEnd64Size - 12);
     put16(file, 45);
     put16(file, 45);
     put32(file, 0);
     put32(file, 0);
-    put64(file, parts.size());
-    put64(file, parts.size());
-    put64(file, directory.size());
+    put64(file, members.size());
+    put64(file, members.size());
+    put64(file, size);
     put64(file, begin);
     put32(file, kLocator64Word);
     put32(file, 0);
@@ -283,12 +284,22 @@ std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
   put32(file, kEndWord);
   put16(file, 0);
   put16(file, 0);
-  put16(file, parts.size());
-  put16(file, parts.size());
-  put32(file, short_form(directory.size()));
+  put16(file, members.size());
+  put16(file, members.size());
+  put32(file, short_form(size));
   put32(file, short_form(begin));
   put16(file, 0);
-  return file;
+  return frame;
+}
+
+std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
+  std::vector<StoredMember> members;
+  for (const Part& part : parts) members.push_back({part.name, part.bytes.size(), checksum(part.bytes)});
+  const Frame frame = frame_of(members, zip64_from);
+  std::string file;
+  file.reserve(static_cast<std::size_t>(frame.directory.end()));
+  for (std::size_t i = 0; i < parts.size(); ++i) file.append(frame.headers[i].bytes).append(parts[i].bytes);
+  return file.append(frame.directory.bytes);
 }
 
 }  // namespace chronormal::inline internal::zip

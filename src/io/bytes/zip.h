@@ -38,6 +38,30 @@ struct Member {
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
                                                    std::string& storage, const std::string& name);
 
+/// The checksum of bytes that follow those of which `so_far` is one.
+[[nodiscard]] std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far = 0);
+
+/// A member that is to be written, stored: its name, and what is known of its bytes.
+struct StoredMember {
+  std::string_view name;
+  std::uint64_t size = 0;
+  std::uint32_t checksum = 0;
+};
+
+/// All of a zip file but the bytes of its members: where each has its header, which is followed by its bytes, and what
+/// stands behind the last one. Checksums move nothing, so that they may be 0 until they are known.
+struct Frame {
+  struct Header {
+    std::uint64_t at = 0;
+    std::string bytes;
+
+    [[nodiscard]] std::uint64_t end() const noexcept { return at + bytes.size(); }
+  };
+  std::vector<Header> headers;
+  Header directory;
+};
+[[nodiscard]] Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from = 0xFFFFFFFF);
+
 struct Part {
   std::string_view name;
   std::string_view bytes;

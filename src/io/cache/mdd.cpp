@@ -15,32 +15,36 @@ constexpr std::endian kOrder = std::endian::big;
 
 }  // namespace
 
-Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name, const CacheOptions&) {
+Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                    const CacheOptions& /*options*/) {
   if (bytes.size() < kHeaderSize)
     return invalid_input(binary::place(name, bytes.size()), "the file ends inside its header of 8 bytes");
   const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 4, kOrder),
                                    binary::load<std::int32_t>(bytes.data(), kOrder)};
-  if (Status status = point_cache::check_counts(bytes, name, counts, kHeaderSize, sizeof(float)); !status)
+  if (Status status = point_cache::check_counts(size, name, counts, kHeaderSize, sizeof(float)); !status)
     return status.error();
-
   const std::size_t body = kHeaderSize + sizeof(float) * static_cast<std::size_t>(counts.samples);
-  Result<PositionCache> cache = point_cache::read_positions(bytes, name, counts, body, kOrder);
-  if (!cache) return cache;
-  for (std::size_t k = 0; k < cache.value().samples.size(); ++k) {
+  if (body > bytes.size()) return invalid_input(binary::place(name, bytes.size()), "the times are not here");
+  CacheLayout layout = point_cache::layout_of(counts, body, kOrder);
+  for (std::size_t k = 0; k < layout.times.size(); ++k) {
     const std::size_t at = kHeaderSize + sizeof(float) * k;
-    const double time = double{binary::load<float>(bytes.data() + at, kOrder)};
-    if (!std::isfinite(time))
+    layout.times[k] = double{binary::load<float>(bytes.data() + at, kOrder)};
+    if (!std::isfinite(layout.times[k]))
       return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k),
                            "the time is not a finite number");
-    cache.value().samples[k].time = time;
   }
-  return cache;
+  return layout;
 }
 
-Result<std::string> write_mdd(const Motion& motion) {
+Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+  const Result<CacheLayout> layout = find_mdd_layout(bytes, bytes.size(), name, options);
+  if (!layout) return layout.error();
+  return read_all_samples(layout.value(), bytes, name);
+}
+
+Result<std::string> mdd_header(const Motion& motion) {
   if (Status status = point_cache::check_writable(motion); !status) return status.error();
   std::string bytes;
-  bytes.reserve(kHeaderSize + (4 + 12 * motion.topology.vertex_count()) * motion.keyframes.size());
   binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kOrder);
   binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kOrder);
   float before = -std::numeric_limits<float>::infinity();
@@ -53,8 +57,11 @@ Result<std::string> write_mdd(const Motion& motion) {
     binary::append(bytes, time, kOrder);
     before = time;
   }
-  point_cache::append_positions(bytes, motion, kOrder);
   return bytes;
+}
+
+Status write_mdd(MotionStream& stream, OutputFile& file) {
+  return point_cache::write(mdd_header(stream.motion()), stream, kOrder, file);
 }
 
 }  // namespace chronormal::inline internal

@@ -14,6 +14,9 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
+#include "io/bytes/output_file.h"
+#include "io/cache/cache_layout.h"
 #include "io/cache/position_cache.h"
 
 namespace chronormal::inline internal {
@@ -26,9 +29,17 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Writes the positions and times of a motion. Errors: kUsage without a place: blend shapes, more than 2^31 - 1
-/// vertices or keyframes, and times that are the same as float32.
-[[nodiscard]] Result<std::string> write_mdd(const Motion& motion);
+/// Finds where the positions are, of a file of so many bytes that begins with these: all, or kLayoutBytes. Errors: those of
+/// read_mdd(), but for coordinates, and kInvalidInput for times that lie behind these bytes.
+[[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                                  const CacheOptions& options);
+
+/// The counts and times of a motion. Errors: kUsage without a place: blend shapes, more than 2^31 - 1 vertices or keyframes,
+/// and times that are the same as float32.
+[[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
+
+/// Writes these, and the positions as they come. Errors: those, of the stream and of the file.
+[[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal
 

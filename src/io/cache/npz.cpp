@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,35 +31,47 @@ std::string element_place(const std::string& place, std::initializer_list<std::s
   return text + "]";
 }
 
-// One sample of an array (T, V, 3). Positions of float32 in C order are common, and copied in one go.
-Result<PositionCache> read_positions(const Array& array, const std::string& place, const std::string& what) {
-  if (array.kind != Kind::kFloat || array.shape.size() != 3 || array.shape[2] != 3 || array.element_count() == 0)
-    return invalid_input(place,
-                         what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+Status check_positions(const Array& array, const std::string& place, const std::string& what) {
+  if (array.kind == Kind::kFloat && array.shape.size() == 3 && array.shape[2] == 3 && array.element_count() > 0)
+    return Success{};
+  return invalid_input(place,
+                       what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+}
+
+// Where positions in C order are, in a file that has the array from byte `begin` on.
+CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
+  CacheLayout layout;
+  layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
+  layout.times.resize(static_cast<std::size_t>(array.shape[0]));
+  layout.begin = begin + array.data_begin;
+  layout.item_size = array.item_size;
+  layout.order = array.order;
+  layout.array = what;
+  return layout;
+}
+
+// The samples of an array (T, V, 3) of the file of this name.
+Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what) {
+  const std::string place = name + ", " + what;
+  if (Status status = check_positions(array, place, what); !status) return status.error();
+  if (!array.is_fortran) {
+    CacheLayout layout = layout_of(array, 0, what);
+    layout.begin = 0;
+    return read_all_samples(layout, array.data, name);
+  }
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
   PositionCache cache;
   cache.vertex_count = vertices;
   cache.samples.resize(samples);
-  const std::size_t coordinates = 3 * vertices;
   for (std::size_t k = 0; k < samples; ++k) {
     std::vector<float>& positions = cache.samples[k].positions;
-    positions.resize(coordinates);
-    const auto item = [&](std::size_t i) {
-      return array.is_fortran ? k + samples * (i / 3 + vertices * (i % 3)) : k * coordinates + i;
-    };
-    std::size_t read = 0;
-    const char* const row = array.data.data() + k * coordinates * array.item_size;
-    if (!array.is_fortran && array.item_size == sizeof(float)) {
-      read = binary::load_coordinates<float>(row, coordinates, array.order, positions.data());
-    } else if (!array.is_fortran) {
-      read = binary::load_coordinates<double>(row, coordinates, array.order, positions.data());
-    } else {
-      for (; read < coordinates && binary::coordinate_fault(array.real(item(read))) == nullptr; ++read)
-        positions[read] = static_cast<float>(array.real(item(read)));
+    positions.resize(3 * vertices);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double value = array.real(k + samples * (i / 3 + vertices * (i % 3)));
+      if (const char* const fault = binary::coordinate_fault(value); fault != nullptr)
+        return invalid_input(element_place(place, {k, i / 3, i % 3}), fault);
+      positions[i] = static_cast<float>(value);
     }
-    if (read < coordinates)
-      return invalid_input(element_place(place, {k, read / 3, read % 3}),
-                           binary::coordinate_fault(array.real(item(read))));
   }
   return cache;
 }
@@ -100,12 +113,12 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
 }
 
 // Velocities per second, of the shape of the positions.
-Status take_velocities(const Array& array, const std::string& place, Motion& motion) {
-  Result<PositionCache> read = read_positions(array, place, "velocities");
+Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
+  Result<PositionCache> read = read_positions(array, name, "velocities");
   if (!read) return read.error();
   std::vector<PositionCache::Sample>& samples = read.value().samples;
   if (samples.size() != motion.keyframes.size() || read.value().vertex_count != motion.topology.vertex_count())
-    return invalid_input(place, "velocities must be as many as positions, but are " + array.text());
+    return invalid_input(name + ", velocities", "velocities must be as many as positions, but are " + array.text());
   for (std::size_t k = 0; k < samples.size(); ++k) motion.keyframes[k].velocities = std::move(samples[k].positions);
   return Success{};
 }
@@ -157,6 +170,22 @@ class Archive {
     return result;
   }
 
+  // Where positions lie in the file that can be read one by one: they are stored, in C order.
+  [[nodiscard]] Result<std::optional<CacheLayout>> find_stored(std::string_view array) {
+    constexpr std::uint16_t kStored = 0;
+    const zip::Member* const member = find(array);
+    if (member == nullptr || member->method != kStored) return std::optional<CacheLayout>();
+    const Result<std::string_view> start = zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
+    if (!start) return start.error();
+    const Result<Array> found = npy::read_header(start.value(), member->size, place(array));
+    if (!found) return found.error();
+    if (Status status = check_positions(found.value(), place(array), std::string(array)); !status)
+      return status.error();
+    if (found.value().is_fortran) return std::optional<CacheLayout>();
+    return std::optional(
+        layout_of(found.value(), static_cast<std::uint64_t>(start.value().data() - bytes_.data()), std::string(array)));
+  }
+
  private:
   [[nodiscard]] Error missing(std::string_view array) const {
     constexpr std::size_t kMostNamed = 8;
@@ -194,27 +223,28 @@ class Archive {
   std::string storage_;
 };
 
-}  // namespace
-
-Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, const CacheOptions& options) {
-  Result<Array> array = npy::read_header(bytes, bytes.size(), name + ", header");
-  if (!array) return array.error();
-  array.value().data = bytes.substr(array.value().data_begin);
-  Result<PositionCache> cache = read_positions(array.value(), name + ", positions", "positions");
-  if (cache) set_regular_times(cache.value(), options.frames_per_second);
-  return cache;
-}
-
-Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second,
-                        std::size_t max_expansion) {
+// Reads a motion; or with a layout, all of it but positions that can be read one by one, and where those are.
+Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
+                               std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);
   if (!members) return members.error();
   Archive archive(bytes, name, std::move(members).value(), max_expansion);
 
-  const Result<Array> positions = archive.read("positions");
-  if (!positions) return positions.error();
-  Result<PositionCache> cache = read_positions(positions.value(), archive.place("positions"), "positions");
-  if (!cache) return cache.error();
+  if (layout != nullptr && !archive.has("velocities")) {
+    const Result<std::optional<CacheLayout>> found = archive.find_stored("positions");
+    if (!found) return found.error();
+    *layout = found.value();
+  }
+  Result<PositionCache> cache = PositionCache{};
+  if (layout != nullptr && *layout) {
+    cache.value().vertex_count = (*layout)->vertex_count;
+    cache.value().samples.resize((*layout)->times.size());
+  } else {
+    const Result<Array> positions = archive.read("positions");
+    if (!positions) return positions.error();
+    cache = read_positions(positions.value(), name, "positions");
+    if (!cache) return cache.error();
+  }
 
   const Result<Array> faces = archive.read("faces");
   if (!faces) return faces.error();
@@ -243,12 +273,44 @@ Result<Motion> read_npz(std::string_view bytes, const std::string& name, double 
   if (motion && kind == MotionKind::kSequence && archive.has("velocities")) {
     const Result<Array> velocities = archive.read("velocities");
     if (!velocities) return velocities.error();
-    if (Status status = take_velocities(velocities.value(), archive.place("velocities"), motion.value()); !status)
-      return status.error();
+    if (Status status = take_velocities(velocities.value(), name, motion.value()); !status) return status.error();
   }
   for (std::size_t k = 0; motion && kind == MotionKind::kTargets && k < motion.value().keyframes.size(); ++k)
     motion.value().keyframes[k].name = k == 0 ? "base" : "target " + std::to_string(k - 1);
   return motion;
+}
+
+}  // namespace
+
+Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                    const CacheOptions& options) {
+  const Result<Array> array = npy::read_header(bytes, size, name + ", header");
+  if (!array) return array.error();
+  if (Status status = check_positions(array.value(), name + ", positions", "positions"); !status) return status.error();
+  if (array.value().is_fortran) return invalid_input(name + ", positions", "they are in the order of Fortran");
+  CacheLayout layout = layout_of(array.value(), 0, "positions");
+  for (std::size_t k = 0; k < layout.times.size(); ++k)
+    layout.times[k] = static_cast<double>(k) / options.frames_per_second;
+  return layout;
+}
+
+Result<PositionCache> read_npy(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+  Result<Array> array = npy::read_header(bytes, bytes.size(), name + ", header");
+  if (!array) return array.error();
+  array.value().data = bytes.substr(array.value().data_begin);
+  Result<PositionCache> cache = read_positions(array.value(), name, "positions");
+  if (cache) set_regular_times(cache.value(), options.frames_per_second);
+  return cache;
+}
+
+Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second,
+                        std::size_t max_expansion) {
+  return read_npz_around(bytes, name, frames_per_second, max_expansion, nullptr);
+}
+
+Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
+                                std::size_t max_expansion, std::optional<CacheLayout>& layout) {
+  return read_npz_around(bytes, name, frames_per_second, max_expansion, &layout);
 }
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_header("<f4", shape)) {
@@ -299,27 +361,76 @@ std::string write_npz(std::span<const NpzMember> members) {
   return zip::write(parts);
 }
 
-Result<std::string> write_npz(const Motion& motion) {
-  if (Status status = check_keyframes(motion); !status) return status.error();
+Status write_npz(MotionStream& stream, OutputFile& file) {
+  const Motion& motion = stream.motion();
+  if (Status status = check_keyframes(motion); !status) return status;
   const Result<std::string> faces = write_npy_faces(motion.topology);
   if (!faces) return faces.error();
-  NpyBytes positions({motion.keyframes.size(), motion.topology.vertex_count(), 3});
-  NpyBytes velocities({motion.keyframes.size(), motion.topology.vertex_count(), 3});
-  const bool has_velocities = std::none_of(motion.keyframes.begin(), motion.keyframes.end(),
-                                           [](const Motion::Keyframe& key) { return key.velocities.empty(); });
   std::vector<double> times;
-  for (const Motion::Keyframe& keyframe : motion.keyframes) {
-    positions.append(keyframe.positions);
-    if (has_velocities) velocities.append(keyframe.velocities);
-    times.push_back(keyframe.time);
-  }
+  for (const Motion::Keyframe& keyframe : motion.keyframes) times.push_back(keyframe.time);
   const NpyBytes time_array({times.size()}, times);
   const std::string kind = npy::write_text(motion_kind_name(motion.kind));
-  std::vector<NpzMember> members = {{"positions", positions.bytes()}, {"faces", faces.value()}};
-  if (motion.kind != MotionKind::kTargets) members.push_back({"times", time_array.bytes()});
-  if (motion.kind != MotionKind::kSequence) members.push_back({"kind", kind});
-  if (has_velocities) members.push_back({"velocities", velocities.bytes()});
-  return write_npz(members);
+  std::vector<NpzMember> whole = {{"faces", faces.value()}};
+  if (motion.kind != MotionKind::kTargets) whole.push_back({"times", time_array.bytes()});
+  if (motion.kind != MotionKind::kSequence) whole.push_back({"kind", kind});
+  const bool has_velocities = std::none_of(motion.keyframes.begin(), motion.keyframes.end(),
+                                           [](const Motion::Keyframe& key) { return key.velocities.empty(); });
+  NpyBytes velocities({has_velocities ? motion.keyframes.size() : 0, motion.topology.vertex_count(), 3});
+  if (has_velocities) {
+    for (const Motion::Keyframe& keyframe : motion.keyframes) velocities.append(keyframe.velocities);
+    whole.push_back({"velocities", velocities.bytes()});
+  }
+  NpzOutput npz(file);
+  const std::size_t positions =
+      npz.add_growing("positions", {motion.keyframes.size(), motion.topology.vertex_count(), 3});
+  for (const NpzMember& member : whole) npz.add(member);
+  if (Status status = npz.begin(); !status) return status;
+  const Status written =
+      each_keyframe(stream, kOrder, [&](std::string_view row) { return npz.append(positions, row); });
+  return written ? npz.finish() : written;
+}
+
+void NpzOutput::add(const NpzMember& member) {
+  members_.push_back({std::string(member.name) + ".npy", std::string(member.npy), member.npy.size()});
+}
+
+std::size_t NpzOutput::add_growing(std::string_view name, const std::vector<std::uint64_t>& shape) {
+  std::uint64_t size = sizeof(float);
+  for (const std::uint64_t length : shape) size *= length;
+  std::string header = npy::write_header("<f4", shape);
+  size += header.size();
+  members_.push_back({std::string(name) + ".npy", std::move(header), size});
+  return members_.size() - 1;
+}
+
+zip::Frame NpzOutput::frame() const {
+  std::vector<zip::StoredMember> stored;
+  for (const Member& member : members_) stored.push_back({member.name, member.size, member.checksum});
+  return zip::frame_of(stored);
+}
+
+Status NpzOutput::begin() {
+  const zip::Frame zip = frame();
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    members_[i].end = zip.headers[i].end();
+    if (Status status = append(i, members_[i].start); !status) return status;
+  }
+  return Success{};
+}
+
+Status NpzOutput::append(std::size_t array, std::string_view bytes) {
+  Member& member = members_[array];
+  member.checksum = zip::checksum(bytes, member.checksum);
+  Status status = file_->put(member.end, bytes);
+  member.end += bytes.size();
+  return status;
+}
+
+Status NpzOutput::finish() {
+  const zip::Frame zip = frame();
+  for (const zip::Frame::Header& header : zip.headers)
+    if (Status status = file_->put(header.at, header.bytes); !status) return status;
+  return file_->put(zip.directory.at, zip.directory.bytes);
 }
 
 }  // namespace chronormal::inline internal

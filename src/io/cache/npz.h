@@ -20,6 +20,7 @@
 #define CHRONORMAL_IO_CACHE_NPZ_H_
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,10 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/zip.h"
+#include "io/cache/cache_layout.h"
 #include "io/cache/position_cache.h"
 
 namespace chronormal::inline internal {
@@ -45,16 +50,27 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
+/// The same but for positions that are stored in C order: layout says where in the file they lie, and the keyframes have
+/// none. Where they are not, all is read, and layout is nothing. The checksum of positions is not verified then.
+[[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
+                                              std::size_t max_expansion, std::optional<CacheLayout>& layout);
+
 /// Reads a .npy file of positions (T, V, 3), as above; sample k is at k / options.frames_per_second.
 /// Errors: as read_npz().
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Writes positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what has any,
-/// velocities where all keyframes have them, and the kind of what is no sequence, stored, so that the arrays can be mapped. The same motion gives the same bytes.
+/// Finds where the positions are, of a file of so many bytes that begins with these: all, or kLayoutBytes. Errors: those of
+/// read_npy(), but for coordinates, and kInvalidInput for the order of Fortran.
+[[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                                  const CacheOptions& options);
+
+/// Writes, as they come, positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what
+/// has any, velocities where all keyframes have them, and the kind of what is no sequence, stored, so that the arrays can
+/// be mapped. The same motion gives the same bytes.
 /// Errors: kUsage without a place: a mesh that does not move, and faces of different numbers of corners, which no (F,
-/// k) array holds.
-[[nodiscard]] Result<std::string> write_npz(const Motion& motion);
+/// k) array holds; those of the stream and of the file.
+[[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
 /// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.
 class NpyBytes {
@@ -87,6 +103,42 @@ struct NpzMember {
 
 /// Writes a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
+
+/// A .npz file, stored, of which some arrays grow as it is written: all of them at the same time.
+///
+///     NpzOutput npz(file);
+///     const std::size_t normals = npz.add_growing("normals", {moments, outputs, 3});
+///     npz.add({"times", npy});
+///     ... npz.begin(); npz.append(normals, row); ... npz.finish(); file.finish();      // each a Status
+class NpzOutput {
+ public:
+  /// The file must outlive this.
+  explicit NpzOutput(OutputFile& file) : file_(&file) {}
+
+  /// Adds an array that is whole.
+  void add(const NpzMember& member);
+  /// Adds an array of float32 in C order; returns its number for append().
+  [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape);
+
+  /// Once all are added.
+  [[nodiscard]] Status begin();
+  /// Writes the next bytes of a growing array, little endian.
+  [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
+  /// Once all bytes of the shapes are there.
+  [[nodiscard]] Status finish();
+
+ private:
+  struct Member {
+    std::string name, start;
+    std::uint64_t size = 0;
+    std::uint64_t end = 0;  // of what is written, in the file
+    std::uint32_t checksum = 0;
+  };
+  [[nodiscard]] zip::Frame frame() const;
+
+  OutputFile* file_;
+  std::vector<Member> members_;
+};
 
 }  // namespace chronormal::inline internal
 

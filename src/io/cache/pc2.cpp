@@ -15,7 +15,8 @@ constexpr std::endian kOrder = std::endian::little;
 
 }  // namespace
 
-Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                    const CacheOptions& options) {
   if (!bytes.starts_with(kFirstWord))
     return invalid_input(binary::place(name, 0), "this is not a PC2 file: its first word is not POINTCACHE2");
   if (bytes.size() < kHeaderSize)
@@ -30,16 +31,20 @@ Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name, 
   if (!std::isfinite(first)) return invalid_input(binary::place(name, 20), "the first frame is not a finite number");
   if (!std::isfinite(step) || !(step > 0))
     return invalid_input(binary::place(name, 24), "the frames between two samples must be finite and above 0");
-  if (Status status = point_cache::check_counts(bytes, name, counts, kHeaderSize, 0); !status) return status.error();
-
-  Result<PositionCache> cache = point_cache::read_positions(bytes, name, counts, kHeaderSize, kOrder);
-  if (!cache) return cache;
-  for (std::size_t k = 0; k < cache.value().samples.size(); ++k)
-    cache.value().samples[k].time = (first + static_cast<double>(k) * step) / options.frames_per_second;
-  return cache;
+  if (Status status = point_cache::check_counts(size, name, counts, kHeaderSize, 0); !status) return status.error();
+  CacheLayout layout = point_cache::layout_of(counts, kHeaderSize, kOrder);
+  for (std::size_t k = 0; k < layout.times.size(); ++k)
+    layout.times[k] = (first + static_cast<double>(k) * step) / options.frames_per_second;
+  return layout;
 }
 
-Result<std::string> write_pc2(const Motion& motion, double frames_per_second) {
+Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name, const CacheOptions& options) {
+  const Result<CacheLayout> layout = find_pc2_layout(bytes, bytes.size(), name, options);
+  if (!layout) return layout.error();
+  return read_all_samples(layout.value(), bytes, name);
+}
+
+Result<std::string> pc2_header(const Motion& motion, double frames_per_second) {
   if (Status status = point_cache::check_writable(motion); !status) return status.error();
   const std::size_t last = motion.keyframes.size() - 1;
   const auto frame_of = [&](std::size_t k) { return motion.keyframes[k].time * frames_per_second; };
@@ -54,14 +59,16 @@ Result<std::string> write_pc2(const Motion& motion, double frames_per_second) {
   }
 
   std::string bytes(kFirstWord);
-  bytes.reserve(kHeaderSize + 12 * motion.topology.vertex_count() * motion.keyframes.size());
   binary::append(bytes, std::int32_t{1}, kOrder);
   binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kOrder);
   binary::append(bytes, first, kOrder);
   binary::append(bytes, step, kOrder);
   binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kOrder);
-  point_cache::append_positions(bytes, motion, kOrder);
   return bytes;
+}
+
+Status write_pc2(MotionStream& stream, OutputFile& file) {
+  return point_cache::write(pc2_header(stream.motion()), stream, kOrder, file);
 }
 
 }  // namespace chronormal::inline internal

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
+#include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
+#include "motion/outline.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -40,7 +42,7 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
   for (PositionCache::Sample& sample : cache.samples)
     motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
   motion.connect(kind);
-  if (Status status = validate(motion); !status)
+  if (Status status = validate_outline(motion); !status)  // readers have looked at positions
     return invalid_input(cache_name + ", " + status.error().place, status.error().message);
   return motion;
 }
@@ -49,9 +51,19 @@ Status check_keyframes(const Motion& motion) {
   const auto misuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
   if (motion.keyframes.size() < 2 || motion.segments.empty())
     return misuse("this format holds two keyframes or more, but the mesh does not move");
-  for (const Motion::Keyframe& keyframe : motion.keyframes) {
-    if (keyframe.positions.size() != 3 * motion.topology.vertex_count())
-      return misuse("a keyframe has another number of coordinates than the vertices need");
+  return Success{};
+}
+
+Status each_keyframe(MotionStream& stream, std::endian order,
+                     const std::function<Status(std::string_view bytes)>& each) {
+  const Motion& motion = stream.motion();
+  std::string storage;
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    if (Status status = stream.hold(k, k); !status) return status;
+    const std::vector<float>& positions = motion.keyframes[k].positions;
+    if (positions.size() != 3 * motion.topology.vertex_count())
+      return Error{ErrorCode::kUsage, "", "a keyframe has another number of coordinates than the vertices need"};
+    if (Status status = each(binary::bytes_of(positions, order, storage)); !status) return status;
   }
   return Success{};
 }

@@ -12,12 +12,16 @@
 #ifndef CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
 #define CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
 
+#include <bit>
 #include <cstddef>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/topology.h"
 
 namespace chronormal::inline internal {
@@ -42,20 +46,24 @@ struct CacheOptions {
 };
 
 /// Gives the samples of a cache the faces of a mesh, as a sequence or what else they are known to be; every keyframe
-/// takes the name of the cache. The result is valid (motion/motion.h).
+/// takes the name of the cache. The result is valid (motion/motion.h), but that samples without positions give keyframes
+/// without any.
 ///
 /// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
 /// fewer than two samples, times that do not ascend as the kind has it (the place has the sample).
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                                const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
-/// Whether the keyframes of a motion are a list of samples: two or more, of 3 x vertex_count coordinates each. Errors:
-/// kUsage without a place.
+/// Whether the keyframes of a motion are a list of samples, two or more. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
 /// Whether they are one sequence besides, so that a format can hold them that knows nothing else: segments join all
 /// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
+
+/// Hands out the coordinates of one keyframe after the other, as bytes of float32. Errors: those of the stream and of each.
+[[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
+                                   const std::function<Status(std::string_view bytes)>& each);
 
 }  // namespace chronormal::inline internal
 

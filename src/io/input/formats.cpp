@@ -60,8 +60,6 @@ Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, d
   return read_md2(bytes, name, frames_per_second);
 }
 
-Result<std::string> write_pc2_at_one(const Motion& motion) { return write_pc2(motion); }  // frame a second
-
 constexpr std::array<Format, 11> kFormats = {{
     {.name = "obj",
      .holds = Holds::kMesh,
@@ -82,15 +80,22 @@ constexpr std::array<Format, 11> kFormats = {{
      .extensions = kNpz,
      .recognises = is_zip,
      .read_motion = read_npz,
+     .read_outline = read_npz_outline,
      .write_motion = write_npz},
     {.name = "md2", .holds = Holds::kMotion, .extensions = kMd2, .recognises = is_md2, .read_motion = read_whole_md2},
     {.name = "pc2",
      .holds = Holds::kCache,
      .extensions = kPc2,
      .read_cache = read_pc2,
-     .write_motion = write_pc2_at_one},
-    {.name = "mdd", .holds = Holds::kCache, .extensions = kMdd, .read_cache = read_mdd, .write_motion = write_mdd},
-    {.name = "npy", .holds = Holds::kCache, .extensions = kNpy, .read_cache = read_npy},
+     .find_layout = find_pc2_layout,
+     .write_motion = write_pc2},
+    {.name = "mdd",
+     .holds = Holds::kCache,
+     .extensions = kMdd,
+     .read_cache = read_mdd,
+     .find_layout = find_mdd_layout,
+     .write_motion = write_mdd},
+    {.name = "npy", .holds = Holds::kCache, .extensions = kNpy, .read_cache = read_npy, .find_layout = find_npy_layout},
     {.name = "maya", .holds = Holds::kCache, .extensions = kMaya, .read_cache = read_maya_points},
     {.name = "maya_xml", .holds = Holds::kCache, .extensions = kMayaDescription},
     {.name = "target", .holds = Holds::kTarget, .extensions = kTarget},

@@ -6,12 +6,16 @@
 #define CHRONORMAL_IO_INPUT_FORMATS_H_
 
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
+#include "io/bytes/output_file.h"
+#include "io/cache/cache_layout.h"
 #include "io/cache/position_cache.h"
 #include "io/mesh/mesh_frame.h"
 
@@ -41,12 +45,19 @@ struct Format {
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
+  /// The same, but that positions which can be read one by one are left in the file; nullptr where there are none.
+  Result<Motion> (*read_outline)(std::string_view bytes, const std::string& name, double frames_per_second,
+                                 std::size_t max_expansion, std::optional<CacheLayout>& layout) = nullptr;
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
+  /// Finds where samples lie (io/cache/cache_layout.h); nullptr where they can not be read one by one.
+  Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
+                                     const CacheOptions& options) = nullptr;
+
   // What writes it; nullptr where nothing does.
   std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions) = nullptr;
-  Result<std::string> (*write_motion)(const Motion& motion) = nullptr;
+  Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;
 };
 
 /// All formats, in the order in which they are asked whether they recognise a file.

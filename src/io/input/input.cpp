@@ -6,13 +6,18 @@
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <memory>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
 #include "io/bytes/file.h"
+#include "io/bytes/positioned_file.h"
+#include "io/cache/cache_layout.h"
 #include "io/cache/maya_cache.h"
 #include "io/gltf/gltf_motion.h"
 #include "io/input/formats.h"
@@ -30,6 +35,14 @@ Error misuse(std::string place, std::string message) {
 
 Error not_animated(const std::string& input) {
   return misuse(input, "--animation chooses among those of a glTF file, which this is not");
+}
+
+// What is chosen among keyframes, and these are none of a sequence.
+Error chooses_nothing(const InputOptions& options) {
+  return misuse(options.from > 0 ? "--from"
+                : options.to     ? "--to"
+                                 : "--every",
+                "it chooses among the keyframes of a sequence, which this is not");
 }
 
 // What was opened: a document, or else a motion or a mesh.
@@ -78,6 +91,64 @@ Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& ca
   return input.format->read_cache(file.value().bytes(), file_name_of(input.path), cache_options);
 }
 
+// Keeps the keyframes that the options choose, of a motion that was read whole.
+Status keep_chosen(const InputOptions& options, Motion& motion) {
+  if (!options.chooses_frames()) return Success{};
+  if (motion.kind != MotionKind::kSequence || motion.segments.empty()) return chooses_nothing(options);
+  const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
+  if (!frames) return frames.error();
+  std::vector<Motion::Keyframe> kept;
+  for (const std::size_t k : frames.value()) kept.push_back(std::move(motion.keyframes[k]));
+  motion.keyframes = std::move(kept);
+  motion.connect_as_sequence();
+  return Success{};
+}
+
+// A motion that is there but for its positions, as a stream of those that the options choose. The file is opened again:
+// nothing is read by its name, and nothing of it is mapped.
+Result<MotionStream> stream_samples(const InputOptions& options, Motion outline, PositionedFile file,
+                                    CacheLayout layout, const std::string& name) {
+  std::vector<std::size_t> frames(outline.keyframes.size());
+  std::iota(frames.begin(), frames.end(), std::size_t{0});
+  if (options.chooses_frames()) {
+    Result<std::vector<std::size_t>> chosen = choose_frames(frames.size(), options);
+    if (!chosen) return chosen.error();
+    if (const Status status = keep_chosen(options, outline); !status) return status.error();
+    frames = std::move(chosen).value();
+  }
+  layout.times = {};
+  const auto shared = std::make_shared<const PositionedFile>(std::move(file));
+  const auto read = [shared, layout, name, frames](const Motion&, std::size_t keyframe, std::span<float> positions) {
+    return read_sample(layout, *shared, name, frames[keyframe], positions);
+  };
+  return MotionStream(std::move(outline), read, options.kept_bytes);
+}
+
+// The cache that has this layout, without positions.
+Result<PositionCache> outline_of(const CacheLayout& layout) {
+  PositionCache cache{layout.vertex_count, {}};
+  for (const double time : layout.times) cache.samples.push_back({time, {}});
+  return cache;
+}
+
+// The layout of a cache whose samples can be read one by one; nothing where they can not, or where something is wrong,
+// which the reader of the whole file says.
+struct FoundSamples {
+  PositionedFile file;
+  CacheLayout layout;
+};
+std::optional<FoundSamples> find_samples(const CacheInput& input, const CacheOptions& cache_options,
+                                         const InputOptions& options) {
+  if (!options.stream || options.resolve || input.format->find_layout == nullptr) return std::nullopt;
+  std::optional<PositionedFile> file = PositionedFile::open(input.path);
+  if (!file) return std::nullopt;
+  std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kLayoutBytes)), '\0');
+  if (!file->read(0, start)) return std::nullopt;
+  Result<CacheLayout> layout = input.format->find_layout(start, file->size(), file_name_of(input.path), cache_options);
+  if (!layout) return std::nullopt;
+  return FoundSamples{std::move(*file), std::move(layout).value()};
+}
+
 Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,
                                         const InputOptions& options) {
   InputOptions of_mesh = options;
@@ -95,8 +166,9 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   if (!mesh) return mesh.error();
   Topology faces = std::move(mesh.value().topology);
   if (options.progress) options.progress(1, 2);
-  Result<PositionCache> cache =
-      read_cache(input, {options.frames_per_second, faces.vertex_count(), input.channel}, options);
+  const CacheOptions cache_options{options.frames_per_second, faces.vertex_count(), input.channel};
+  std::optional<FoundSamples> samples = find_samples(input, cache_options, options);
+  Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
   // The files of a cache have no fewer bytes than its positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
@@ -104,12 +176,21 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<Motion> motion =
       motion_from_cache(std::move(faces), std::move(cache).value(), file_name_of(mesh_path), file_name_of(input.path));
   if (!motion) return motion.error();
+  if (samples) {
+    Result<MotionStream> stream = stream_samples(options, std::move(motion).value(), std::move(samples->file),
+                                                 std::move(samples->layout), file_name_of(input.path));
+    if (!stream) return stream.error();
+    read.stream = std::move(stream).value();
+    return read;
+  }
   read.motion = std::move(motion).value();
+  if (Status status = keep_chosen(options, read.motion); !status) return status.error();
   return read;
 }
 
 // A mesh that does not move, as one keyframe.
 Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& path, const InputOptions& options) {
+  if (options.chooses_frames()) return chooses_nothing(options);
   ReadMotion read;
   Result<MeshFrame> mesh = read_next_mesh(options, bytes, path, file_name_of(path), read);
   if (!mesh) return mesh.error();
@@ -132,6 +213,7 @@ bool may_be_whole(const std::string& input, const InputOptions& options) {
 }
 
 Result<Opened> open_document(FileBytes file, const std::string& path, const InputOptions& options) {
+  if (options.chooses_frames()) return chooses_nothing(options);
   std::optional<std::string> folder;
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
   Opened opened;
@@ -144,6 +226,29 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
+// Reads a file that holds a whole motion, or its outline where samples can be read one by one.
+Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
+                         const InputOptions& options, ReadMotion& read) {
+  const std::string name = file_name_of(path);
+  read.bytes_read = bytes.size();
+  std::optional<PositionedFile> file;
+  if (options.stream && !options.resolve && format.read_outline != nullptr) file = PositionedFile::open(path);
+  std::optional<CacheLayout> layout;
+  Result<Motion> motion =
+      file ? format.read_outline(bytes, name, options.frames_per_second, options.max_expansion, layout)
+           : format.read_motion(bytes, name, options.frames_per_second, options.max_expansion);
+  if (!motion) return motion.error();
+  if (!layout) {
+    read.motion = std::move(motion).value();
+    return keep_chosen(options, read.motion);
+  }
+  Result<MotionStream> stream =
+      stream_samples(options, std::move(motion).value(), std::move(*file), std::move(*layout), name);
+  if (!stream) return stream.error();
+  read.stream = std::move(stream).value();
+  return Success{};
+}
+
 // Opens the one file that the input is.
 Result<Opened> open_whole(const std::string& path, const InputOptions& options) {
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
@@ -154,11 +259,8 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
   if (!options.animation.empty()) return not_animated(path);
   Opened opened;
   if (format != nullptr && format->holds == Holds::kMotion) {
-    Result<Motion> motion =
-        format->read_motion(bytes, file_name_of(path), options.frames_per_second, options.max_expansion);
-    if (!motion) return motion.error();
-    opened.read.motion = std::move(motion).value();
-    opened.read.bytes_read = bytes.size();
+    const Status read = read_whole_motion(*format, bytes, path, options, opened.read);
+    if (!read) return read.error();
   } else if (options.allow_mesh && format == nullptr) {
     return invalid_input(file_name_of(path), "neither the name nor the content tells a format that is read: " +
                                                  extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh}) +
@@ -198,7 +300,9 @@ Result<ReadMotion> read_several(const InputOptions& options) {
   if (!options.animation.empty()) return not_animated(inputs.front());
   const Result<std::vector<std::string>> files = find_frames(options);
   if (!files) return files.error();
-  if (files.value().size() > 1 || !options.allow_mesh) return read_sequence(files.value(), options);
+  if (files.value().size() > 1 || !options.allow_mesh)
+    return options.stream && !options.resolve ? stream_sequence(files.value(), options)
+                                              : read_sequence(files.value(), options);
   const Result<FileBytes> file = FileBytes::open(files.value().front(), options.resolve);
   if (!file) return file.error();
   return read_still_mesh(file.value().bytes(), files.value().front(), options);
@@ -214,6 +318,7 @@ Status check_input(const InputOptions& options) {
   if (!options.base.empty()) {
     if (!options.samples.empty()) return misuse("--base", "a built-in morph is no target: give .obj, .ply or .target");
     if (options.files.empty()) return misuse("--base", "there is nothing to read: name the targets of the base");
+    if (options.chooses_frames()) return chooses_nothing(options);
     if (options.frames_per_second != 1)
       return misuse("--fps", "targets of a base have no frames and no times, but weights: leave it out");
     return Success{};
@@ -275,30 +380,40 @@ const std::string& Input::shaded_by() const noexcept { return state_->opened.rea
 std::span<const GltfPart> Input::parts() const noexcept { return state_->parts; }
 double Input::curve_error() const noexcept { return state_->curve_error; }
 
-Result<const Motion*> Input::motion() {
+Result<MotionStream*> Input::stream() {
   if (const Status status = state_->read_motion(); !status) return status.error();
-  return &state_->opened.read.motion;
+  ReadMotion& read = state_->opened.read;
+  if (!read.stream) read.stream.emplace(read.motion);
+  return &*read.stream;
+}
+
+Result<const Motion*> Input::motion() {
+  const Result<MotionStream*> read = stream();
+  if (!read) return read.error();
+  if (const Status status = read.value()->hold_all(); !status) return status.error();
+  return &read.value()->motion();
 }
 
 Result<std::size_t> Input::keyframe_count() {
-  const Result<const Motion*> read = motion();
+  const Result<MotionStream*> read = stream();
   if (!read) return read.error();
-  return read.value()->keyframes.size();
+  return read.value()->motion().keyframes.size();
 }
 
 Result<const Motion::Keyframe*> Input::keyframe(std::size_t k) {
-  const Result<const Motion*> read = motion();
+  const Result<MotionStream*> read = stream();
   if (!read) return read.error();
-  assert(k < read.value()->keyframes.size());
-  return &read.value()->keyframes[k];
+  assert(k < read.value()->motion().keyframes.size());
+  if (const Status status = read.value()->hold(k, k); !status) return status.error();
+  return &read.value()->motion().keyframes[k];
 }
 
 Result<std::vector<double>> Input::key_times() {
-  const Result<const Motion*> read = motion();
+  const Result<MotionStream*> read = stream();
   if (!read) return read.error();
   if (!state_->key_times.empty()) return state_->key_times;
   std::vector<double> times;
-  for (const Motion::Keyframe& keyframe : read.value()->keyframes) times.push_back(keyframe.time);
+  for (const Motion::Keyframe& keyframe : read.value()->motion().keyframes) times.push_back(keyframe.time);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
@@ -330,7 +445,10 @@ Result<Input> open_input(const InputOptions& options) {
   if (!options.samples.empty()) {
     Result<Motion> motion = make_builtin_morph(options.samples.front());
     if (!motion) return motion.error();
-    Result<Input> input = keep(options.samples.front(), ReadMotion{std::move(motion).value(), {}, {}, {}, 0});
+    if (const Status status = keep_chosen(options, motion.value()); !status) return status.error();
+    ReadMotion read;
+    read.motion = std::move(motion).value();
+    Result<Input> input = keep(options.samples.front(), std::move(read));
     input.value().state_->expansion = Expansion::unlimited();
     return input;
   }

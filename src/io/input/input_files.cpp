@@ -125,6 +125,25 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   return mesh;
 }
 
+Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options) {
+  const auto misuse = [](const char* place, std::string message) {
+    return Error{ErrorCode::kUsage, place, std::move(message)};
+  };
+  const std::string range = "keyframes are counted from 0 to " + std::to_string(count - 1);
+  if (options.every == 0) return misuse("--every", "the step from one keyframe to the next must be 1 or more");
+  if (options.to && *options.to >= count) return misuse("--to", "there is no such keyframe: " + range);
+  const std::size_t last = options.to.value_or(count - 1);
+  if (options.from >= count) return misuse("--from", "there is no such keyframe: " + range);
+  std::vector<std::size_t> frames;
+  for (std::size_t k = options.from; k <= last; k += std::min(options.every, count)) frames.push_back(k);
+  if (frames.size() < 2 && options.chooses_frames())
+    return misuse(options.every > 1 ? "--every"
+                  : options.to      ? "--to"
+                                    : "--from",
+                  "a motion needs two keyframes or more, and so few are left: " + range);
+  return frames;
+}
+
 Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                            const std::string& place) {
   const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* what) {

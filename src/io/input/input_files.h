@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace chronormal::inline internal {
 /// A motion as it is read from files, and what they store beside it.
 struct ReadMotion {
   Motion motion;
+  std::optional<MotionStream> stream = {};  ///< of it; or in place of it, where keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;         ///< as Input has it
@@ -45,6 +47,10 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 /// The same of bytes that are there.
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
+
+/// The keyframes of a sequence of so many that the options choose. Errors: kUsage with the option as the place, where there
+/// are not two.
+[[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
 /// Whether other has the vertex count and the faces of first, which messages call first_name.
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,

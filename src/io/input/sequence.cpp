@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "io/input/formats.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/obj_faces.h"
+#include "motion/outline.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -47,9 +50,9 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   return files;
 }
 
-std::string frame_place(std::size_t k, const std::string& name) {
-  return "frame " + std::to_string(k) + " (" + name + ")";
-}
+std::string frame_name(std::size_t k) { return "frame " + std::to_string(k); }
+
+std::string frame_place(std::size_t k, const std::string& name) { return frame_name(k) + " (" + name + ")"; }
 
 Result<FileBytes> open_frame(const InputOptions& options, const std::string& path, const std::string& place) {
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
@@ -68,7 +71,8 @@ struct ReadFrame {
 // faces: those of the first frame, where their text can be compared. shaded: gets the normals of the frame, where they
 // are wanted.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
-                     const ObjFaces* faces, ReadMotion* shaded, const Topology& topology) {
+                     const ObjFaces* faces, ReadMotion* shaded, const Topology& topology,
+                     const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
   if (!file) return {file.error()};
   const std::string_view bytes = file.value().bytes();
@@ -82,9 +86,29 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
   Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
                                              : read_mesh(bytes, file_name_of(path), place);
   if (!mesh) return {mesh.error()};
-  if (const Status same = check_same_topology(topology, "frame 0", mesh.value().topology, place); !same)
+  if (const Status same = check_same_topology(topology, first_name, mesh.value().topology, place); !same)
     return {same.error()};
   return {std::move(mesh.value().positions), counted};
+}
+
+// The faces of a file whose text can be compared with that of others; nothing for other formats than OBJ.
+std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
+  const Format* const format = find_format(file_name_of(path), bytes);
+  if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
+  return ObjFaces(bytes, positions);
+}
+
+// Of all files; nothing where one of them is none that can be read again, such as a pipe, or is not there.
+std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
+  std::uint64_t bytes = 0;
+  for (const std::size_t k : frames) {
+    std::error_code code;
+    if (files[k] == "-" || !std::filesystem::is_regular_file(files[k], code)) return std::nullopt;
+    const std::uintmax_t size = std::filesystem::file_size(files[k], code);
+    if (code) return std::nullopt;
+    bytes += size;
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -93,27 +117,40 @@ Result<std::vector<std::string>> find_frames(const InputOptions& options) {
   return find_input_files(options, list_folder);
 }
 
-Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options) {
+namespace {
+
+// Which of the files are keyframes.
+Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& files, const InputOptions& options) {
   const std::size_t total = files.size();
   if (total < 2)
     return invalid_input(total == 0 ? "" : files.front(),
                          "a sequence needs two frames or more, but " + std::to_string(total) +
                              (total == 1 ? " was" : " were") + " found; give several " +
                              extensions_of({Holds::kMesh}, " or ") + " files, a quoted pattern or a folder");
+  return choose_frames(total, options);
+}
+
+}  // namespace
+
+Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options) {
+  const Result<std::vector<std::size_t>> frames = choose_files(files, options);
+  if (!frames) return frames.error();
   ReadMotion read;
   Motion& motion = read.motion;
+  const std::size_t total = frames.value().size();
   motion.keyframes.reserve(total);
-  const auto place = [&files](std::size_t k) { return frame_place(k, file_name_of(files[k])); };
+  const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
+  const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
   const auto keep = [&](std::vector<float> positions) {
-    const std::size_t k = motion.keyframes.size();
-    const double time = static_cast<double>(k) / options.frames_per_second;
-    motion.keyframes.push_back({std::move(positions), time, file_name_of(files[k])});
-    if (options.progress) options.progress(k + 1, total);
+    const std::size_t i = motion.keyframes.size();
+    const double time = static_cast<double>(frames.value()[i]) / options.frames_per_second;
+    motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i))});
+    if (options.progress) options.progress(i + 1, total);
   };
 
-  const Result<FileBytes> first_file = open_frame(options, files[0], place(0));
+  const Result<FileBytes> first_file = open_frame(options, file_of(0), place(0));
   if (!first_file) return first_file.error();
-  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), files[0], place(0), read);
+  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), file_of(0), place(0), read);
   if (!first) return first.error();
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions));
@@ -123,18 +160,15 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const bool keeps_normals = options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  const Format* const format = find_format(file_name_of(files[0]), first_file.value().bytes());
-  if (!keeps_normals && format->read_mesh == read_obj)
-    faces.emplace(first_file.value().bytes(), motion.keyframes[0].positions);
+  if (!keeps_normals) faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {
     const std::size_t begin = motion.keyframes.size(), count = std::min(at_once, total - begin);
-    std::vector<ReadFrame> frames(count);
+    std::vector<ReadFrame> next(count);
     parallel_for(count, [&](std::size_t i) {
-      const std::size_t k = begin + i;
-      frames[i] = read_frame(options, files[k], place(k), faces ? &*faces : nullptr, keeps_normals ? &read : nullptr,
-                             motion.topology);
+      next[i] = read_frame(options, file_of(begin + i), place(begin + i), faces ? &*faces : nullptr,
+                           keeps_normals ? &read : nullptr, motion.topology, frame_name(frames.value()[0]));
     });
-    for (ReadFrame& frame : frames) {
+    for (ReadFrame& frame : next) {
       if (!frame.positions) return frame.positions.error();
       read.bytes_read += frame.bytes;
       keep(std::move(frame.positions).value());
@@ -142,6 +176,56 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   }
   motion.connect_as_sequence();
   if (Status status = validate(motion); !status) return status.error();
+  return read;
+}
+
+Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options) {
+  Result<std::vector<std::size_t>> chosen = choose_files(files, options);
+  if (!chosen) return chosen.error();
+  const std::vector<std::size_t> frames = std::move(chosen).value();
+  const std::optional<std::uint64_t> bytes = bytes_of(files, frames);
+  if (!bytes || *bytes <= options.kept_bytes) return read_sequence(files, options);
+
+  Motion outline;
+  for (const std::size_t k : frames)
+    outline.keyframes.push_back({{}, static_cast<double>(k) / options.frames_per_second, file_name_of(files[k])});
+  outline.connect_as_sequence();
+  const std::string& first_path = files[frames[0]];
+  const std::string place = frame_place(frames[0], outline.keyframes[0].name);
+  ReadMotion read;
+  Result<FileBytes> first_file = open_frame(options, first_path, place);
+  if (!first_file) return first_file.error();
+  Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), first_path, place, read);
+  if (!first) return first.error();
+  if (options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty()) return read_sequence(files, options);
+  read.bytes_read = *bytes;
+  outline.topology = std::move(first.value().topology);
+  std::vector<float>& positions = outline.keyframes[0].positions;
+  positions = std::move(first.value().positions);
+  Status valid = validate_positions(outline, 0, positions);
+  if (valid) valid = validate_outline(outline);
+  if (!valid) return valid.error();
+
+  // The first file stays mapped, so that the text of its faces can be compared with that of the others.
+  struct First {
+    FileBytes file;
+    std::optional<ObjFaces> faces;
+  };
+  const auto kept = std::make_shared<First>(First{std::move(first_file).value(), std::nullopt});
+  kept->faces = faces_of(first_path, kept->file.bytes(), positions);
+  const auto read_one = [files, frames, options, kept](const Motion& motion, std::size_t keyframe,
+                                                       std::span<float> result) -> Status {
+    const std::size_t k = frames[keyframe];
+    const ReadFrame frame =
+        read_frame(options, files[k], frame_place(k, motion.keyframes[keyframe].name),
+                   kept->faces ? &*kept->faces : nullptr, nullptr, motion.topology, frame_name(frames[0]));
+    if (!frame.positions) return frame.positions.error();
+    const std::vector<float>& found = frame.positions.value();
+    Status status = validate_positions(motion, keyframe, found);
+    if (status) std::copy(found.begin(), found.end(), result.begin());
+    return status;
+  };
+  read.stream.emplace(std::move(outline), read_one, options.kept_bytes);
   return read;
 }
 

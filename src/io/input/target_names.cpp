@@ -30,9 +30,9 @@ std::string list_of(const TargetNames& names) {
 }  // namespace
 
 Result<TargetNames> target_names(Input& input) {
-  const Result<const Motion*> read = input.motion();
+  const Result<MotionStream*> read = input.stream();
   if (!read) return read.error();
-  const Motion& motion = *read.value();
+  const Motion& motion = read.value()->motion();
   if (motion.kind != MotionKind::kTargets) return TargetNames();
   TargetNames names(motion.segments.size());
   if (input.document() != nullptr) {

@@ -54,14 +54,16 @@ Result<NamePattern> parse_pattern(const std::string& pattern) {
   return parts;
 }
 
-Status write_keyframes(const Motion& motion, const Format& format, const std::string& pattern, bool force,
+Status write_keyframes(MotionStream& stream, const Format& format, const std::string& pattern, bool force,
                        const Expansion& expansion) {
+  const Motion& motion = stream.motion();
   const Result<std::vector<std::string>> names = numbered_names(pattern, motion.keyframes.size());
   if (!names) return names.error();
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    if (Status status = stream.hold(k, k); !status) return status;
     const std::vector<float>& coordinates = motion.keyframes[k].positions;
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
@@ -97,13 +99,20 @@ Status write_motion(const Motion& motion, const std::string& path, bool force) {
 }
 
 Status write_motion(const Motion& motion, const std::string& path, bool force, const Expansion& expansion) {
+  MotionStream stream(motion);
+  return write_motion(stream, path, force, expansion);
+}
+
+Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion) {
+  const Motion& motion = stream.motion();
   const Format* const format = find_format(path);
   if (format != nullptr && format->write_mesh != nullptr)
-    return write_keyframes(motion, *format, path, force, expansion);
+    return write_keyframes(stream, *format, path, force, expansion);
   if (format != nullptr && format->holds == Holds::kGltf) {
     if (motion.kind != MotionKind::kTargets || !is_glb_extension(lower_extension(path)))
       return Error{ErrorCode::kUsage, path, "convert writes targets as .glb; bake writes glTF, with the normals"};
     if (Status status = check_output(path, force); !status) return status;
+    if (Status status = stream.hold_all(); !status) return status;
     const Result<std::string> glb = write_glb_targets(motion);
     if (!glb) return Error{glb.error().code, path, glb.error().message};
     return write_output(path, glb.value(), force);
@@ -115,10 +124,14 @@ Status write_motion(const Motion& motion, const std::string& path, bool force, c
         writable.append(writable.empty() ? "" : ", ").append(each.extensions.front());
     return Error{ErrorCode::kUsage, path, "the name must end in one of " + writable};
   }
-  if (Status status = check_output(path, force); !status) return status;
-  const Result<std::string> bytes = format->write_motion(motion);
-  if (!bytes) return Error{bytes.error().code, path, bytes.error().message};
-  return write_output(path, bytes.value(), force);
+  Result<OutputFile> file = OutputFile::create(path, force);
+  if (!file) return file.error();
+  if (Status status = format->write_motion(stream, file.value()); !status) {
+    Error error = status.error();
+    if (error.place.empty()) error.place = path;
+    return error;
+  }
+  return file.value().finish();
 }
 
 }  // namespace chronormal

@@ -144,8 +144,15 @@ VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
 }
 
 double bend_of(const Motion& motion, std::size_t every) {
+  MotionStream stream(motion);
+  return bend_of(stream, every).value();
+}
+
+Result<double> bend_of(MotionStream& stream, std::size_t every) {
+  const Motion& motion = stream.motion();
   double bent = 0, way = 0;
   for (std::size_t i = every; i + every < motion.keyframes.size(); i += every) {
+    if (const Status status = stream.hold(i - every, i + every); !status) return status.error();
     const Motion::Keyframe &from = motion.keyframes[i - every], &middle = motion.keyframes[i],
                            &to = motion.keyframes[i + every];
     const auto before = packed(from.positions), at = packed(middle.positions), after = packed(to.positions);

@@ -25,13 +25,23 @@ Result<ElementKind> make_element_kind(std::string_view name) {
 }
 
 Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options) {
+  MotionStream stream(motion);
+  return make_groups(stream, options);
+}
+
+Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options) {
   assert(options.kind != ElementKind::kFaces);
-  const Points points = options.weld ? weld_coincident(motion) : separate_points(motion.topology.vertex_count());
+  const Motion& motion = stream.motion();
+  const Result<Points> welded =
+      options.weld ? weld_coincident(stream) : Result<Points>(separate_points(motion.topology.vertex_count()));
+  if (!welded) return welded.error();
+  const Points& points = welded.value();
   if (options.kind == ElementKind::kVertices) return NormalGroups::of_vertices(motion.topology, points);
   if (!options.group_of_face.empty())
     return NormalGroups::by_smoothing_group(motion.topology, points, options.group_of_face);
   if (options.normal_of_corner.count > 0)
     return NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner);
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
   return NormalGroups::by_crease_angle(motion, points, options.crease_angle);
 }
 

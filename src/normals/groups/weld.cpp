@@ -1,6 +1,7 @@
 #include "chronormal/normals/normal_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "core/bits.h"
@@ -11,18 +12,27 @@ namespace {
 // A total order of coordinates in which -0 and 0 are the same.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// Negative where vertex a comes first, 0 where the two are of one body and coincide in all keyframes.
-int compare(const Motion& motion, std::uint32_t a, std::uint32_t b) {
-  if (const auto& bodies = motion.body_of_vertex; !bodies.empty() && bodies[a] != bodies[b])
-    return bodies[a] < bodies[b] ? -1 : 1;
-  for (const Motion::Keyframe& keyframe : motion.keyframes) {
-    const float* const p = keyframe.positions.data() + 3 * std::size_t{a};
-    const float* const q = keyframe.positions.data() + 3 * std::size_t{b};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (key(p[i]) != key(q[i])) return key(p[i]) < key(q[i]) ? -1 : 1;
-    }
+// Where the coordinates of a vertex stand in the total order; of separate bodies none are equal.
+using PlaceKey = std::array<std::uint32_t, 3>;
+
+PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
+  const float* const p = keyframe.positions.data() + 3 * std::size_t{vertex};
+  return {key(p[0]), key(p[1]), key(p[2])};
+}
+
+// Sorts vertices from first to end by their places at a keyframe, and by their numbers where these are equal. Calls
+// each(first, end) for those of one place.
+template <class Each>
+void split_by_place(const Motion::Keyframe& keyframe, std::span<std::uint32_t> vertices, const Each& each) {
+  std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const PlaceKey p = place_key(keyframe, a), q = place_key(keyframe, b);
+    return p != q ? p < q : a < b;
+  });
+  for (std::size_t first = 0, end = 0; first < vertices.size(); first = end) {
+    const PlaceKey place = place_key(keyframe, vertices[first]);
+    for (end = first + 1; end < vertices.size() && place_key(keyframe, vertices[end]) == place;) ++end;
+    each(vertices.subspan(first, end - first));
   }
-  return 0;
 }
 
 }  // namespace
@@ -33,18 +43,34 @@ Points separate_points(std::size_t vertex_count) {
   return points;
 }
 
-Points weld_coincident(const Motion& motion) {
+Result<Points> weld_coincident(MotionStream& stream) {
+  const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
-  std::sort(order.begin(), order.end(), [&motion](std::uint32_t a, std::uint32_t b) {
-    const int comparison = compare(motion, a, b);
-    return comparison != 0 ? comparison < 0 : a < b;
-  });
+  // Vertices that coincide as far as was looked stand side by side; keyframe after keyframe tells some of them apart.
+  using Coinciding = std::span<std::uint32_t>;
+  std::vector<Coinciding> found = {order}, before;
+  const auto keep = [&found](Coinciding vertices) {
+    if (vertices.size() > 1) found.push_back(vertices);
+  };
+  if (const auto& bodies = motion.body_of_vertex; !bodies.empty()) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return bodies[a] < bodies[b]; });
+    found.clear();
+    for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+      for (end = first + 1; end < order.size() && bodies[order[end]] == bodies[order[first]];) ++end;
+      keep(Coinciding(order).subspan(first, end - first));
+    }
+  }
+  for (std::size_t k = 0; k < motion.keyframes.size() && !found.empty(); ++k) {
+    if (Status status = stream.hold(k, k); !status) return status.error();
+    before.swap(found);
+    found.clear();
+    for (const Coinciding vertices : before) split_by_place(motion.keyframes[k], vertices, keep);
+  }
 
-  // Copies stand side by side now, the first vertex of each point before its copies.
-  std::vector<std::uint32_t> first_vertex(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool copy = i > 0 && compare(motion, order[i - 1], order[i]) == 0;
-    first_vertex[order[i]] = copy ? first_vertex[order[i - 1]] : order[i];
+  std::vector<std::uint32_t> first_vertex = separate_points(order.size()).point_of_vertex;
+  for (const Coinciding vertices : found) {
+    for (const std::uint32_t vertex : vertices) first_vertex[vertex] = vertices.front();
   }
 
   Points points;
@@ -55,6 +81,11 @@ Points weld_coincident(const Motion& motion) {
         first ? static_cast<std::uint32_t>(points.count++) : points.point_of_vertex[first_vertex[v]];
   }
   return points;
+}
+
+Points weld_coincident(const Motion& motion) {
+  MotionStream stream(motion);
+  return weld_coincident(stream).value();
 }
 
 }  // namespace chronormal

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "chronormal/normals/weighting.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
+#include "workflow/errors/shards.h"
 
 namespace chronormal {
 namespace {
@@ -22,7 +24,42 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
+// Whether two shards may be of one audit: of the same vertices at the same samples, by the same rule.
+bool are_of_one(const Audit& a, const Audit& b) {
+  const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
+    return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
+           one.samples == other.samples && one.vertices == other.vertices;
+  };
+  return a.rule == b.rule && a.stored == b.stored && a.still == b.still && a.offsets.size() == b.offsets.size() &&
+         std::equal(a.subjects.begin(), a.subjects.end(), b.subjects.begin(), b.subjects.end(), same_subject);
+}
+
 }  // namespace
+
+Result<Audit> merge(std::vector<Audit> shards) {
+  std::vector<SegmentErrors> measured;
+  for (Audit& shard : shards) {
+    if (!are_of_one(shard, shards.front()))
+      return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
+    std::move(shard.measured.begin(), shard.measured.end(), std::back_inserter(measured));
+  }
+  Audit all = std::move(shards.front());
+  all.measured.clear();
+  if (all.subjects.empty()) return all;
+  const Status complete = put_in_order(all.subjects.front().segments, measured);
+  if (!complete) return complete.error();
+  AuditSubject& subject = all.subjects.front();
+  subject.error = subject.at_keys = all.error = {};
+  for (const SegmentErrors& segment : measured) {
+    subject.error.add(segment.error);
+    subject.at_keys.add(segment.at_keys);
+  }
+  all.worst = {};
+  all.findings.clear();
+  if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) all.findings.push_back(*fault);
+  finish(all);
+  return all;
+}
 
 std::string_view audit_rule_name(AuditRule rule) noexcept { return kRules[static_cast<std::size_t>(rule)]; }
 

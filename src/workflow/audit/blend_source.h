@@ -36,6 +36,8 @@ class BlendSource {
   /// shading and part must outlive this. Outputs are those of the part.
   BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
 
+  /// All is there.
+  [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
   /// Writes the positions at any weights, and leaves the moment that was placed as it is.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
@@ -58,9 +59,10 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
 void finish(Audit& result);
 
 // A source is a motion with what is shown on the way:
+//     enter(segment)                 makes ready what is asked about this segment; a Status
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
-//     begin(segment, start, end)     gets the normals at both ends before the samples (where kNeedsEnds)
+//     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
 //     show()                         is called where something was placed, before shown()
 //     shown(output)                  a normal of any length, zero for none
 //     right(output, n)               the direction for a normal of the geometry
@@ -86,7 +88,8 @@ struct PlacedPart {
 /// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle. (On
 /// curved paths they are those of the parabola through these, which is near enough for a scale.)
 template <class Source>
-[[nodiscard]] std::vector<double> largest_control_normals(Source& source, std::size_t segments, PlacedPart& placed) {
+[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, std::size_t segments,
+                                                                  PlacedPart& placed) {
   std::vector<double> largest(placed.part.elements().size(), 0.0);
   const auto normals_at = [&](std::size_t s, double t) {
     placed.place(source, s, t);
@@ -94,6 +97,7 @@ template <class Source>
   };
   source.forget();
   for (std::size_t s = 0; s < segments; ++s) {
+    if (const Status status = source.enter(s); !status) return status.error();
     const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
     placed.place(source, s, 1);
     const std::vector<Vec3d>& end = placed.normals.elements;
@@ -145,10 +149,19 @@ template <class Source, class Shown>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
-  bool are_watched = false;  ///< each_sample looks at them
+  bool are_watched = false;                        ///< each_sample looks at them
+  Shard shard = {};                                ///< of the segments that are measured
+  std::vector<SegmentErrors>* segments = nullptr;  ///< what each of them gave; nullptr: nowhere
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
+
+/// Adds up segment by segment, so that sums do not depend on where a motion is divided.
+inline void add_segment(SegmentErrors found, const KeptErrors& kept, AuditSubject& subject) {
+  subject.error.add(found.error);
+  subject.at_keys.add(found.at_keys);
+  if (kept.segments != nullptr) kept.segments->push_back(std::move(found));
+}
 
 /// A sample that was measured.
 struct MeasuredSample {
@@ -164,13 +177,16 @@ struct MeasuredSample {
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of all segments of a subject, which says how many there are, and fills in its errors. progress
-/// is called after each segment, each_sample(measured sample) after each sample.
+/// Measures all samples of the segments of a subject, or of a share of them, which says how many there are, and fills in its errors. progress
+/// is called after each segment, each_sample(measured sample) after each sample. Errors: those of source.enter().
 template <class Source, class EachSample>
-void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::function<void()>& progress,
-             AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {
+[[nodiscard]] Status measure(Source& source, const JudgedPart& part, AuditRule rule,
+                             const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,
+                             const EachSample& each_sample) {
   PlacedPart placed(part);
-  const std::vector<double> largest = largest_control_normals(source, subject.segments, placed);
+  const Result<std::vector<double>> all_largest = largest_control_normals(source, subject.segments, placed);
+  if (!all_largest) return all_largest.error();
+  const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;
   const auto shown = [&](std::size_t, const JudgedOutput& output) {
@@ -178,12 +194,15 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
   };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
-  for (std::size_t s = 0; s < subject.segments; ++s) {
+  const IndexRange share = kept.shard.of(subject.segments);
+  for (std::size_t s = share.first; s < share.end(); ++s) {
+    if (const Status status = source.enter(s); !status) return status;
+    SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
-      const PartNormals start = placed.normals;
+      std::vector<Vec3d> start = placed.normals.elements;
       placed.place(source, s, 1);
-      source.begin(s, start, placed.normals);
+      source.begin(std::move(start), placed.normals.elements);
       source.forget();
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
@@ -195,13 +214,15 @@ void measure(Source& source, const JudgedPart& part, AuditRule rule, const std::
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
                     source.at(s, t, part.outputs().front()).at);
-      subject.error.add(error);
-      if (i == 0 || i + 1 == subject.samples) subject.at_keys.add(error);
+      found.error.add(error);
+      if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
+    add_segment(std::move(found), kept, subject);
     progress();
   }
   subject.vertices = part.outputs().size();
+  return Success{};
 }
 
 }  // namespace chronormal::inline internal

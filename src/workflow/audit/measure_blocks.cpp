@@ -90,9 +90,10 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// As largest_control_normals() of measure.h.
-std::vector<double> largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block) {
-  std::vector<double> largest(block.elements.count, 0.0);
+// As largest_control_normals() of measure.h; makes those larger that are in these segments.
+void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
+                          std::vector<double>& largest) {
+  largest.resize(block.elements.count);
   Scratch scratch;
   std::optional<std::size_t> keyframe;  // which scratch.end is of
   for (const std::size_t s : segments) {
@@ -111,7 +112,6 @@ std::vector<double> largest_normals(const Motion& motion, std::span<const std::s
       largest[e] = std::max({largest[e], length(start), length(m), length(end)});
     }
   }
-  return largest;
 }
 
 // What is interpolated of right normals at a keyframe, as a host keeps them.
@@ -196,16 +196,26 @@ bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weight
   return true;
 }
 
-void measure_blocks(const Motion& motion, std::span<const std::size_t> segments, const JudgedPart& part, AuditRule rule,
-                    const FindPlace& at, const std::function<void()>& progress, AuditSubject& subject) {
+Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
+                      AuditRule rule, const FindPlace& at, const std::function<void()>& progress, AuditSubject& subject,
+                      const KeptErrors& kept) {
+  const Motion& motion = stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
   std::vector<std::vector<double>> largest(blocks.size());
-  parallel_for(blocks.size(), [&](std::size_t b) { largest[b] = largest_normals(motion, segments, blocks[b]); });
+  // Segments that are held together share what they have at the keyframes between them.
+  const std::size_t at_once = stream.keeps_all() ? segments.size() : 1;
+  for (std::size_t s = 0; s < segments.size(); s += at_once) {
+    const std::span<const std::size_t> held = segments.subspan(s, at_once);
+    if (Status status = stream.hold_segments(held.front(), held.back()); !status) return status;
+    parallel_for(blocks.size(), [&](std::size_t b) { keep_largest_normals(motion, held, blocks[b], largest[b]); });
+  }
 
   const std::size_t per_wave = std::min(blocks.size(), kBlocksPerWaveAndThread * thread_count());
   std::vector<std::vector<MotionError>> wave(per_wave, std::vector<MotionError>(subject.samples));
   std::vector<Scratch> scratch(per_wave);
-  for (std::size_t s = 0; s < segments.size(); ++s) {
+  const IndexRange share = kept.shard.of(segments.size());
+  for (std::size_t s = share.first; s < share.end(); ++s) {
+    if (Status status = stream.hold_segment(segments[s]); !status) return status;
     const Segment segment = motion.segment(segments[s]);
     std::vector<MotionError> of_samples(subject.samples);
     for (std::size_t first = 0; first < blocks.size(); first += per_wave) {
@@ -217,13 +227,16 @@ void measure_blocks(const Motion& motion, std::span<const std::size_t> segments,
       for (std::size_t b = 0; b < count; ++b)
         for (std::size_t i = 0; i < of_samples.size(); ++i) of_samples[i].add(wave[b][i]);
     }
+    SegmentErrors found{s, {}, {}};
     for (std::size_t i = 0; i < of_samples.size(); ++i) {
-      subject.error.add(of_samples[i]);
-      if (i == 0 || i + 1 == of_samples.size()) subject.at_keys.add(of_samples[i]);
+      found.error.add(of_samples[i]);
+      if (i == 0 || i + 1 == of_samples.size()) found.at_keys.add(of_samples[i]);
     }
+    add_segment(std::move(found), kept, subject);
     progress();
   }
   subject.vertices = part.outputs().size();
+  return Success{};
 }
 
 }  // namespace chronormal::inline internal

@@ -9,9 +9,10 @@
 #include <functional>
 #include <span>
 
-#include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
+#include "workflow/audit/measure.h"
 
 namespace chronormal::inline internal {
 
@@ -24,9 +25,11 @@ namespace chronormal::inline internal {
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
 /// Measures all samples of these segments of a motion, as measure() does for normals that a host computes at keyframes.
-/// The outputs of the part must be in the order of their elements. Calls progress after each segment.
-void measure_blocks(const Motion& motion, std::span<const std::size_t> segments, const JudgedPart& part, AuditRule rule,
-                    const FindPlace& at, const std::function<void()>& progress, AuditSubject& subject);
+/// The outputs of the part must be in the order of their elements. Calls progress after each segment. Of kept, only the
+/// shard counts, and where its segments go. Errors: those of the stream, of which a segment is held at a time.
+[[nodiscard]] Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
+                                    AuditRule rule, const FindPlace& at, const std::function<void()>& progress,
+                                    AuditSubject& subject, const KeptErrors& kept);
 
 }  // namespace chronormal::inline internal
 

@@ -29,17 +29,19 @@ class SequenceSource {
  public:
   static constexpr bool kNeedsEnds = true;
 
-  SequenceSource(const Motion& motion, const StoredNormals& normals, bool stored, const JudgedPart& part,
-                 AuditRule rule, PathKind path, const PartNormals& first, std::span<const std::size_t> segments)
-      : motion_(motion),
+  SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
+                 AuditRule rule, PathKind path, std::vector<Vec3d> first, std::span<const std::size_t> segments)
+      : stream_(stream),
+        motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
         rule_(rule),
         path_(path),
-        first_(first),
+        first_(std::move(first)),
         segments_(segments) {}
 
+  [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
     if (known_ && segment == segment_ && t == t_) return false;
     known_ = true;
@@ -62,9 +64,9 @@ class SequenceSource {
   void forget() { known_ = false; }
   void show() {}
 
-  void begin(std::size_t, const PartNormals& start, const PartNormals& end) {
-    start_ = start.elements;
-    end_ = end.elements;
+  void begin(std::vector<Vec3d> start, const std::vector<Vec3d>& end) {
+    start_ = std::move(start);
+    end_ = end;
   }
 
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
@@ -100,7 +102,7 @@ class SequenceSource {
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
-    const Vec3d first = first_.elements[output.element], first_stored = stored_at(0, output);
+    const Vec3d first = first_[output.element], first_stored = stored_at(0, output);
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
@@ -110,6 +112,7 @@ class SequenceSource {
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
   }
 
+  MotionStream& stream_;
   const Motion& motion_;
   const StoredNormals& normals_;
   bool stored_;
@@ -118,7 +121,7 @@ class SequenceSource {
   PathKind path_;
   PolynomialSegment<3> curve_;  // of the segment below, on curved paths
   std::size_t curve_index_ = static_cast<std::size_t>(-1);
-  const PartNormals& first_;  // of keyframe 0
+  std::vector<Vec3d> first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
   std::size_t segment_ = 0;
@@ -174,12 +177,19 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-std::vector<bool> moving_vertices(const Motion& motion, std::span<const std::size_t> segments) {
+Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const std::size_t> segments) {
+  const Motion& motion = stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
+  std::size_t still = moves.size();
   for (const std::size_t s : segments) {
+    if (still == 0) break;
+    if (const Status status = stream.hold_segment(s); !status) return status.error();
     const Segment segment = motion.segment(s);
-    for (std::size_t v = 0; v < moves.size(); ++v)
-      if (segment.from[v] != segment.to[v]) moves[v] = true;
+    for (std::size_t v = 0; v < moves.size(); ++v) {
+      if (moves[v] || segment.from[v] == segment.to[v]) continue;
+      moves[v] = true;
+      --still;
+    }
   }
   return moves;
 }
@@ -192,30 +202,39 @@ std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion)
   return subjects;
 }
 
-PartNormals normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
+std::vector<Vec3d> normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
   std::vector<Vec3d> positions;
   for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
   PartNormals normals;
   part.normals(positions, normals);
-  return normals;
+  return std::move(normals.elements);
 }
 
 }  // namespace
 
-Result<NormalGroups> internal::audited_groups(const Motion& motion, const StoredNormals& normals, bool weld) {
-  const Topology& topology = motion.topology;
-  const Points points = weld ? weld_coincident(motion) : separate_points(topology.vertex_count());
+Result<NormalGroups> internal::audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld) {
+  const Topology& topology = stream.motion().topology;
+  const Result<Points> welded =
+      weld ? weld_coincident(stream) : Result<Points>(separate_points(topology.vertex_count()));
+  if (!welded) return welded.error();
+  const Points& points = welded.value();
   if (normals.of_keyframes.empty()) return NormalGroups::of_vertices(topology, points);
   const auto of_corners = VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count());
   return NormalGroups::by_split_normals(topology, points, of_corners);
 }
 
 Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options) {
-  return watched_audit(motion, normals, options, {});
+  MotionStream stream(motion);
+  return audit(stream, normals, options);
 }
 
-Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options,
+Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options) {
+  return watched_audit(stream, normals, options, {});
+}
+
+Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                       const AuditWatch& watch) {
+  const Motion& motion = stream.motion();
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
   result.weighting = options.weighting.value_or(Weighting::kArea);
@@ -226,17 +245,24 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
+  const bool is_straight = options.path == PathKind::kLinear;
+  if (options.shard && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
+    return Error{ErrorCode::kUsage, "",
+                 "a shard is of the segments of a sequence of straight paths, and keeps sums and no single errors"};
+  if (!is_straight) {
+    if (const Status status = stream.hold_all(); !status) return status.error();
+  }
   result.path = options.path;
-  if (options.path != PathKind::kLinear) result.bend = bend_of(motion);
+  if (!is_straight) result.bend = bend_of(motion);
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
-  const Result<NormalGroups> groups = audited_groups(motion, normals, options.weld);
+  Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
     return find_outputs(motion, groups.value(), normals, moves, result.rule, result.stored);
   };
 
   const Topology& topology = motion.topology;
-  const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
   // Where a host computes the normals of keyframes, it does so by area, whatever the program did that made the first.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
@@ -247,6 +273,7 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
       const Vec3d normal = stored_normal(normals, 0, output);
       if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
     }
+    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
     const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), std::move(stored));
     result.offsets.push_back(authored_offset(authored, asked));
     weighting = result.offsets.back().weighting;
@@ -257,9 +284,10 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     const std::size_t rows = motion.segments.size() * options.samples.value_or(kAuditSamples);
     if (const Status status = reserve_rows(result.errors[0], rows); !status) return status.error();
   }
+  const Shard share = options.shard.value_or(Shard{});
   std::size_t done = 0;
   const auto progress = [&] {
-    if (options.progress) options.progress(++done, motion.segments.size());
+    if (options.progress) options.progress(++done, share.of(motion.segments.size()).count);
   };
   const bool is_targets = motion.kind == MotionKind::kTargets;
   for (const std::vector<std::size_t>& segments : segments_of_subjects(motion)) {
@@ -272,16 +300,21 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
     subject.weighting = weighting;
     subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const JudgedPart part(topology, groups.value(), weighting, outputs_of(moving_vertices(motion, segments)));
+    const Result<std::vector<bool>> moves = moving_vertices(stream, segments);
+    if (!moves) return moves.error();
+    const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
+    if (!is_targets) groups = NormalGroups();  // the part has all that is needed of them
     if (part.outputs().empty()) {
       ++result.still;
-      for (std::size_t s = 0; s < subject.segments; ++s) progress();
+      for (std::size_t s = 0; s < share.of(subject.segments).count; ++s) progress();
       continue;
     }
-    const PartNormals first = normals_at_first_keyframe(part, base);
-    SequenceSource source(motion, normals, result.stored, part, result.rule, options.path, first, segments);
+    if (const Status status = stream.hold(0, 0); !status) return status.error();
+    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
+    SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
+                          normals_at_first_keyframe(part, base), segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
-                          static_cast<bool>(watch)};
+                          static_cast<bool>(watch), share, options.shard ? &result.measured : nullptr};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;
@@ -297,16 +330,14 @@ Result<Audit> internal::watched_audit(const Motion& motion, const StoredNormals&
              {},
              {}});
     };
-    const bool is_straight = options.path == PathKind::kLinear;
-    if (is_straight && !kept.any() && !result.stored &&
-        can_measure_blocks(part, result.rule, weighting, subject.samples)) {
-      const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
-        return source.at(segment, t, output);
-      };
-      measure_blocks(motion, segments, part, result.rule, at, progress, subject);
-    } else {
-      measure(source, part, result.rule, progress, subject, kept, tell);
-    }
+    const bool in_blocks = is_straight && !kept.any() && !result.stored &&
+                           can_measure_blocks(part, result.rule, weighting, subject.samples);
+    const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
+      return source.at(segment, t, output);
+    };
+    const Status measured = in_blocks ? measure_blocks(stream, segments, part, result.rule, at, progress, subject, kept)
+                                      : measure(source, part, result.rule, progress, subject, kept, tell);
+    if (!measured) return measured.error();
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "workflow/compare/compared.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
 
@@ -25,46 +27,11 @@ namespace {
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
-// Below this mean, the error of linear is its rounding, and no measure for others.
-constexpr double kNoError = 1e-6;  // radians
-
 using Clock = std::chrono::steady_clock;
 
 double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
-
-// Puts the bounds of the elements of a block together, or those of blocks; of equals the first counts.
-void add(CertifiedError& all, const CertifiedError& other) {
-  all.lower = std::max(all.lower, other.lower);
-  all.unbounded += other.unbounded;
-  if (!(other.upper > all.upper)) return;
-  all.upper = other.upper;
-  all.segment = other.segment;
-  all.element = other.element;
-  all.from = other.from;
-  all.to = other.to;
-}
-
-// What one scheme did on one block, or on all blocks so far.
-struct Tally {
-  Quality quality;
-  std::vector<Quality> samples;  // of a block, where they are kept
-  std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;
-  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
-  CertifiedError certified;                    // where it is asked for
-
-  void add(const Tally& other) {
-    quality.add(other.quality);
-    chronormal::add(certified, other.certified);
-    fallbacks += other.fallbacks;
-    flagged += other.flagged;
-    bytes += other.bytes;
-    prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
-    evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
-  }
-};
 
 // The median, which a thread that was interrupted does not move.
 double median(std::vector<float> values) {
@@ -73,6 +40,23 @@ double median(std::vector<float> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
+
+// What one scheme did on one block, or on all blocks of a segment so far.
+struct Tally : SchemeTally {
+  std::vector<Quality> samples;                // of a block, where they are kept
+  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
+
+  void add(const Tally& other) {
+    chronormal::add(*this, other);
+    prepare_ns.insert(prepare_ns.end(), other.prepare_ns.begin(), other.prepare_ns.end());
+    evaluate_ns.insert(evaluate_ns.end(), other.evaluate_ns.begin(), other.evaluate_ns.end());
+  }
+};
+
+// The times of one scheme, the median of each segment: what is held grows with segments and not with faces.
+struct SchemeTimes {
+  std::vector<float> prepare_ns, evaluate_ns;
+};
 
 double time_of_sample(std::size_t i, std::size_t samples) {
   return static_cast<double>(i) / static_cast<double>(samples - 1);
@@ -180,11 +164,12 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
   const auto outputs = all.element_of_output();
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    const Segment segment = motion.segment(s);
+    const double start_time = motion.keyframes[motion.segments[s].from].time;
+    const double end_time = motion.keyframes[motion.segments[s].to].time;
     const bool is_weight = motion.kind == MotionKind::kTargets;
     for (std::size_t i = 0; i < options.samples; ++i) {
       const double t = time_of_sample(i, options.samples);
-      const double at = is_weight ? t : (1 - t) * segment.start_time + t * segment.end_time;
+      const double at = is_weight ? t : (1 - t) * start_time + t * end_time;
       const std::span<float> row = add_row(table, s, is_weight, at);
       const float* const errors = of_elements.data() + (s * options.samples + i) * all.count();
       for (std::size_t o = 0; o < row.size(); ++o) row[o] = errors[outputs.empty() ? o : outputs[o]];
@@ -274,15 +259,6 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
-std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
-  std::optional<std::size_t> cheapest;
-  for (std::size_t s = 0; s < schemes.size(); ++s) {
-    if (schemes[s].certified->upper * kDegreesPerRadian > degrees) continue;
-    if (!cheapest || evaluation_cost(schemes[s]) < evaluation_cost(schemes[*cheapest])) cheapest = s;
-  }
-  return cheapest;
-}
-
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -301,6 +277,12 @@ std::vector<std::string> default_schemes(ElementKind kind) {
 }
 
 Result<Comparison> compare(const Motion& motion, const CompareOptions& options) {
+  MotionStream stream(motion);
+  return compare(stream, options);
+}
+
+Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) {
+  const Motion& motion = stream.motion();
   if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
   const ElementKind kind = options.elements.kind;
   const bool certified = options.certify || options.tolerance;
@@ -334,18 +316,18 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     names.emplace_back(kExactCurve);
     rows.emplace_back().scheme = names.back();
   }
-  std::size_t linear = static_cast<std::size_t>(std::find(names.begin(), names.end(), "linear") - names.begin());
-  if (linear == names.size()) names.emplace_back("linear");
+  if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   std::optional<Elements> all;
   if (kind == ElementKind::kFaces) {
     all.emplace(motion.topology);
   } else {
-    Result<NormalGroups> groups = make_groups(motion, options.elements);
+    Result<NormalGroups> groups = make_groups(stream, options.elements);
     if (!groups) return groups.error();
     all.emplace(std::move(groups).value());
   }
   if (curved) {
+    if (const Status status = stream.hold_all(); !status) return status.error();
     all->follow(motion, options.path);
     rows.back().operations = all->make(rows.back().scheme)->operations();
   }
@@ -356,33 +338,57 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
+  if (options.shard && (options.keep_errors || options.keep_samples || curved))
+    return Error{ErrorCode::kUsage, "", "a shard keeps sums, of straight paths: the rest is of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
-  std::vector<Tally> totals(names.size());
+  std::vector<SchemeTally> totals(names.size());
+  std::vector<SchemeTimes> times(names.size());
+  std::vector<ComparedSegment> compared;
+  const IndexRange share = options.shard.value_or(Shard{}).of(motion.segments.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
-  const std::size_t blocks = blocks_per_segment * motion.segments.size();
+  const std::size_t first_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
-  std::vector<std::vector<Tally>> wave(std::min(blocks, blocks_per_wave));
-  for (std::size_t first = 0; first < blocks; first += blocks_per_wave) {
-    const std::size_t count = std::min(blocks_per_wave, blocks - first);
-    all->enter(motion, first / blocks_per_segment, (first + count - 1) / blocks_per_segment);
+  std::vector<std::vector<Tally>> wave(std::min(blocks - first_block, blocks_per_wave));
+  std::vector<Tally> of_segment(names.size());
+  for (std::size_t first = first_block, count = 0; first < blocks; first += count) {
+    // A wave goes over the end of a segment only where segments have fewer blocks than it.
+    const std::size_t left = blocks_per_segment - first % blocks_per_segment;
+    count =
+        std::min({blocks_per_wave, blocks - first, std::max(left, blocks_per_segment < blocks_per_wave ? blocks : 0)});
+    const std::size_t first_segment = first / blocks_per_segment;
+    const std::size_t last_segment = (first + count - 1) / blocks_per_segment;
+    if (const Status status = stream.hold_segments(first_segment, last_segment); !status) return status.error();
+    all->enter(motion, first_segment, last_segment);
     parallel_for(count, [&](std::size_t i) {
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
       const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
       const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
       wave[i] = compare_block(segment, *all, range, names, options, each);
     });
-    // In order, so that sums do not depend on the threads.
+    // In order, and segment by segment, so that sums depend neither on threads nor on where a motion is divided.
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t first_sample = (first + i) / blocks_per_segment * options.samples;
+      const std::size_t segment = (first + i) / blocks_per_segment, first_sample = segment * options.samples;
       for (std::size_t s = 0; s < names.size(); ++s) {
-        totals[s].add(wave[i][s]);
+        of_segment[s].add(wave[i][s]);
         if (s >= rows.size()) continue;
         for (std::size_t k = 0; k < wave[i][s].samples.size(); ++k)
           rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
       }
+      if ((first + i + 1) % blocks_per_segment != 0) continue;
+      if (options.shard) compared.push_back({segment, {}});
+      for (std::size_t s = 0; s < names.size(); ++s) {
+        Tally& found = of_segment[s];
+        found.quality.max_at.element = all->first_output(found.quality.max_at.element);
+        found.certified.element = all->first_output(found.certified.element);
+        add(totals[s], found);
+        times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
+        times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
+        if (options.shard) compared.back().schemes.push_back(found);
+        found = {};
+      }
     }
-    if (options.progress) options.progress(first + count, blocks);
+    if (options.progress) options.progress(first + count - first_block, blocks - first_block);
   }
 
   Comparison comparison{kind,
@@ -395,56 +401,21 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
                         motion.kind};
   comparison.path = options.path;
   if (curved) comparison.bend = bend_of(motion);
-  const double elements = static_cast<double>(all->count() * motion.segments.size());
-  const Quality& linear_quality = totals[linear].quality;
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    const Tally& total = totals[s];
-    SchemeComparison& row = rows[s];
-    row.quality = total.quality;
-    row.quality.max_at.element = all->first_output(total.quality.max_at.element);
-    if (linear_quality.mean() > kNoError) row.relative_to_linear = total.quality.sum / linear_quality.sum;
-    row.fallbacks = total.fallbacks;
-    row.flagged = total.flagged;
-    row.prepare_ns = median(total.prepare_ns);
-    row.evaluate_ns = median(total.evaluate_ns);
-    row.bytes = total.bytes / elements;
-    if (certified) {
-      row.certified = total.certified;
-      row.certified->element = all->first_output(row.certified->element);
-    }
-    if (s < each.size()) {
-      comparison.errors.push_back(table_of(motion, *all, options, rows.size() > 1 ? row.scheme : "", each[s]));
-      each[s] = {};
-    }
-    comparison.schemes.push_back(std::move(row));
+  comparison.schemes = std::move(rows);
+  comparison.tolerance = options.tolerance;
+  comparison.compared = std::move(compared);
+  for (std::size_t s = 0; s < comparison.schemes.size(); ++s) {
+    SchemeComparison& row = comparison.schemes[s];
+    row.prepare_ns = median(times[s].prepare_ns);
+    row.evaluate_ns = median(times[s].evaluate_ns);
+    if (s >= each.size()) continue;
+    if (const Status status = stream.hold(0, 0); !status) return status.error();
+    comparison.errors.push_back(
+        table_of(motion, *all, options, comparison.schemes.size() > 1 ? row.scheme : "", each[s]));
+    each[s] = {};
   }
-  if (options.tolerance) {
-    comparison.tolerance = options.tolerance;
-    comparison.cheapest = cheapest_within(comparison.schemes, *options.tolerance);
-  }
+  conclude(totals, share.count, certified, comparison);
   return comparison;
-}
-
-double evaluation_cost(const SchemeComparison& scheme) noexcept {
-  const OperationCounts& o = scheme.operations;
-  return scheme.bytes + o.add + o.multiply + 4 * (o.divide + o.sqrt) + 20 * o.trigonometric;
-}
-
-Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options) {
-  const bool are_faces = options.elements.kind == ElementKind::kFaces;
-  if (options.schemes.empty()) {
-    for (const SchemeDescription& description : scheme_descriptions()) {
-      const auto scheme = make_scheme(description.name);
-      if (scheme && (are_faces || !scheme.value()->needs_faces())) options.schemes.emplace_back(description.name);
-    }
-  }
-  options.tolerance = tolerance;
-  options.samples = 2;
-  Result<Comparison> comparison = compare(motion, options);
-  if (!comparison) return comparison.error();
-  Choice choice{std::nullopt, std::move(comparison).value()};
-  if (choice.comparison.cheapest) choice.scheme = choice.comparison.schemes[*choice.comparison.cheapest].scheme;
-  return choice;
 }
 
 }  // namespace chronormal

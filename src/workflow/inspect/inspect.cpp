@@ -165,10 +165,13 @@ SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNorm
   return tally;
 }
 
-void inspect_box(const Motion& motion, Inspection& result) {
-  const Vec3f start = still_segment(motion, 0).from.count > 0 ? still_segment(motion, 0).from[0] : Vec3f{};
-  Vec3f low = start, high = start;
-  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+Status inspect_box(MotionStream& stream, Inspection& result) {
+  const Motion& motion = stream.motion();
+  Vec3f low, high;
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    if (Status status = stream.hold(k, k); !status) return status;
+    const Motion::Keyframe& keyframe = motion.keyframes[k];
+    if (k == 0 && !keyframe.positions.empty()) low = high = still_segment(motion, 0).from[0];
     for (std::size_t i = 0; i + 2 < keyframe.positions.size(); i += 3) {
       const float* const p = keyframe.positions.data() + i;
       low = {std::min(low.x, p[0]), std::min(low.y, p[1]), std::min(low.z, p[2])};
@@ -178,6 +181,7 @@ void inspect_box(const Motion& motion, Inspection& result) {
   result.low = to_double(low);
   result.high = to_double(high);
   result.diagonal = length(result.high - result.low);
+  return Success{};
 }
 
 void keep_larger(Largest& largest, const Largest& other) {
@@ -187,6 +191,13 @@ void keep_larger(Largest& largest, const Largest& other) {
 }  // namespace
 
 Inspection inspect(const Motion& motion, const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  MotionStream stream(motion);
+  return inspect(stream, progress).value();
+}
+
+Result<Inspection> inspect(MotionStream& stream,
+                           const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const Motion& motion = stream.motion();
   const Topology& topology = motion.topology;
   Inspection result;
   result.vertices = topology.vertex_count();
@@ -197,10 +208,13 @@ Inspection inspect(const Motion& motion, const std::function<void(std::size_t do
   const auto times = std::minmax_element(motion.keyframes.begin(), motion.keyframes.end(), earlier);
   result.first_time = times.first->time;
   result.last_time = times.second->time;
-  inspect_box(motion, result);
+  if (const Status status = inspect_box(stream, result); !status) return status.error();
 
-  const Points points = weld_coincident(motion);
+  const Result<Points> welded = weld_coincident(stream);
+  if (!welded) return welded.error();
+  const Points& points = welded.value();
   result.doubled = find_copies(points);
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
   result.doubled_at_start =
       find_copies(weld_coincident({topology, {motion.keyframes.front()}, {}, motion.body_of_vertex}));
   result.surface = survey(topology, points);
@@ -223,6 +237,14 @@ Inspection inspect(const Motion& motion, const std::function<void(std::size_t do
   std::vector<std::vector<ControlNormals>> normals_of_wave(wave);  // kept, since so much memory takes long to get
   for (std::size_t first = 0; first < total; first += wave) {
     const std::size_t count = std::min(wave, total - first);
+    const auto keys_of = [&](std::size_t s) {
+      return s < segment_count ? motion.segments[s]
+                               : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
+    };
+    Motion::SegmentKeys keys = keys_of(first);
+    for (std::size_t s = first; s < first + count; ++s)
+      keys = {std::min(keys.from, keys_of(s).from), std::max(keys.to, keys_of(s).to)};
+    if (const Status status = stream.hold(keys.from, keys.to); !status) return status.error();
     parallel_for(count, [&](std::size_t i) {
       const std::size_t s = first + i;
       const bool moves = s < segment_count;

@@ -10,10 +10,12 @@ using ProgressCallback = std::function<void(std::size_t done, std::size_t total)
 
 // Inspects the motion or the mesh, both of which are keyframes.
 Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
-  const Result<const Motion*> read = result.opened.motion();
+  const Result<MotionStream*> read = result.opened.stream();
   if (!read) return read.error();
-  const Motion& motion = *read.value();
-  result.inspection = inspect(motion, progress);
+  const Motion& motion = read.value()->motion();
+  Result<Inspection> inspection = inspect(*read.value(), progress);
+  if (!inspection) return inspection.error();
+  result.inspection = std::move(inspection).value();
   for (const Motion::Keyframe& keyframe : motion.keyframes) result.keyframe_names.push_back(keyframe.name);
   result.segments = motion.segments;
   result.kind = motion.kind;

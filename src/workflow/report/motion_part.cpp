@@ -91,7 +91,8 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
 
 Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals) {
   constexpr bool kWeld = true;
-  const Result<NormalGroups> groups = audited_groups(motion, normals, kWeld);
+  MotionStream stream(motion);
+  const Result<NormalGroups> groups = audited_groups(stream, normals, kWeld);
   if (!groups) return groups.error();
   const std::span<const std::uint32_t> corners = motion.topology.corners();
   struct Shown {

@@ -79,7 +79,8 @@ Status read_motion(Input& input, const ReportOptions& options, Report& report, R
   const Result<MotionVertices> vertices = motion_vertices(*motion.value(), *normals.value());
   if (!vertices) return vertices.error();
   WatchedMotions watched({}, {}, vertices.value().of_corner);
-  Result<Audit> found = watched_audit(*motion.value(), *normals.value(), audit_options(options),
+  MotionStream stream(*motion.value());
+  Result<Audit> found = watched_audit(stream, *normals.value(), audit_options(options),
                                       [&](const AuditSample& sample) { watched.add(sample); });
   if (!found) return found.error();
   report.audit = std::move(found).value();

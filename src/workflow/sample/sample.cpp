@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -43,6 +44,16 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
+// Holds what a moment of a segment is computed from: its ends, and on a curved path their neighbours, of which the first and
+// the last segment have two on one side.
+Status hold_around(MotionStream& stream, std::size_t segment, PathKind path) {
+  if (path == PathKind::kLinear) return stream.hold_segment(segment);
+  const std::size_t end = stream.motion().keyframes.size() - 1;
+  const std::size_t first = std::min(segment - std::min<std::size_t>(segment, 1), end - std::min<std::size_t>(end, 3));
+  const std::size_t last = std::min(std::max<std::size_t>(segment + 2, 3), end);
+  return stream.hold(first, last);
+}
+
 // Positions in double, as the point half way between two in float32: one takes what the other had to round. So a pose
 // is a segment at t = 1/2, and loses nothing.
 struct DoublePositions {
@@ -80,17 +91,25 @@ Status check_weights(const Motion& motion, std::span<const double> weights) {
 }
 
 Result<NormalSampler> NormalSampler::make(const Motion& motion, const SampleOptions& options) {
+  auto whole = std::make_unique<MotionStream>(motion);
+  Result<NormalSampler> sampler = make(*whole, options);
+  if (sampler) sampler.value().whole_ = std::move(whole);
+  return sampler;
+}
+
+Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOptions& options) {
+  const Motion& motion = stream.motion();
   assert(!motion.keyframes.empty());
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
   if (const Status status = check_path(motion, options.path); !status) return status.error();
-  NormalSampler sampler(motion, options);
+  NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
     if (!by_area) return misuse("faces are not weighted: they have one normal");
     return sampler;
   }
-  Result<NormalGroups> groups = make_groups(motion, options.elements);
+  Result<NormalGroups> groups = make_groups(stream, options.elements);
   if (!groups) return groups.error();
   sampler.groups_ = std::make_unique<const NormalGroups>(std::move(groups).value());
   return sampler;
@@ -152,6 +171,8 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
   const double t = instant.value().t;
+  if (const Status status = hold_around(*stream_, instant.value().segment, options_.path); !status)
+    return status.error();
   if (options_.path != PathKind::kLinear) {
     const auto curve = path_segment(*motion_, instant.value().segment, options_.path);
     return pose_at(positions_at(curve, t), "this path moves");
@@ -163,6 +184,7 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = check_weights(*motion_, weights); !status) return status.error();
+  if (Status status = stream_->hold_all(); !status) return status.error();
   const auto base = positions_of(*motion_, 0);
   std::vector<Vec3d> positions(base.count);
   parallel_blocks(base.count, kBlock, [&](IndexRange vertices) {

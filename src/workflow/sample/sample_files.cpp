@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
+#include <memory>
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "io/bytes/binary.h"
+#include "io/bytes/output_file.h"
+#include "io/cache/npy.h"
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
@@ -27,10 +32,16 @@ constexpr std::array<FormatName, 4> kFormats = {{
 
 bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || format == SampleFormat::kNpz; }
 
-Result<Pose> pose_of(NormalSampler& sampler, const Moments& moments, const std::vector<double>& in_a_row,
-                     std::size_t i) {
-  if (!moments.times.empty()) return sampler.at_time(moments.times[i], in_a_row[i]);
+Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
+                     const std::vector<double>& in_a_row, std::size_t i) {
+  if (!moments.times.empty()) {
+    // What a segment is prepared for does not depend on where a shard begins in it.
+    std::size_t first = i;
+    while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
+    return sampler.at_time(moments.times[i], in_a_row[first]);
+  }
   if (!moments.weights.empty()) return sampler.at_weights(moments.weights[i]);
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
   return sampler.at_rest();
 }
 
@@ -57,39 +68,50 @@ std::size_t count_zeros(const std::vector<float>& normals) {
   return zeros;
 }
 
-// The arrays of a .npy or .npz file as they grow.
-class Arrays {
+// A .npy or .npz file as it grows.
+class ArrayFile {
  public:
-  Arrays(std::size_t moments, std::size_t outputs, std::size_t vertices, SampleFormat format)
-      : normals_({moments, outputs, 3}) {
-    if (format == SampleFormat::kNpz) positions_.emplace(std::vector<std::uint64_t>{moments, vertices, 3});
+  ArrayFile(OutputFile file, SampleFormat format) : file_(std::make_unique<OutputFile>(std::move(file))) {
+    if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  void append(const std::vector<float>& normals, const Pose& pose) {
-    normals_.append(normals);
-    if (positions_) positions_->append(pose.positions);
-  }
-
-  [[nodiscard]] std::string npy() && { return std::move(normals_).bytes(); }
-
-  [[nodiscard]] std::string npz(const Motion& motion, const Moments& moments) const {
+  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t rows, std::size_t outputs) {
+    const std::vector<std::uint64_t> shape = {rows, outputs, 3};
+    if (!npz_) return file_->append(npy::write_header("<f4", shape));
     std::vector<double> values = moments.times;
-    std::vector<std::uint64_t> shape = {moments.count()};
+    std::vector<std::uint64_t> when_shape = {moments.count()};
     if (moments.weights.empty() && values.empty()) values = {motion.keyframes[0].time};
-    if (!moments.weights.empty()) shape.push_back(motion.segments.size());
+    if (!moments.weights.empty()) when_shape.push_back(motion.segments.size());
     for (const auto& weights : moments.weights) values.insert(values.end(), weights.begin(), weights.end());
-    const NpyBytes when(shape, values);
+    const NpyBytes when(when_shape, values);
     const Result<std::string> faces = write_npy_faces(motion.topology);
-    std::vector<NpzMember> members = {{"normals", normals_.bytes()},
-                                      {moments.weights.empty() ? "times" : "weights", when.bytes()},
-                                      {"positions", positions_->bytes()}};
-    if (faces) members.push_back({"faces", faces.value()});
-    return write_npz(members);
+    normals_ = npz_->add_growing("normals", shape);
+    npz_->add({moments.weights.empty() ? "times" : "weights", when.bytes()});
+    positions_ = npz_->add_growing("positions", {moments.count(), motion.topology.vertex_count(), 3});
+    if (faces) npz_->add({"faces", faces.value()});
+    return npz_->begin();
+  }
+
+  [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose) {
+    if (!npz_) return file_->append(bytes_of(normals));
+    const Status status = npz_->append(normals_, bytes_of(normals));
+    return status ? npz_->append(positions_, bytes_of(pose.positions)) : status;
+  }
+
+  [[nodiscard]] Status finish() {
+    const Status status = npz_ ? npz_->finish() : Status(Success{});
+    return status ? file_->finish() : status;
   }
 
  private:
-  NpyBytes normals_;
-  std::optional<NpyBytes> positions_;  // for .npz
+  [[nodiscard]] std::string_view bytes_of(const std::vector<float>& values) {
+    return binary::bytes_of(values, std::endian::little, storage_);
+  }
+
+  std::unique_ptr<OutputFile> file_;  // where npz_ finds it
+  std::optional<NpzOutput> npz_;
+  std::size_t normals_ = 0, positions_ = 0;  // in it
+  std::string storage_;
 };
 
 // The mesh at one moment, as a file.
@@ -149,6 +171,8 @@ std::optional<SampleFormat> find_sample_format(std::string_view path) {
 Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind, std::size_t count) {
   if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
     return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
+  if (output.format == SampleFormat::kNpz && !output.shard.is_all())
+    return Error{ErrorCode::kUsage, output.path, "a shard is an array of its own: write .npy"};
   std::vector<std::string> names = {output.path};
   if (!is_array(output.format) && output.path != "-") {
     Result<std::vector<std::string>> numbered = numbered_names(output.path, count);
@@ -167,45 +191,56 @@ Result<std::vector<std::string>> sample_files(const SampleOutput& output, Elemen
 Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                     const SampleOutput& output,
                                     const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  MotionStream stream(motion);
+  return write_samples(stream, options, moments, output, progress);
+}
+
+Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options, const Moments& moments,
+                                    const SampleOutput& output,
+                                    const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
   const Result<std::vector<std::string>> names = sample_files(output, kind, count);
   if (!names) return names.error();
   if (Status status = check_moments(motion, moments); !status) return status.error();
-  Result<NormalSampler> made = NormalSampler::make(motion, options);
+  Result<NormalSampler> made = NormalSampler::make(stream, options);
   if (!made) return made.error();
   NormalSampler& sampler = made.value();
   const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
   if (!in_a_row) return in_a_row.error();
 
-  std::optional<Arrays> arrays;
+  const IndexRange share = output.shard.of(count);
+  std::optional<ArrayFile> arrays;
   if (is_array(output.format)) {
-    const std::size_t per_moment = sampler.output_count() + (output.format == SampleFormat::kNpz ? vertices : 0);
-    if (count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
+    const std::size_t per_moment = sampler.output_count() + vertices;
+    const bool is_gathered = output.format == SampleFormat::kNpz && is_stream(output.path);
+    if (is_gathered && count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
       return Error{ErrorCode::kUsage, output.path,
-                   "the arrays would take more than 4 GiB: choose fewer times, or a file for each (.ply, .obj)"};
-    arrays.emplace(count, sampler.output_count(), vertices, output.format);
+                   "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
+    Result<OutputFile> file = OutputFile::create(output.path, output.force);
+    if (!file) return file.error();
+    arrays.emplace(std::move(file).value(), output.format);
+    if (Status status = arrays->begin(motion, moments, share.count, sampler.output_count()); !status)
+      return status.error();
   }
 
   SampleSummary summary;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Result<Pose> pose = pose_of(sampler, moments, in_a_row.value(), i);
+  for (std::size_t i = share.first; i < share.end(); ++i) {
+    const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
     if (!pose) return pose.error();
     const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
     summary.normals += normals.size() / 3;
     summary.zeros += count_zeros(normals);
     if (arrays) {
-      arrays->append(normals, pose.value());
+      if (Status status = arrays->append(normals, pose.value()); !status) return status.error();
     } else {
       const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
       if (Status status = write_output(names.value()[i], bytes, output.force); !status) return status.error();
     }
-    if (progress) progress(i + 1, count);
+    if (progress) progress(i + 1 - share.first, share.count);
   }
-  if (!arrays) return summary;
-  const std::string bytes =
-      output.format == SampleFormat::kNpz ? arrays->npz(motion, moments) : std::move(*arrays).npy();
-  if (Status status = write_output(output.path, bytes, output.force); !status) return status.error();
+  if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;
 }
 

@@ -7,6 +7,7 @@
 
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
+#include "tests/support/written.h"
 
 namespace chronormal::mdd_test {
 namespace {
@@ -47,12 +48,12 @@ TEST(ReadMdd, errors_say_where_and_what) {
 }
 
 TEST(WriteMdd, writes_the_bytes_that_were_made_by_hand) {
-  EXPECT_EQ(write_mdd(test::turning_motion(-1, 0.5)).value(), test::small_mdd(-1, 0.5F));
+  EXPECT_EQ(test::written(test::turning_motion(-1, 0.5), ".mdd").value(), test::small_mdd(-1, 0.5F));
 }
 
 RC_GTEST_PROP(WriteMdd, what_was_written_reads_back_bit_for_bit, ()) {
   const Motion motion = test::random_motion(false);
-  const Result<std::string> bytes = write_mdd(motion);
+  const Result<std::string> bytes = test::written(motion, ".mdd");
   RC_ASSERT(bytes.ok());
   const Result<PositionCache> back = read_mdd(bytes.value(), "back.mdd");
   RC_ASSERT(back.ok());
@@ -64,7 +65,7 @@ RC_GTEST_PROP(WriteMdd, what_was_written_reads_back_bit_for_bit, ()) {
 }
 
 TEST(WriteMdd, refuses_times_that_float32_can_not_tell_apart) {
-  const Result<std::string> bytes = write_mdd(test::turning_motion(1, 1 + 1e-9));
+  const Result<std::string> bytes = mdd_header(test::turning_motion(1, 1 + 1e-9));
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
 }

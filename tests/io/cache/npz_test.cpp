@@ -11,6 +11,7 @@
 #include "io/bytes/zip.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
+#include "tests/support/written.h"
 
 namespace chronormal::npz_test {
 namespace {
@@ -261,7 +262,7 @@ TEST(WriteNpz, writes_the_bytes_that_were_made_by_hand) {
   const std::string positions = npy(padded(npy_header("<f4", "(2, 3, 3)")), raw(test::turning_elements<float>(false)));
   const std::string faces = npy(padded(npy_header("<i4", "(1, 3)")), raw<std::int32_t>({0, 1, 2}));
   const std::string times = npy(padded(npy_header("<f8", "(2,)")), raw<double>({0.5, 2}));
-  const std::string bytes = write_npz(test::turning_motion(0.5, 2)).value();
+  const std::string bytes = test::written(test::turning_motion(0.5, 2), ".npz").value();
   std::size_t at = 0;
   for (const auto& [name, array] :
        {std::pair{"positions.npy"s, positions}, {"faces.npy"s, faces}, {"times.npy"s, times}}) {
@@ -287,7 +288,7 @@ TEST(WriteNpz, writes_the_bytes_that_were_made_by_hand) {
 
 RC_GTEST_PROP(WriteNpz, what_was_written_reads_back_bit_for_bit, ()) {
   const Motion motion = test::random_motion(false);
-  const Result<std::string> bytes = write_npz(motion);
+  const Result<std::string> bytes = test::written(motion, ".npz");
   RC_ASSERT(bytes.ok());
   const Result<Motion> back = read_npz(bytes.value(), "back.npz");
   RC_ASSERT(back.ok());
@@ -327,19 +328,19 @@ TEST(ReadNpz, kind_is_a_string_of_numpy) {
 TEST(WriteNpz, what_is_no_sequence_says_so_and_targets_have_no_times) {
   Motion motion = test::turning_motion(0, 1);
   motion.connect_as_targets();
-  const std::string bytes = write_npz(motion).value();
+  const std::string bytes = test::written(motion, ".npz").value();
   EXPECT_EQ(bytes.find("times.npy"), std::string::npos);
   const std::string array = text_array("<U7", "targets", 4);
   EXPECT_NE(bytes.find(array.substr(array.size() - 28)), std::string::npos);
   EXPECT_EQ(read_npz(bytes, "back.npz").value().kind, MotionKind::kTargets);
   motion.segments.clear();
-  EXPECT_EQ(write_npz(motion).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(test::written(motion, ".npz").error().code, ErrorCode::kUsage);
 }
 
 TEST(WriteNpz, refuses_faces_of_different_numbers_of_corners) {
   Motion motion = test::turning_motion(0, 1);
   motion.topology = Topology::polygons(3, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 1}).value();
-  const Result<std::string> bytes = write_npz(motion);
+  const Result<std::string> bytes = test::written(motion, ".npz");
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
   EXPECT_NE(bytes.error().message.find("face 0 has 3 and face 1 has 4"), std::string::npos);

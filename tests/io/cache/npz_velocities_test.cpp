@@ -9,6 +9,7 @@
 
 #include "io/cache/npz.h"
 #include "tests/support/curved_motion.h"
+#include "tests/support/written.h"
 
 namespace chronormal::npz_velocities_test {
 namespace {
@@ -21,11 +22,11 @@ Motion moving() {
 }
 
 TEST(NpzVelocities, come_back_as_they_were_written) {
-  const Motion motion = moving(), read = read_npz(write_npz(motion).value(), "walk.npz").value();
+  const Motion motion = moving(), read = read_npz(test::written(motion, ".npz").value(), "walk.npz").value();
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(read.keyframes[k].velocities, motion.keyframes[k].velocities);
   Motion without = motion;
   without.keyframes[1].velocities.clear();
-  const Motion none = read_npz(write_npz(without).value(), "walk.npz").value();
+  const Motion none = read_npz(test::written(without, ".npz").value(), "walk.npz").value();
   EXPECT_TRUE(none.keyframes[0].velocities.empty()) << "an array has them for all keyframes or for none";
 }
 

@@ -8,6 +8,7 @@
 
 #include "tests/support/cache_bytes.h"
 #include "tests/support/random_motion.h"
+#include "tests/support/written.h"
 
 namespace chronormal::pc2_test {
 namespace {
@@ -53,13 +54,13 @@ TEST(ReadPc2, errors_say_where_and_what) {
 }
 
 TEST(WritePc2, writes_the_bytes_that_were_made_by_hand) {
-  EXPECT_EQ(write_pc2(test::turning_motion(40, 42)).value(), test::small_pc2(40, 2));
-  EXPECT_EQ(write_pc2(test::turning_motion(2, 2.5), 24).value(), test::small_pc2(48, 12));
+  EXPECT_EQ(test::written(test::turning_motion(40, 42), ".pc2").value(), test::small_pc2(40, 2));
+  EXPECT_EQ(pc2_header(test::turning_motion(2, 2.5), 24).value(), test::small_pc2(48, 12).substr(0, 32));
 }
 
 RC_GTEST_PROP(WritePc2, what_was_written_reads_back_bit_for_bit, ()) {
   const Motion motion = test::random_motion(true);
-  const Result<std::string> bytes = write_pc2(motion);
+  const Result<std::string> bytes = test::written(motion, ".pc2");
   RC_ASSERT(bytes.ok());
   const Result<PositionCache> back = read_pc2(bytes.value(), "back.pc2");
   RC_ASSERT(back.ok());
@@ -74,12 +75,12 @@ TEST(WritePc2, refuses_what_the_format_can_not_hold) {
   Motion motion = test::turning_motion(0, 1);
   motion.keyframes.push_back({test::kTurning[0], 2.5, "c"});
   motion.connect_as_sequence();
-  Result<std::string> bytes = write_pc2(motion);
+  Result<std::string> bytes = test::written(motion, ".pc2");
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
   EXPECT_NE(bytes.error().message.find("keyframe 1 is not at one"), std::string::npos) << bytes.error().message;
   motion.connect_as_targets();
-  bytes = write_pc2(motion);
+  bytes = test::written(motion, ".pc2");
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
 }

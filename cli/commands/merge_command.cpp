@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/parts.h"
+#include "cli/options/command.h"
+#include "cli/terminal/print.h"
+#include "io/bytes/file.h"
+
+namespace chronormal::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> parts;
+  CommonOptions common;
+};
+
+Result<int> run(const Options& options) {
+  const auto is_array = [](std::string_view path) { return path.ends_with(".npy"); };
+  if (options.parts.empty()) return misuse("", "there is nothing to merge: name the parts");
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (std::all_of(options.parts.begin(), options.parts.end(), is_array)) {
+    const Status written = merge_arrays(options.parts, options.common.output, options.common.force);
+    if (!written) return written.error();
+    return kExitDone;
+  }
+  std::vector<Part> parts;
+  for (const std::string& path : options.parts) {
+    const Result<FileBytes> file = FileBytes::open(path);
+    if (!file) return file.error();
+    parts.push_back({short_name(path), std::string(file.value().bytes())});
+  }
+  const Result<MergedParts> merged = merge_parts(parts);
+  if (!merged) return merged.error();
+  if (const Status written = print_to(options.common.output, merged.value().json, options.common.force); !written)
+    return written.error();
+  if (merged.value().is_within) return kExitDone;
+  say("merge", "the tolerance that the parts were made with is exceeded", Tone::kError);
+  return kExitBeyond;
+}
+
+}  // namespace
+
+Command merge_command() {
+  auto options = std::make_shared<Options>();
+  return {"merge",
+          "Put the shards of a comparison, an audit or of samples together",
+          {{{"PART", &options->parts,
+             "what --shard 1/N, 2/N, ... wrote: of compare and audit in any order, arrays\n"
+             "of sample (.npy) in that of their numbers"}},
+           options->common.table(false)},
+          "What comes out is what one run would have written, byte for byte: of compare and audit the JSON of --json\n"
+          "(and --no-times), of sample the array.\n"
+          "\nExamples:\n"
+          "  for i in 1 2 3; do chronormal compare walk/ --shard $i/3 -o part_$i.json; done\n"
+          "  chronormal merge part_1.json part_2.json part_3.json -o walk.json\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance of the parts was exceeded",
+          [options] { return run(*options); }};
+}
+
+}  // namespace chronormal::cli

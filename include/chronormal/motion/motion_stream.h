@@ -1,0 +1,69 @@
+/// A motion that is longer than memory: its keyframes are read when they are needed, and given back.
+///
+///     MotionStream stream = ...;                      // of a file (Input::stream() in io/input.h), or of a whole motion
+///     for (std::size_t s = 0; s < stream.motion().segments.size(); ++s) {
+///       if (const Status status = stream.hold_segment(s); !status) return status.error();
+///       const Segment segment = stream.motion().segment(s);      // good until the next hold
+///     }
+///
+/// motion() is the whole motion but for the positions of keyframes that are not held: faces, segments, times and names
+/// are always there. So what takes a Motion takes the motion of a stream, once it holds what is looked at. Where keyframes
+/// are held one after the other, the next one is read ahead in a thread of its own.
+///
+/// Memory     the keyframes that are held, and one that is read ahead; all of them where they take no more than `kept`
+///            bytes together, for these are read once and stay. Nothing of a motion that was whole before.
+/// Threads    one stream belongs to one thread at a time; what is held may be read by many.
+#ifndef CHRONORMAL_MOTION_MOTION_STREAM_H_
+#define CHRONORMAL_MOTION_MOTION_STREAM_H_
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal {
+
+class MotionStream {
+ public:
+  /// Writes the 3 x vertex_count coordinates of a keyframe of the motion, all of them finite. It is called from one thread
+  /// at a time, not always from the same.
+  using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
+
+  static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
+
+  /// A motion that is in memory and stays there; it must outlive the stream, and may stand still.
+  explicit MotionStream(const Motion& whole);
+
+  /// A motion whose keyframes have no positions yet, but that the first one may.
+  /// outline must be valid otherwise (motion/motion.h)
+  MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
+
+  MotionStream(MotionStream&& other) noexcept;
+  MotionStream& operator=(MotionStream&& other) noexcept;
+  ~MotionStream();
+
+  [[nodiscard]] const Motion& motion() const noexcept;
+
+  /// Makes the positions of keyframes first to last be there, until the next hold. Errors: those of the reader.
+  /// first <= last, and last must be a keyframe
+  [[nodiscard]] Status hold(std::size_t first, std::size_t last);
+  /// The same of both ends of segments first to last.
+  [[nodiscard]] Status hold_segments(std::size_t first, std::size_t last);
+  [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
+  /// The same of all keyframes: the motion is in memory then.
+  [[nodiscard]] Status hold_all();
+
+  /// Whether keyframes stay where they are once they were held: to hold all is no more than to read them.
+  [[nodiscard]] bool keeps_all() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_MOTION_MOTION_STREAM_H_

@@ -1,0 +1,232 @@
+// A new file is a temporary sibling until it is whole; a stream takes bytes as they come.
+#include "io/bytes/output_file.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "core/charconv.h"
+#include "io/bytes/descriptor.h"
+#include "io/bytes/temporary_file.h"
+
+namespace chronormal {
+namespace {
+
+// Writes everything. False, with errno, on failure.
+bool write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    } else if (!may_go_on(descriptor, POLLOUT)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Writes one piece after the other, little ones together. False, with errno, on failure.
+bool write_all(int descriptor, std::span<const std::string_view> pieces) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  std::string block;
+  for (const std::string_view piece : pieces) {
+    if (block.size() + piece.size() > kBlock) {
+      if (!write_all(descriptor, block)) return false;
+      block.clear();
+    }
+    if (piece.size() < kBlock)
+      block += piece;
+    else if (!write_all(descriptor, piece))
+      return false;
+  }
+  return write_all(descriptor, block);
+}
+
+// Writes everything at a place of a file. False, with errno, on failure.
+bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    at += static_cast<std::uint64_t>(count);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+// The descriptor for which a path stands that names a stream of this process.
+std::optional<int> stream_descriptor(std::string_view path) {
+  if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    if (!path.starts_with(folder)) continue;
+    int number = -1;
+    const char* const last = path.data() + path.size();
+    const auto [end, code] = from_chars(path.data() + folder.size(), last, number);
+    if (code == std::errc{} && end == last && number >= 0) return number;
+  }
+  return std::nullopt;
+}
+
+// The file that is written when somebody writes to path: the end of a chain of symbolic links, which need not exist.
+std::string follow_links(const std::string& path) {
+  constexpr int kLongestChain = 40;
+  std::filesystem::path target = path;
+  for (int i = 0; i < kLongestChain; ++i) {
+    std::error_code error;
+    const std::filesystem::path next = std::filesystem::read_symlink(target, error);
+    if (error) break;
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return target.string();
+}
+
+// Makes the rename last through a power cut. File systems that can not do it are none of our business.
+void flush_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const Descriptor descriptor(open_descriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY));
+  if (descriptor.is_open()) (void)::fsync(descriptor.number());
+}
+
+Error exists_already(const std::string& path) {
+  return Error{ErrorCode::kFailed, path, "the file exists already; pass --force to overwrite it"};
+}
+
+}  // namespace
+
+// One of three: a stream of this process, a device or a pipe of the file system, a new file.
+struct internal::OutputFile::State {
+  std::string path;
+  bool force = false;
+  std::optional<int> stream = {};
+  Descriptor device{-1};
+  std::string target = {};  // of path, behind symbolic links
+  bool replaces = false;    // what is there already:
+  struct stat old {};
+  std::unique_ptr<TemporaryFile> file = {};
+  std::string gathered = {};  // what a stream or a device gets in the end
+
+  [[nodiscard]] int descriptor() const noexcept {
+    return stream ? *stream : file != nullptr ? file->descriptor() : device.number();
+  }
+  [[nodiscard]] Error error() const { return failure(stream && path == "-" ? "<stdout>" : path, errno); }
+
+  // Flushes the new file to disk, and gives it its name. False, with errno, on failure.
+  [[nodiscard]] bool replace_target() {
+    if (replaces) {
+      if (::fchown(file->descriptor(), old.st_uid, old.st_gid) != 0) errno = 0;  // only the owner or root may
+      if (::fchmod(file->descriptor(), old.st_mode & 07777) != 0) return false;
+    }
+    if (::fsync(file->descriptor()) != 0 && errno != EINVAL && errno != EROFS) return false;
+    return file->close() && file->rename_to(target, force);
+  }
+};
+
+namespace internal {
+
+OutputFile::OutputFile(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->force = force;
+  state->stream = stream_descriptor(path);
+  if (state->stream) {
+    // What was printed before comes first.
+    (void)std::fflush(*state->stream == STDERR_FILENO ? stderr : stdout);
+    return OutputFile(std::move(state));
+  }
+  if (Status status = check_output(path, force); !status) return status.error();
+  state->replaces = ::stat(path.c_str(), &state->old) == 0;
+  if (!state->replaces && errno != ENOENT) return failure(path, errno);
+  if (state->replaces && !S_ISREG(state->old.st_mode)) {
+    state->device = Descriptor(open_descriptor(path, O_WRONLY));
+    if (!state->device.is_open()) return failure(path, errno);
+    return OutputFile(std::move(state));
+  }
+  state->target = follow_links(path);
+  // Until it has the permissions of the file that it replaces, nobody else may read it.
+  state->file = std::make_unique<TemporaryFile>(state->target, state->replaces ? 0600 : 0666);
+  if (state->file->is_open()) return OutputFile(std::move(state));
+  Error error = failure(path, errno);
+  error.message = "can not write in its folder: " + error.message;
+  return error;
+}
+
+Status OutputFile::append(std::span<const std::string_view> pieces) {
+  if (!write_all(state_->descriptor(), pieces)) return state_->error();
+  return Success{};
+}
+
+Status OutputFile::put(std::uint64_t at, std::string_view bytes) {
+  if (state_->file != nullptr) {
+    if (!write_all_at(state_->descriptor(), at, bytes)) return state_->error();
+    return Success{};
+  }
+  std::string& gathered = state_->gathered;
+  const auto begin = static_cast<std::size_t>(at);
+  if (gathered.size() < begin + bytes.size()) gathered.resize(begin + bytes.size());
+  std::copy(bytes.begin(), bytes.end(), gathered.begin() + static_cast<std::ptrdiff_t>(begin));
+  return Success{};
+}
+
+Status OutputFile::finish() {
+  State& state = *state_;
+  if (state.file == nullptr) {
+    const bool closed =
+        write_all(state.descriptor(), std::string_view(state.gathered)) && (state.stream || state.device.close());
+    if (!closed) return state.error();
+    return Success{};
+  }
+  if (!state.replace_target()) {
+    const int system_error = errno;
+    if (system_error == EEXIST && !state.force) return exists_already(state.path);
+    return failure(state.path, system_error);
+  }
+  flush_folder_of(state.target);
+  return Success{};
+}
+
+}  // namespace internal
+
+Status check_output(const std::string& path, bool force) {
+  if (path.empty()) return Error{ErrorCode::kUsage, "", "the name of the output is empty"};
+  if (stream_descriptor(path)) return Success{};
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return Success{};
+  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, path, "this is a folder, not a file"};
+  if (S_ISREG(status.st_mode) && !force) return exists_already(path);
+  return Success{};
+}
+
+bool is_stream(const std::string& path) {
+  if (stream_descriptor(path)) return true;
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+Status write_output(const std::string& path, std::string_view bytes, bool force) {
+  return write_output(path, std::span(&bytes, 1), force);
+}
+
+Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force) {
+  Result<OutputFile> file = OutputFile::create(path, force);
+  if (!file) return file.error();
+  if (Status status = file.value().append(pieces); !status) return status;
+  return file.value().finish();
+}
+
+}  // namespace chronormal

@@ -1,0 +1,38 @@
+#include "io/bytes/positioned_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace chronormal::inline internal {
+
+std::optional<PositionedFile> PositionedFile::open(const std::string& path) {
+  struct stat status {};
+  // A pipe that is opened and closed again has lost its writer: look before.
+  if (path == "-" || ::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  Descriptor descriptor(open_descriptor(path, O_RDONLY));
+  if (!descriptor.is_open() || ::fstat(descriptor.number(), &status) != 0 || !S_ISREG(status.st_mode))
+    return std::nullopt;
+  return PositionedFile(path, std::move(descriptor), static_cast<std::uint64_t>(status.st_size));
+}
+
+Status PositionedFile::read(std::uint64_t at, std::span<char> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor_.number(), bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return Error{ErrorCode::kFailed, path_, std::generic_category().message(errno)};
+    if (count == 0)
+      return Error{ErrorCode::kFailed, path_,
+                   "the file ends at byte " + std::to_string(at) + ", but had " + std::to_string(size_) +
+                       " bytes when it was opened: it was cut while it was read"};
+    at += static_cast<std::uint64_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return Success{};
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,41 @@
+/// A file of which parts are read, wherever they lie, by a descriptor and without mapping it: of a file that is longer than
+/// memory, and that may be cut while it is read. Private to io.
+///
+/// Threads    read() may be called from several at the same time.
+#ifndef CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_
+#define CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "chronormal/core/result.h"
+#include "io/bytes/descriptor.h"
+
+namespace chronormal::inline internal {
+
+class PositionedFile {
+ public:
+  /// Opens a regular file; nothing for anything else, and for what can not be opened.
+  [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
+
+  /// Bytes, when it was opened.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// Fills bytes with those from `at` on. Errors: kFailed with the path as the place: the file has become shorter, and
+  /// whatever the system refuses.
+  [[nodiscard]] Status read(std::uint64_t at, std::span<char> bytes) const;
+
+ private:
+  PositionedFile(std::string path, Descriptor descriptor, std::uint64_t size)
+      : path_(std::move(path)), descriptor_(std::move(descriptor)), size_(size) {}
+
+  std::string path_;
+  Descriptor descriptor_;
+  std::uint64_t size_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_

@@ -1,0 +1,58 @@
+/// Where the positions of a cache lie in its file, so that a sample can be read without those before it. Private to io.
+///
+///     byte begin                       sample 0: (V, 3) numbers, float32 or float64
+///     byte begin + 3 V item_size       sample 1, and so on
+///
+/// PC2, MDD and arrays of NumPy in C order are all of this form; their readers find the layout, and read by it.
+///
+/// Threads    pure.
+#ifndef CHRONORMAL_IO_CACHE_CACHE_LAYOUT_H_
+#define CHRONORMAL_IO_CACHE_CACHE_LAYOUT_H_
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "io/bytes/positioned_file.h"
+#include "io/cache/position_cache.h"
+
+namespace chronormal::inline internal {
+
+/// How many bytes from the beginning of a file a layout is found in, at most; a file that needs more has none.
+inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
+
+struct CacheLayout {
+  std::size_t vertex_count = 0;
+  std::vector<double> times;  ///< seconds, of each sample
+  std::uint64_t begin = 0;
+  std::size_t item_size = sizeof(float);  ///< 4 or 8
+  std::endian order = std::endian::little;
+  std::string array = {};  ///< what NumPy calls it: errors name an element of it, and not a byte
+
+  [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }
+  [[nodiscard]] std::uint64_t sample_begin(std::size_t k) const noexcept {
+    return begin + std::uint64_t{k} * coordinates() * item_size;
+  }
+};
+
+/// Reads coordinates of sample k, from `first` on, out of their bytes. Errors: kInvalidInput for one that is not finite or
+/// too large for float32, with the place "NAME, byte N, sample K, vertex V", or "NAME, positions[K, V, C]".
+[[nodiscard]] Status decode_coordinates(const CacheLayout& layout, const std::string& name, std::size_t k,
+                                        std::size_t first, std::string_view bytes, std::span<float> result);
+
+/// Reads sample k of a file; the errors are those, and of PositionedFile.
+[[nodiscard]] Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name,
+                                 std::size_t k, std::span<float> positions);
+
+/// Reads all samples of a file that is in memory.
+[[nodiscard]] Result<PositionCache> read_all_samples(const CacheLayout& layout, std::string_view file,
+                                                     const std::string& name);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_CACHE_CACHE_LAYOUT_H_

@@ -1,0 +1,164 @@
+// Holds a window of keyframes. Those that leave it give their memory to those that come, so that a pass over a motion
+// takes memory once: for the window, and for the keyframe that is read ahead.
+#include "chronormal/motion/motion_stream.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#ifdef CHRONORMAL_HAVE_TBB
+#include <future>
+#include <system_error>
+#endif
+
+namespace chronormal {
+namespace {
+
+// A keyframe that is read while the caller computes. Where there are no threads, nothing is read ahead.
+class ReadAhead {
+ public:
+#ifdef CHRONORMAL_HAVE_TBB
+  static constexpr bool kCan = true;
+#else
+  static constexpr bool kCan = false;
+#endif
+
+  [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
+  [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
+
+  void start([[maybe_unused]] const MotionStream::Reader& read, [[maybe_unused]] const Motion& motion,
+             [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
+    positions_ = std::move(room);
+#ifdef CHRONORMAL_HAVE_TBB
+    try {
+      done_ = std::async(std::launch::async,
+                         [&read, &motion, keyframe, this] { return read(motion, keyframe, positions_); });
+      keyframe_ = keyframe;
+    } catch (const std::system_error&) {
+      keyframe_.reset();  // no thread: it is read when its time comes
+    }
+#endif
+  }
+
+  // Waits for the end of reading, and gives the memory back.
+  Status finish(std::vector<float>& positions) {
+    Status status = Success{};
+#ifdef CHRONORMAL_HAVE_TBB
+    if (keyframe_) status = done_.get();
+#endif
+    keyframe_.reset();
+    positions = std::move(positions_);
+    return status;
+  }
+
+ private:
+  std::optional<std::size_t> keyframe_;
+  std::vector<float> positions_;
+#ifdef CHRONORMAL_HAVE_TBB
+  std::future<Status> done_;
+#endif
+};
+
+}  // namespace
+
+struct MotionStream::State {
+  const Motion* whole = nullptr;  // or else:
+  Motion outline = {};
+  Reader read = {};
+  bool keeps_all = false;
+  std::size_t first = 0, end = 0;              // the window
+  std::vector<std::vector<float>> spare = {};  // memory of keyframes that left it
+  ReadAhead ahead = {};                        // last, so that reading ends before what it needs is gone
+
+  [[nodiscard]] std::vector<float> room() {
+    std::vector<float> positions;
+    if (!spare.empty()) {
+      positions = std::move(spare.back());
+      spare.pop_back();
+    }
+    positions.resize(3 * outline.topology.vertex_count());
+    return positions;
+  }
+
+  void leave(std::size_t keyframe) {
+    std::vector<float>& positions = outline.keyframes[keyframe].positions;
+    if (!positions.empty()) spare.push_back(std::move(positions));
+    positions = {};
+  }
+
+  [[nodiscard]] Status enter(std::size_t keyframe) {
+    std::vector<float>& positions = outline.keyframes[keyframe].positions;
+    if (!positions.empty()) return Success{};
+    if (ahead.is_under_way()) {
+      const bool is_wanted = ahead.is_of(keyframe);
+      std::vector<float> read_positions;
+      const Status status = ahead.finish(read_positions);
+      if (is_wanted && status) positions = std::move(read_positions);
+      if (is_wanted) return status;
+      spare.push_back(std::move(read_positions));
+    }
+    std::vector<float> read_positions = room();
+    const Status status = read(outline, keyframe, read_positions);
+    if (status) positions = std::move(read_positions);
+    return status;
+  }
+};
+
+MotionStream::MotionStream(const Motion& whole) : state_(std::make_unique<State>()) { state_->whole = &whole; }
+
+MotionStream::MotionStream(Motion outline, Reader read, std::size_t kept) : state_(std::make_unique<State>()) {
+  const std::size_t bytes = 3 * sizeof(float) * std::max<std::size_t>(outline.topology.vertex_count(), 1);
+  state_->keeps_all = outline.keyframes.size() <= kept / bytes;
+  state_->outline = std::move(outline);
+  state_->end = state_->outline.keyframes.front().positions.empty() ? 0 : 1;
+  state_->read = std::move(read);
+}
+
+MotionStream::MotionStream(MotionStream&& other) noexcept = default;
+MotionStream& MotionStream::operator=(MotionStream&& other) noexcept = default;
+MotionStream::~MotionStream() = default;
+
+const Motion& MotionStream::motion() const noexcept { return state_->whole ? *state_->whole : state_->outline; }
+
+bool MotionStream::keeps_all() const noexcept { return state_->whole != nullptr || state_->keeps_all; }
+
+Status MotionStream::hold(std::size_t first, std::size_t last) {
+  State& state = *state_;
+  assert(first <= last && last < motion().keyframes.size());
+  if (state.whole != nullptr || (first >= state.first && last < state.end)) return Success{};
+  const bool goes_on = state.end > 0 && first <= state.end && last >= state.end;
+  for (std::size_t k = state.first; k < state.end && !state.keeps_all; ++k)
+    if (k < first || k > last) state.leave(k);
+  for (std::size_t k = first; k <= last; ++k) {
+    if (Status status = state.enter(k); !status) {
+      for (std::size_t rest = k; rest <= last; ++rest) state.leave(rest);
+      state.first = first;
+      state.end = k;
+      return status;
+    }
+  }
+  state.first = first;
+  state.end = last + 1;
+  const bool is_more = state.end < state.outline.keyframes.size();
+  if (ReadAhead::kCan && goes_on && is_more && !state.ahead.is_under_way() &&
+      state.outline.keyframes[state.end].positions.empty())
+    state.ahead.start(state.read, state.outline, state.end, state.room());
+  state.spare.clear();
+  return Success{};
+}
+
+Status MotionStream::hold_segments(std::size_t first, std::size_t last) {
+  const Motion& all = motion();
+  assert(first <= last && last < all.segments.size());
+  return hold(all.segments[first].from, all.segments[last].to);
+}
+
+Status MotionStream::hold_all() {
+  const std::size_t count = motion().keyframes.size();
+  if (count == 0) return Success{};
+  return hold(0, count - 1);
+}
+
+}  // namespace chronormal

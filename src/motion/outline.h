@@ -1,0 +1,21 @@
+/// The two halves of validate(): a motion but for its positions, and those of one keyframe. Private.
+#ifndef CHRONORMAL_MOTION_OUTLINE_H_
+#define CHRONORMAL_MOTION_OUTLINE_H_
+
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::inline internal {
+
+/// Checks what validate() checks, but for positions.
+[[nodiscard]] Status validate_outline(const Motion& motion);
+
+/// Checks the positions that keyframe k is to have.
+[[nodiscard]] Status validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_MOTION_OUTLINE_H_

@@ -1,0 +1,373 @@
+// Parts as JSON: numbers stand in lists, in the order of the structs that they are of. Sums keep their bits, since the
+// shortest text of a double reads back as it was.
+#include "chronormal/workflow/parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "chronormal/schemes/scheme.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/positioned_file.h"
+#include "io/cache/npy.h"
+#include "io/json/json.h"
+#include "workflow/json/object.h"
+
+namespace chronormal {
+namespace {
+
+constexpr std::size_t kVersion = 1;
+constexpr double kMostCount = 9007199254740992;  // whole numbers that a double has all of
+
+// Reads numbers of a list one after the other.
+class Numbers {
+ public:
+  explicit Numbers(JsonView list) : list_(std::move(list)) {}
+
+  double real() {
+    if (next_ >= list_.size()) {
+      list_.complain("the list is too short");
+      return 0;
+    }
+    return list_.item(next_++).as_number();
+  }
+  std::size_t count() {
+    const double value = real();
+    if (value >= 0 && value <= kMostCount && value == std::floor(value)) return static_cast<std::size_t>(value);
+    list_.complain("number " + std::to_string(next_ - 1) + " of the list must be a count");
+    return 0;
+  }
+  [[nodiscard]] bool at_end() const { return next_ >= list_.size(); }
+
+ private:
+  JsonView list_;
+  std::size_t next_ = 0;
+};
+
+Json tally_json(const SchemeTally& tally) {
+  const Quality& q = tally.quality;
+  const CertifiedError& c = tally.certified;
+  return {q.sum,         q.sum_of_squares, q.max,        q.max_at.segment, q.max_at.element,
+          q.max_at.t,    q.count,          q.degenerate, q.missing,        tally.fallbacks,
+          tally.flagged, tally.bytes,      c.lower,      c.upper,          c.segment,
+          c.element,     c.from,           c.to,         c.unbounded};
+}
+
+SchemeTally read_tally(Numbers numbers) {
+  SchemeTally tally;
+  Quality& q = tally.quality;
+  CertifiedError& c = tally.certified;
+  for (double* const value : {&q.sum, &q.sum_of_squares, &q.max}) *value = numbers.real();
+  for (std::size_t* const value : {&q.max_at.segment, &q.max_at.element}) *value = numbers.count();
+  q.max_at.t = numbers.real();
+  for (std::size_t* const value : {&q.count, &q.degenerate, &q.missing, &tally.fallbacks, &tally.flagged})
+    *value = numbers.count();
+  for (double* const value : {&tally.bytes, &c.lower, &c.upper}) *value = numbers.real();
+  for (std::size_t* const value : {&c.segment, &c.element}) *value = numbers.count();
+  for (double* const value : {&c.from, &c.to}) *value = numbers.real();
+  c.unbounded = numbers.count();
+  return tally;
+}
+
+// The fine bins are few that are not empty: each with its number.
+Json error_json(const MotionError& error) {
+  Json json = {error.judged,           error.sum,         error.sum_of_squares, error.worst, error.worst_at.vertex,
+               error.worst_at.segment, error.worst_at.at, error.no_normal,      error.unlit, error.unlit_at.vertex,
+               error.unlit_at.segment, error.unlit_at.at};
+  for (const std::size_t count : error.histogram) json.push_back(count);
+  for (std::size_t bin = 0; bin < error.counts.size(); ++bin) {
+    if (error.counts[bin] == 0) continue;
+    json.push_back(bin);
+    json.push_back(error.counts[bin]);
+  }
+  return json;
+}
+
+MotionError read_error(const JsonView& list) {
+  Numbers numbers(list);
+  MotionError error;
+  error.judged = numbers.count();
+  for (double* const value : {&error.sum, &error.sum_of_squares, &error.worst}) *value = numbers.real();
+  const auto read_place = [&numbers](AuditPlace& place) {
+    place.vertex = numbers.count();
+    place.segment = numbers.count();
+    place.at = numbers.real();
+  };
+  read_place(error.worst_at);
+  error.no_normal = numbers.count();
+  error.unlit = numbers.count();
+  read_place(error.unlit_at);
+  for (std::size_t& count : error.histogram) count = numbers.count();
+  while (!numbers.at_end()) {
+    const std::size_t bin = numbers.count(), count = numbers.count();
+    if (bin < error.counts.size())
+      error.counts[bin] = count;
+    else
+      list.complain("there is no bin " + std::to_string(bin));
+  }
+  return error;
+}
+
+Json offset_json(const AuthoredOffset& offset) {
+  return {static_cast<int>(offset.weighting),
+          offset.is_detected ? 1 : 0,
+          offset.vertices,
+          offset.sum,
+          offset.worst,
+          offset.worst_at.vertex,
+          offset.area_mean,
+          static_cast<int>(offset.closest),
+          offset.closest_mean,
+          offset.closest_worst};
+}
+
+Weighting read_weighting(std::size_t number, const JsonView& view) {
+  if (number < kWeightings.size()) return static_cast<Weighting>(number);
+  view.complain("there is no weighting " + std::to_string(number));
+  return Weighting::kArea;
+}
+
+AuthoredOffset read_offset(const JsonView& list) {
+  Numbers numbers(list);
+  AuthoredOffset offset;
+  offset.weighting = read_weighting(numbers.count(), list);
+  offset.is_detected = numbers.count() != 0;
+  offset.vertices = numbers.count();
+  offset.sum = numbers.real();
+  offset.worst = numbers.real();
+  offset.worst_at.vertex = numbers.count();
+  offset.area_mean = numbers.real();
+  offset.closest = read_weighting(numbers.count(), list);
+  offset.closest_mean = numbers.real();
+  offset.closest_worst = numbers.real();
+  return offset;
+}
+
+Json part_json(const char* command, const std::string& input, std::optional<double> tolerance) {
+  Json json = {{"chronormal_part", kVersion}, {"command", command}, {"input", input}};
+  if (tolerance) json["tolerance_degrees"] = {*tolerance};
+  return json;
+}
+
+std::optional<double> read_tolerance(const JsonView& part) {
+  if (!part.has("tolerance_degrees")) return std::nullopt;
+  const std::optional<JsonView> list = part.array("tolerance_degrees");
+  return list ? std::optional(Numbers(*list).real()) : std::nullopt;
+}
+
+// Calls each(view) for the items of a list that may be missing.
+template <class Each>
+void each_item(const JsonView& object, const char* key, const Each& each) {
+  if (!object.has(key)) return;
+  const std::optional<JsonView> list = object.array(key);
+  for (std::size_t i = 0; list && i < list->size(); ++i) each(list->item(i));
+}
+
+constexpr std::size_t kMost = std::size_t{1} << 48;
+
+NamedComparison read_comparison(const JsonView& part) {
+  NamedComparison named;
+  named.name = part.required_text("input");
+  Comparison& c = named.comparison;
+  c.kind = static_cast<ElementKind>(part.required_count("kind", 2));
+  c.motion = static_cast<MotionKind>(part.required_count("motion", 2));
+  c.vertices = part.required_count("vertices", kMost);
+  c.faces = part.required_count("faces", kMost);
+  c.elements = part.required_count("elements", kMost);
+  c.segments = part.required_count("segment_count", kMost);
+  c.samples = part.required_count("samples", kMost);
+  c.tolerance = read_tolerance(part);
+  const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
+  bool has_linear = false;
+  each_item(part, "schemes", [&](const JsonView& name) {
+    SchemeComparison row;
+    row.scheme = name.as_text();
+    const auto scheme = make_scheme(row.scheme);
+    if (!scheme) return name.complain(scheme.error().message);
+    const auto sequential = scheme.value()->sequential_operations();
+    row.sequential = is_sequential && sequential.has_value();
+    row.operations = row.sequential ? *sequential : scheme.value()->operations();
+    if (is_certified) row.certified.emplace();
+    has_linear = has_linear || row.scheme == "linear";
+    c.schemes.push_back(std::move(row));
+  });
+  const std::size_t tallies = c.schemes.size() + (has_linear ? 0 : 1);
+  each_item(part, "segments", [&](const JsonView& segment) {
+    ComparedSegment found{segment.required_count("segment", kMost), {}};
+    each_item(segment, "tallies", [&](const JsonView& tally) { found.schemes.push_back(read_tally(Numbers(tally))); });
+    if (found.schemes.size() != tallies) segment.complain("there must be a tally for each scheme, and for linear");
+    c.compared.push_back(std::move(found));
+  });
+  if (c.schemes.empty()) part.complain("there are no schemes");
+  return named;
+}
+
+struct NamedAudit {
+  std::string name;
+  Audit audit;
+  std::optional<double> tolerance;
+};
+
+NamedAudit read_audit(const JsonView& part) {
+  NamedAudit named;
+  named.name = part.required_text("input");
+  named.tolerance = read_tolerance(part);
+  Audit& audit = named.audit;
+  audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
+  audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
+  audit.stored = part.flag("stored");
+  audit.still = part.required_count("still", kMost);
+  each_item(part, "offsets", [&](const JsonView& offset) { audit.offsets.push_back(read_offset(offset)); });
+  if (part.required_count("subjects", 1) == 1) {
+    AuditSubject subject;
+    subject.kind = AuditSubject::Kind::kSequence;
+    subject.weighting = *audit.weighting;
+    subject.segments = part.required_count("segment_count", kMost);
+    subject.samples = part.required_count("samples", kMost);
+    subject.vertices = part.required_count("vertices", kMost);
+    audit.subjects.push_back(std::move(subject));
+  }
+  each_item(part, "segments", [&](const JsonView& segment) {
+    SegmentErrors found;
+    found.segment = segment.required_count("segment", kMost);
+    if (const auto list = segment.array("error")) found.error = read_error(*list);
+    if (const auto list = segment.array("at_keys")) found.at_keys = read_error(*list);
+    audit.measured.push_back(std::move(found));
+  });
+  return named;
+}
+
+Result<MergedParts> merge_comparisons(std::vector<NamedComparison> named) {
+  std::vector<Comparison> shards;
+  for (NamedComparison& one : named) shards.push_back(std::move(one.comparison));
+  Result<Comparison> all = merge(std::move(shards));
+  if (!all) return all.error();
+  const bool is_within = !all.value().tolerance || all.value().cheapest;
+  return MergedParts{compare_json({{named.front().name, std::move(all).value()}}, false, false), is_within};
+}
+
+Result<MergedParts> merge_audits(std::vector<NamedAudit> named) {
+  const std::optional<double> tolerance = named.front().tolerance;
+  std::vector<Audit> shards;
+  for (NamedAudit& one : named) {
+    if (one.tolerance != tolerance) return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
+    shards.push_back(std::move(one.audit));
+  }
+  const Result<Audit> all = merge(std::move(shards));
+  if (!all) return all.error();
+  return MergedParts{audit_json(named.front().name, all.value(), tolerance),
+                     !tolerance || all.value().is_within(*tolerance)};
+}
+
+}  // namespace
+
+std::string compare_part(const NamedComparison& shard) {
+  const Comparison& c = shard.comparison;
+  Json json = part_json("compare", shard.name, c.tolerance);
+  json["kind"] = static_cast<int>(c.kind);
+  json["motion"] = static_cast<int>(c.motion);
+  json["vertices"] = c.vertices;
+  json["faces"] = c.faces;
+  json["elements"] = c.elements;
+  json["segment_count"] = c.segments;
+  json["samples"] = c.samples;
+  json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
+  json["certified"] = c.schemes.front().certified.has_value();
+  for (const SchemeComparison& row : c.schemes) json["schemes"].push_back(row.scheme);
+  for (const ComparedSegment& segment : c.compared) {
+    Json tallies = Json::array();
+    for (const SchemeTally& tally : segment.schemes) tallies.push_back(tally_json(tally));
+    json["segments"].push_back({{"segment", segment.segment}, {"tallies", std::move(tallies)}});
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance) {
+  Json json = part_json("audit", input, tolerance);
+  json["rule"] = static_cast<int>(shard.rule);
+  json["weighting"] = static_cast<int>(shard.weighting.value_or(Weighting::kArea));
+  json["stored"] = shard.stored;
+  json["still"] = shard.still;
+  for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(offset_json(offset));
+  json["subjects"] = shard.subjects.size();
+  for (const AuditSubject& subject : shard.subjects) {
+    json["segment_count"] = subject.segments;
+    json["samples"] = subject.samples;
+    json["vertices"] = subject.vertices;
+  }
+  for (const SegmentErrors& segment : shard.measured)
+    json["segments"].push_back(
+        {{"segment", segment.segment}, {"error", error_json(segment.error)}, {"at_keys", error_json(segment.at_keys)}});
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+Result<MergedParts> merge_parts(std::span<const Part> parts) {
+  std::vector<NamedComparison> comparisons;
+  std::vector<NamedAudit> audits;
+  for (const Part& part : parts) {
+    const Result<nlohmann::json> json = parse_json(part.text, part.name, 0, {});
+    if (!json) return json.error();
+    JsonComplaint complaint(part.name);
+    const JsonView view(json.value(), "", complaint);
+    if (!view.is_object() || !view.has("chronormal_part"))
+      return invalid_input(part.name, "this is no part that a --shard has left");
+    if (view.required_count("chronormal_part", kMost) != kVersion)
+      view.complain("chronormal_part", "the part is of another version");
+    const std::string command = view.required_text("command");
+    if (command == "compare")
+      comparisons.push_back(read_comparison(view));
+    else if (command == "audit")
+      audits.push_back(read_audit(view));
+    else
+      view.complain("command", "there are parts of compare and of audit");
+    if (complaint.first()) return *complaint.first();
+  }
+  if (!comparisons.empty() && !audits.empty())
+    return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
+  return audits.empty() ? merge_comparisons(std::move(comparisons)) : merge_audits(std::move(audits));
+}
+
+Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force) {
+  struct Rows {
+    PositionedFile file;
+    npy::Array array;
+  };
+  std::vector<Rows> all;
+  std::uint64_t count = 0;
+  for (const std::string& path : paths) {
+    std::optional<PositionedFile> file = PositionedFile::open(path);
+    if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
+    std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
+    if (Status status = file->read(0, start); !status) return status;
+    Result<npy::Array> array = npy::read_header(start, file->size(), path);
+    if (!array) return array.error();
+    const npy::Array& found = array.value();
+    const npy::Array& first = all.empty() ? found : all.front().array;
+    const bool is_alike = !found.is_fortran && !found.shape.empty() && found.shape.size() == first.shape.size() &&
+                          std::equal(found.shape.begin() + 1, found.shape.end(), first.shape.begin() + 1) &&
+                          found.kind == npy::Kind::kFloat && found.item_size == sizeof(float) &&
+                          found.order == std::endian::little;
+    if (!is_alike)
+      return invalid_input(path, "it is " + found.text() + ", and not rows of float32 like those of the first part");
+    count += found.shape.front();
+    all.push_back({std::move(*file), std::move(array).value()});
+  }
+  std::vector<std::uint64_t> shape = all.front().array.shape;
+  shape.front() = count;
+  Result<OutputFile> file = OutputFile::create(output, force);
+  if (!file) return file.error();
+  if (Status status = file.value().append(npy::write_header("<f4", shape)); !status) return status;
+  std::string block(std::size_t{1} << 20, '\0');
+  for (const Rows& rows : all) {
+    for (std::uint64_t at = rows.array.data_begin; at < rows.file.size(); at += block.size()) {
+      const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), rows.file.size() - at));
+      if (Status status = rows.file.read(at, std::span(block).first(size)); !status) return status;
+      if (Status status = file.value().append(std::string_view(block).substr(0, size)); !status) return status;
+    }
+  }
+  return file.value().finish();
+}
+
+}  // namespace chronormal

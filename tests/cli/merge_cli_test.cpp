@@ -1,0 +1,85 @@
+// `--shard` and `merge`: what many machines write is what one would have written. And keyframes that are chosen.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::merge_cli_test {
+namespace {
+
+class Merge : public testing::Test {
+ protected:
+  // A strip of two triangles that folds over six keyframes.
+  Merge() {
+    for (int k = 0; k < 6; ++k) {
+      const std::string height = std::to_string(0.1 * k * k);
+      folder_.write("w_" + std::to_string(k) + ".obj",
+                    "v 0 0 0\nv 1 0 0\nv 0 1 " + height + "\nv 1 1 0." + std::to_string(k) + "\nf 1 2 3\nf 2 4 3\n");
+    }
+  }
+  [[nodiscard]] ProcessResult run(const std::string& arguments) const {
+    return run_shell(std::string(kProgram) + " " + arguments, folder_.path());
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return test::read_whole(folder_ / name); }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
+  const std::string compare = "compare 'w_*.obj' --elements vertices ", audit = "audit 'w_*.obj' --rule slerp ";
+  const std::string sample = "sample 'w_*.obj' --times 0:0.125:5 ";
+  for (const std::string shard : {"1/3", "2/3", "3/3"}) {
+    const std::string take = " --shard " + shard + " -o ", name = shard.substr(0, 1);
+    ASSERT_EQ(run(compare + take + "compare" + name + ".json").exit_code, 0);
+    ASSERT_EQ(run(audit + "--tolerance 1" + take + "audit" + name + ".json").exit_code, 0);
+    ASSERT_EQ(run(sample + take + "sample" + name + ".npy").exit_code, 0);
+    ASSERT_EQ(run(sample + take + "part_%02d.ply").exit_code, 0);
+  }
+  ASSERT_EQ(run(compare + "--json --no-times -o one.json").exit_code, 0);
+  EXPECT_EQ(run("merge compare3.json compare1.json compare2.json").out, file("one.json"));
+  ASSERT_EQ(run(audit + "--json --tolerance 1 -o one_audit.json").exit_code, 4);
+  const ProcessResult merged = run("merge audit1.json audit2.json audit3.json");
+  EXPECT_EQ(merged.out, file("one_audit.json"));
+  EXPECT_EQ(merged.exit_code, 4);
+  EXPECT_NE(merged.err.find("the tolerance that the parts were made with is exceeded"), std::string::npos);
+  ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
+  ASSERT_EQ(run("merge sample1.npy sample2.npy sample3.npy -o merged.npy").exit_code, 0);
+  EXPECT_TRUE(file("merged.npy") == file("one.npy"));
+  ASSERT_EQ(run(sample + "-o one_%02d.ply").exit_code, 0);
+  EXPECT_TRUE(file("part_39.ply") == file("one_39.ply"));
+  EXPECT_EQ(run("merge compare1.json compare2.json").exit_code, 2);
+  EXPECT_EQ(run("merge compare1.json w_0.obj").exit_code, 3);
+  EXPECT_EQ(run("merge sample1.npy gone.npy -o x.npy").exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
+}
+
+TEST_F(Merge, shards_are_refused_where_they_divide_nothing) {
+  for (const char* const arguments :
+       {"compare 'w_*.obj' --shard 0/3", "compare 'w_*.obj' --shard 4/3", "compare 'w_*.obj' --shard 3",
+        "compare 'w_*.obj' --shard 1/2x", "compare --each w_0.obj --shard 1/2",
+        "compare 'w_*.obj' --shard 1/2 --errors e.npz", "compare 'w_*.obj' --truth 2 --shard 1/2",
+        "audit 'w_*.obj' --shard 1/2 --errors e.npz", "audit --base w_0.obj w_1.obj --shard 1/2",
+        "sample 'w_*.obj' --times 1 --shard 1/2 -o n.npz", "compare 'w_*.obj' --path catmull-rom --shard 1/2",
+        "merge"}) {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
+    EXPECT_TRUE(result.out.empty()) << arguments;
+  }
+}
+
+TEST_F(Merge, chosen_keyframes_are_those_of_the_files_named_one_by_one) {
+  ASSERT_EQ(run("convert 'w_*.obj' --from 1 --to 5 --every 2 -o chosen.npz").exit_code, 0);
+  ASSERT_EQ(run("sample 'w_*.obj' --from 1 --to 5 --every 2 --times keys -o chosen.npy").exit_code, 0);
+  ASSERT_EQ(run("sample w_1.obj w_3.obj w_5.obj --times 0,1,2 -o named.npy").exit_code, 0);
+  EXPECT_TRUE(file("chosen.npy") == file("named.npy"));
+  EXPECT_NE(run("sample chosen.npz --times 0.5 -o x.npy").err.find("from 1 to 5"), std::string::npos);
+  EXPECT_EQ(run("inspect 'w_*.obj' --from 6").exit_code, 2);
+  EXPECT_EQ(run("audit --sample bumps --every 2").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace chronormal::merge_cli_test

@@ -1,0 +1,260 @@
+// Inputs whose keyframes stay in files: what they give is held against the same input read whole.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "chronormal/io/input.h"
+#include "chronormal/io/output.h"
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/compare.h"
+#include "chronormal/workflow/inspect.h"
+#include "chronormal/workflow/json.h"
+#include "chronormal/workflow/sample.h"
+#include "tests/support/cache_bytes.h"
+#include "tests/support/read_input.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::stream_test {
+namespace {
+
+using test::TemporaryFolder;
+
+constexpr std::uint32_t kSide = 8;
+
+// A sheet that waves, with a seam: two columns of vertices lie at one place, and come apart in the last keyframe.
+Motion wave(std::size_t keyframes) {
+  Motion motion;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+    for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+      const std::uint32_t v = y * kSide + x;
+      if (x == 3) continue;  // the seam
+      corners.insert(corners.end(), {v, v + 1, v + kSide, v + 1, v + kSide + 1, v + kSide});
+    }
+  }
+  motion.topology = Topology::triangles(kSide * kSide, corners).value();
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    Motion::Keyframe keyframe{{}, static_cast<double>(k), ""};
+    for (std::size_t v = 0; v < kSide * kSide; ++v) {
+      const std::size_t column = v % kSide, x = column > 3 ? column - 1 : column;
+      const double phase = 0.7 * static_cast<double>(x) + 0.9 * static_cast<double>(k);
+      const double apart = column > 3 && k + 1 == keyframes && v < kSide ? 0.1 : 0;
+      keyframe.positions.insert(keyframe.positions.end(), {static_cast<float>(x), static_cast<float>(v / kSide),
+                                                           static_cast<float>(std::sin(phase) + apart)});
+    }
+    motion.keyframes.push_back(std::move(keyframe));
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+// The same motion in every form that can be read one keyframe at a time.
+std::vector<std::vector<std::string>> write_all(const TemporaryFolder& folder, const Motion& motion) {
+  for (const char* const name : {"walk.npz", "walk.pc2", "walk.mdd", "walk_%02d.ply", "walk_%02d.obj"})
+    EXPECT_TRUE(write_motion(motion, folder / name, false).ok()) << name;
+  std::vector<float> coordinates;
+  for (const auto& keyframe : motion.keyframes)
+    coordinates.insert(coordinates.end(), keyframe.positions.begin(), keyframe.positions.end());
+  const std::vector<double> doubles(coordinates.begin(), coordinates.end());
+  const std::string shape =
+      "(" + std::to_string(motion.keyframes.size()) + ", " + std::to_string(motion.topology.vertex_count()) + ", 3)";
+  folder.write("big.npy", test::npy(test::npy_header(">f8", shape), test::raw(doubles, true)));
+  const std::string mesh = folder / "walk_00.obj";
+  return {{folder / "walk.npz"},      {mesh, folder / "walk.pc2"}, {mesh, folder / "walk.mdd"},
+          {mesh, folder / "big.npy"}, {folder / "walk_*.ply"},     {folder / "walk_*.obj"}};
+}
+
+InputOptions streamed(InputOptions options) {
+  options.stream = true;
+  options.kept_bytes = 0;
+  return options;
+}
+
+// A stream that keeps nothing, of an input that would be small enough to stay: keyframes are read by its own reader.
+MotionStream strict(MotionStream& stream, std::size_t& most_held) {
+  Motion outline = stream.motion();
+  for (auto& keyframe : outline.keyframes) keyframe.positions = {};
+  return MotionStream(
+      std::move(outline),
+      [&stream, &most_held](const Motion& motion, std::size_t k, std::span<float> positions) -> Status {
+        std::size_t held = 1;
+        for (const auto& keyframe : motion.keyframes) held += keyframe.positions.empty() ? 0U : 1U;
+        most_held = std::max(most_held, held);
+        if (const Status status = stream.hold(k, k); !status) return status;
+        const std::vector<float>& read = stream.motion().keyframes[k].positions;
+        std::copy(read.begin(), read.end(), positions.begin());
+        return Success{};
+      },
+      0);
+}
+
+TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
+  const TemporaryFolder folder;
+  for (const auto& names : write_all(folder, wave(5))) {
+    const Motion whole = test::read_motion(test::files(names, 24)).value();
+    Result<Input> input = open_input(streamed(test::files(names, 24)));
+    ASSERT_TRUE(input.ok()) << input.error().text();
+    MotionStream& stream = *input.value().stream().value();
+    EXPECT_TRUE(stream.motion().topology == whole.topology) << names.back();
+    ASSERT_EQ(stream.motion().keyframes.size(), 5U) << names.back();
+    EXPECT_TRUE(stream.motion().keyframes[3].positions.empty()) << names.back() << ": it was read whole";
+    for (const std::size_t k : {3U, 0U, 4U, 1U, 2U}) {
+      ASSERT_TRUE(stream.hold(k, k).ok());
+      EXPECT_EQ(stream.motion().keyframes[k].positions, whole.keyframes[k].positions) << names.back();
+      EXPECT_EQ(stream.motion().keyframes[k].time, whole.keyframes[k].time) << names.back();
+      EXPECT_EQ(stream.motion().keyframes[k].name, whole.keyframes[k].name) << names.back();
+    }
+    EXPECT_EQ(input.value().motion().value()->keyframes[4].positions, whole.keyframes[4].positions);
+  }
+}
+
+TEST(InputStream, what_cannot_be_read_one_by_one_is_read_whole) {
+  const TemporaryFolder folder;
+  folder.write("a.npz", test::small_npz(true));
+  Result<Input> input = open_input(streamed(test::files({folder / "a.npz"})));
+  ASSERT_TRUE(input.ok());
+  EXPECT_EQ(input.value().stream().value()->motion().keyframes[1].positions, test::kTurning[1]);
+}
+
+TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) {
+  const TemporaryFolder folder;
+  const auto inputs = write_all(folder, wave(9));
+  Result<Input> input = open_input(streamed(test::files(inputs[1])));
+  ASSERT_TRUE(input.ok());
+  const Motion whole = test::read_motion(test::files(inputs[1])).value();
+  std::size_t most_held = 0;
+  MotionStream stream = strict(*input.value().stream().value(), most_held);
+
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+    CompareOptions options;
+    options.elements.kind = kind;
+    options.certify = true;
+    const auto text = [](const Result<Comparison>& comparison) {
+      return compare_json({{"x", comparison.value()}}, false, false);
+    };
+    EXPECT_EQ(text(compare(stream, options)), text(compare(whole, options)));
+  }
+  AuditOptions audit_options;
+  audit_options.keep_errors = true;
+  const Audit in_memory = audit(whole, {}, audit_options).value();
+  const Audit as_stream = audit(stream, {}, audit_options).value();
+  EXPECT_EQ(audit_json("x", as_stream, 1), audit_json("x", in_memory, 1));
+  EXPECT_EQ(as_stream.errors[0].degrees.size(), in_memory.errors[0].degrees.size());
+  const Inspection inspection = inspect(stream).value();
+  EXPECT_EQ(inspection.doubled.count, inspect(whole).doubled.count);
+  EXPECT_EQ(inspection.diagonal, inspect(whole).diagonal);
+  EXPECT_EQ(inspection.normal_bytes, inspect(whole).normal_bytes);
+
+  most_held = 0;  // a comparison takes several small segments at once
+  for (const char* const name : {"n.npy", "n.npz", "n_%02d.ply"}) {
+    for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+      if (path != PathKind::kLinear && std::string(name) != "n.npy") continue;
+      SampleOptions options;
+      options.path = path;
+      const Moments moments{{0, 0.25, 3.5, 3.75, 1, 7.5, 8}, {}};
+      const SampleFormat format = find_sample_format(name).value();
+      ASSERT_TRUE(write_samples(stream, options, moments, {folder / (std::string("s") + name), format, true}).ok());
+      ASSERT_TRUE(write_samples(whole, options, moments, {folder / (std::string("w") + name), format, true}).ok());
+      const std::string one = format == SampleFormat::kPly ? "n_05.ply" : name;
+      EXPECT_EQ(test::read_whole(folder / ("s" + one)), test::read_whole(folder / ("w" + one))) << one;
+    }
+  }
+  EXPECT_LE(most_held, 4U);  // curved paths need so many
+  for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_%d.ply"}) {
+    ASSERT_TRUE(write_motion(stream, folder / (std::string("s") + name), false, Expansion::unlimited()).ok());
+    ASSERT_TRUE(write_motion(whole, folder / (std::string("w") + name), false).ok());
+  }
+  for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_8.ply"})
+    EXPECT_EQ(test::read_whole(folder / (std::string("s") + name)),
+              test::read_whole(folder / (std::string("w") + name)))
+        << name;
+}
+
+TEST(InputStream, a_pass_over_segments_holds_three_keyframes) {
+  const Motion whole = wave(9);
+  MotionStream read(whole);
+  std::size_t most_held = 0;
+  MotionStream stream = strict(read, most_held);
+  AuditOptions options;
+  ASSERT_TRUE(audit(stream, {}, options).ok());
+  EXPECT_LE(most_held, 3U);
+}
+
+TEST(InputStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  const auto inputs = write_all(folder, wave(9));
+  Result<Input> input = open_input(streamed(test::files(inputs[1])));
+  ASSERT_TRUE(input.ok());
+  std::filesystem::resize_file(folder / "walk.pc2", 32 + 12 * kSide * kSide * 6 + 100);
+  const std::size_t before = folder.entry_count();
+  Result<SampleSummary> written =
+      write_samples(*input.value().stream().value(), {}, {{0.5, 1.5, 6.5}, {}}, {folder / "n.npy", SampleFormat::kNpy});
+  ASSERT_FALSE(written.ok());
+  EXPECT_EQ(written.error().code, ErrorCode::kFailed);
+  EXPECT_EQ(written.error().place, folder / "walk.pc2");
+  EXPECT_NE(written.error().message.find("it was cut while it was read"), std::string::npos);
+  EXPECT_EQ(folder.entry_count(), before);
+}
+
+TEST(InputStream, errors_in_keyframes_are_those_of_reading_whole) {
+  const TemporaryFolder folder;
+  const auto inputs = write_all(folder, wave(5));
+  std::string bytes = test::read_whole(folder / "walk.pc2");
+  bytes.replace(32 + 12 * kSide * kSide * 3 + 16, 4, std::string("\0\0\xC0\x7F", 4));
+  folder.write("walk.pc2", bytes);
+  folder.write("walk_03.ply", "ply\nformat ascii 1.0\nelement vertex 1\n");
+  folder.write("walk_03.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::size_t i : {1U, 4U, 5U}) {
+    const Result<Motion> whole = test::read_motion(test::files(inputs[i]));
+    Result<Input> input = open_input(streamed(test::files(inputs[i])));
+    ASSERT_FALSE(whole.ok());
+    ASSERT_TRUE(input.ok()) << input.error().text();
+    MotionStream& stream = *input.value().stream().value();
+    EXPECT_TRUE(stream.hold_segment(0).ok());
+    const Status status = stream.hold_segment(2);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().text(), whole.error().text());
+  }
+}
+
+TEST(InputFrames, from_to_and_every_choose_keyframes_and_keep_their_times) {
+  const TemporaryFolder folder;
+  const Motion motion = wave(9);
+  for (const auto& names : write_all(folder, motion)) {
+    for (const bool stream : {false, true}) {
+      InputOptions options = test::files(names);
+      if (stream) options = streamed(options);
+      options.from = 1;
+      options.to = 7;
+      options.every = 3;
+      const Result<Motion> chosen = test::read_motion(options);
+      ASSERT_TRUE(chosen.ok()) << chosen.error().text();
+      ASSERT_EQ(chosen.value().keyframes.size(), 3U);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(chosen.value().keyframes[i].positions, motion.keyframes[1 + 3 * i].positions) << names.back();
+        EXPECT_EQ(chosen.value().keyframes[i].time, static_cast<double>(1 + 3 * i)) << names.back();
+      }
+      options.to = 9;
+      EXPECT_EQ(test::read_motion(options).error().text(),
+                "--to: there is no such keyframe: keyframes are counted from 0 to 8");
+      options.to = 2;
+      EXPECT_EQ(test::read_motion(options).error().code, ErrorCode::kUsage);
+    }
+  }
+}
+
+TEST(InputFrames, only_sequences_have_keyframes_to_choose_among) {
+  const TemporaryFolder folder;
+  write_all(folder, wave(2));
+  InputOptions options = test::targets_over(folder / "walk_00.obj", {folder / "walk_01.obj"});
+  options.every = 2;
+  EXPECT_EQ(open_input(options).error().text(),
+            "--every: it chooses among the keyframes of a sequence, which this is not");
+}
+
+}  // namespace
+}  // namespace chronormal::stream_test

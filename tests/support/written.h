@@ -1,0 +1,22 @@
+/// What a motion becomes as a file, through the door that everybody uses.
+#ifndef CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
+#define CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
+
+#include <string>
+
+#include "chronormal/io/output.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::test {
+
+/// The bytes of a file of this extension (".pc2"). Errors: those of write_motion().
+[[nodiscard]] inline Result<std::string> written(const Motion& motion, const std::string& extension) {
+  const TemporaryFolder folder;
+  const std::string path = folder / ("motion" + extension);
+  if (const Status status = write_motion(motion, path, false); !status) return status.error();
+  return read_whole(path);
+}
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_

@@ -1,0 +1,186 @@
+#include "chronormal/workflow/parts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::parts_test {
+namespace {
+
+// A strip of triangles that bends, in eight segments.
+Motion bending() {
+  Motion motion;
+  std::vector<std::uint32_t> corners;
+  constexpr std::uint32_t kColumns = 40;
+  for (std::uint32_t x = 0; x + 1 < kColumns; ++x) {
+    const std::uint32_t v = 2 * x;
+    corners.insert(corners.end(), {v, v + 2, v + 1, v + 2, v + 3, v + 1});
+  }
+  motion.topology = Topology::triangles(2 * std::size_t{kColumns}, corners).value();
+  for (std::size_t k = 0; k < 9; ++k) {
+    Motion::Keyframe keyframe{{}, 0.1 * static_cast<double>(k), ""};
+    for (std::uint32_t v = 0; v < 2 * kColumns; ++v) {
+      const double angle = 0.05 * static_cast<double>(k + 1) * (v / 2);
+      keyframe.positions.insert(keyframe.positions.end(),
+                                {static_cast<float>(std::sin(angle)), static_cast<float>(v % 2),
+                                 static_cast<float>(std::cos(angle + 0.3 * (v % 2)))});
+    }
+    motion.keyframes.push_back(std::move(keyframe));
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+std::string merged(std::vector<Part> parts) {
+  std::reverse(parts.begin(), parts.end());  // any order
+  const Result<MergedParts> all = merge_parts(parts);
+  return all ? all.value().json : all.error().text();
+}
+
+std::vector<Part> compare_parts(const Motion& motion, CompareOptions options, std::size_t count) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    options.shard = Shard{i, count};
+    parts.push_back({"part_" + std::to_string(i), compare_part({"walk", compare(motion, options).value()})});
+  }
+  return parts;
+}
+
+std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals, AuditOptions options,
+                              std::size_t count) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    options.shard = Shard{i, count};
+    parts.push_back({"part_" + std::to_string(i), audit_part("walk", audit(motion, normals, options).value(), 1)});
+  }
+  return parts;
+}
+
+TEST(Shard, shares_are_a_partition_and_of_nearly_equal_size) {
+  for (const std::size_t total : {0U, 1U, 7U, 8U, 1000003U}) {
+    for (const std::size_t count : {1U, 2U, 3U, 7U, 10U}) {
+      std::size_t end = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const IndexRange share = Shard{i, count}.of(total);
+        EXPECT_EQ(share.first, end);
+        EXPECT_GE(share.count, total / count);
+        EXPECT_LE(share.count, total / count + 1);
+        end = share.end();
+      }
+      EXPECT_EQ(end, total);
+    }
+  }
+}
+
+TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
+  const Motion motion = bending();
+  std::vector<CompareOptions> all(3);
+  all[1].elements.kind = ElementKind::kVertices;
+  all[1].schemes = {"slerp", "quadratic"};
+  all[1].tolerance = 0.5;
+  all[2].access = Access::kSequential;
+  for (const CompareOptions& options : all) {
+    const std::string whole = compare_json({{"walk", compare(motion, options).value()}}, false, false);
+    for (const std::size_t count : {1U, 2U, 3U, 8U, 11U})
+      EXPECT_EQ(merged(compare_parts(motion, options, count)), whole);
+  }
+}
+
+TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
+  const Motion motion = bending();
+  StoredNormals normals;  // of every keyframe: up, which is wrong from the beginning
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    normals.of_keyframes.emplace_back();
+    for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)
+      normals.of_keyframes.back().insert(normals.of_keyframes.back().end(),
+                                         {0, k == 4 ? 0.0F : 0.25F, k == 4 ? 0.0F : 1.0F});
+  }
+  for (const StoredNormals& stored : {StoredNormals{}, normals}) {
+    for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
+      AuditOptions options;
+      options.rule = rule;
+      const std::string whole = audit_json("walk", audit(motion, stored, options).value(), 1);
+      for (const std::size_t count : {2U, 5U, 9U})
+        EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
+    }
+  }
+}
+
+TEST(MergeParts, says_whether_the_tolerance_was_kept) {
+  const Motion motion = bending();
+  CompareOptions options;
+  options.tolerance = 180;
+  EXPECT_TRUE(merge_parts(compare_parts(motion, options, 2)).value().is_within);
+  options.tolerance = 0;
+  options.schemes = {"linear"};
+  EXPECT_FALSE(merge_parts(compare_parts(motion, options, 2)).value().is_within);
+}
+
+TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
+  const Motion motion = bending();
+  const std::vector<Part> three = compare_parts(motion, {}, 3), audits = audit_parts(motion, {}, {}, 3);
+  EXPECT_EQ(merged({three[0], three[2]}), "segment 2 is in none of the shards");
+  EXPECT_EQ(merged({three[0], three[1]}), "segment 5 is in none of the shards");
+  EXPECT_EQ(merged({three[0], three[1], three[2], three[1]}), "segment 2 is in two of the shards");
+  EXPECT_EQ(merged({audits[0], audits[1]}), "segment 5 is in none of the shards");
+  CompareOptions other;
+  other.samples = 5;
+  EXPECT_EQ(merged({three[0], compare_parts(motion, other, 3)[1]}), "these are shards of two different comparisons");
+  AuditOptions stepping;
+  stepping.rule = AuditRule::kStep;
+  EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}), "these are shards of two different audits");
+  EXPECT_EQ(merged({three[0], audits[1]}), "there are parts of comparisons and of audits: merge either");
+}
+
+TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
+  const Motion motion = bending();
+  for (const std::string& text : {compare_parts(motion, {}, 1)[0].text, audit_parts(motion, {}, {}, 2)[0].text}) {
+    for (std::size_t size = 0; size + 1 < text.size(); size += 1 + text.size() / 40) {
+      const Result<MergedParts> cut = merge_parts(std::vector<Part>{{"cut", text.substr(0, size)}});
+      ASSERT_FALSE(cut.ok());
+      EXPECT_EQ(cut.error().code, ErrorCode::kInvalidInput);
+      EXPECT_TRUE(cut.error().place.starts_with("cut")) << cut.error().text();
+    }
+  }
+  EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
+            std::string::npos);
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 1, "command": "bake"})"}}).find("of compare and of audit"),
+            std::string::npos);
+  std::string text = audit_parts(motion, {}, {}, 2)[0].text;
+  const std::size_t list = text.find("\"error\":[");
+  EXPECT_NE(merged({{"a", text.replace(list + 9, 1, "-1.5,")}}).find("must be a count"), std::string::npos);
+}
+
+TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
+  const test::TemporaryFolder folder;
+  const Motion motion = bending();
+  Moments moments;
+  for (int i = 0; i <= 40; ++i) moments.times.push_back(0.02 * i);
+  const SampleOptions options;
+  ASSERT_TRUE(write_samples(motion, options, moments, {folder / "all.npy"}).ok());
+  for (const std::size_t count : {2U, 3U, 7U}) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < count; ++i) {
+      parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
+      ASSERT_TRUE(write_samples(motion, options, moments, {parts.back(), SampleFormat::kNpy, true, {i, count}}).ok());
+    }
+    ASSERT_TRUE(merge_arrays(parts, folder / "merged.npy", true).ok());
+    EXPECT_TRUE(test::read_whole(folder / "merged.npy") == test::read_whole(folder / "all.npy")) << count;
+  }
+  EXPECT_EQ(write_samples(motion, options, moments, {folder / "p.npz", SampleFormat::kNpz, true, {0, 2}}).error().code,
+            ErrorCode::kUsage);
+  ASSERT_TRUE(write_samples(motion, {ElementOptions{ElementKind::kFaces}}, moments, {folder / "faces.npy"}).ok());
+  const std::vector<std::string> unlike = {folder / "all.npy", folder / "faces.npy"}, gone = {folder / "gone.npy"};
+  EXPECT_EQ(merge_arrays(unlike, folder / "x.npy", true).error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(merge_arrays(gone, folder / "x.npy", true).error().code, ErrorCode::kFailed);
+}
+
+}  // namespace
+}  // namespace chronormal::parts_test
