@@ -1,5 +1,5 @@
-// Unit normals on meshes that are no torus, ours and in plain loops: thin triangles, varied valence, a collapse, and real
-// ones.
+// Unit normals on meshes that are no torus, ours and in plain loops: thin triangles, varied valence, a collapse, and
+// real ones.
 
 #include <fmt/core.h>
 

@@ -222,7 +222,7 @@ const std::map<std::string, std::string> kUses = {
     {"--no-weld", "a.obj b.obj --no-weld"},
     {"compare --no-weld", "a.obj b.obj --elements vertices --no-weld"},
     {"--output", "a.obj b.obj"},
-    {"--path", "a.obj b.obj --times 0.5 --path catmull-rom"},
+    {"--path", "a.obj b.obj --path catmull-rom"},
     {"--plan", "face.glb --plan"},
     {"--poses", "face.glb --poses poses.json"},
     {"--quiet", "a.obj b.obj --quiet"},

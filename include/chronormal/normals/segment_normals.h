@@ -80,7 +80,7 @@ struct MeshShape {
 [[nodiscard]] MeshShape shape_of(const Segment& segment, const NormalGroups& groups);
 
 /// Sizes of the caches that the model has in mind, in bytes.
-inline constexpr double kModelledNearCache = 1 << 20;  // of a core
+inline constexpr double kModelledNearCache = 2 << 20;  // of a core
 inline constexpr double kModelledSharedCache = 32 << 20;
 
 struct StrategyCosts {

@@ -1,5 +1,5 @@
-// Positions at t first, into rows that a vector loads at once; then paths around sixteen elements at a time (kernels/rings.h).
-// The paths are made once, from the topology alone.
+// Positions at t first, into rows that a vector loads at once; then paths around sixteen elements at a time
+// (kernels/rings.h). The paths are made once, from the topology alone.
 
 #include "chronormal/normals/float_recompute.h"
 

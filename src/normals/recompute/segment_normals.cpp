@@ -23,9 +23,9 @@ namespace {
 // Where the data of a pass lie, by their size: in the cache of a core, in the shared one, in memory.
 enum Level { kNear, kShared, kMemory };
 
-// Nanoseconds, one for each level: of one core of an Intel Xeon of 2.6 GHz with 2 MiB of its own, on meshes of 15 k, 45 k,
-// 1 M and 10 M triangles in grid order and shuffled, on a dance and on a sphere that turns inside out. What is added for
-// polygons, and for a cache line that is far away, is the difference between two of them.
+// Nanoseconds, one for each level: of one core of an Intel Xeon of 2.6 GHz with 2 MiB of its own, on meshes of 15 k,
+// 45 k, 1 M and 10 M triangles in grid order and shuffled, on a dance and on a sphere that turns inside out. What is
+// added for polygons, and for a cache line that is far away, is the difference between two of them.
 struct Row {
   std::array<double, 3> at;
 };
@@ -33,10 +33,11 @@ struct Row {
 // Recompute, faces: a triangle; the triangle of a polygon; a line of positions that was not at hand.
 constexpr Row kRecomputeTriangle = {3.4, 3.5, 4}, kRecomputePolygon = {17, 17.5, 18};
 constexpr Row kRecomputeMiss = {0.3, 1, 4.2};
-// Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand; one of a scattered element.
+// Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand; and what
+// is added for a term of a scattered element, and of one with thin faces.
 constexpr Row kRecomputeKept = {3.7, 3.8, 4.2}, kRecomputeTerm = {0.75, 0.85, 1.1},
               kRecomputeTermMiss = {0.04, 2.4, 5.2};
-constexpr double kRecomputeScattered = 9;
+constexpr double kRecomputeScattered = 45, kRecomputeThin = 3.2;
 // In float32: a triangle, a term of a sum, and one that was not at hand; a vertex whose position is interpolated.
 constexpr Row kFloatTriangle = {1.3, 1.5, 2.2}, kFloatTerm = {0.5, 0.6, 0.9}, kFloatMiss = {0.05, 1, 4};
 constexpr Row kFloatVertex = {0.25, 0.4, 1.2};
@@ -44,9 +45,9 @@ constexpr Row kFloatVertex = {0.25, 0.4, 1.2};
 // The same of preparing curves.
 constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kPrepareMiss = {1.1, 3, 6};
 constexpr Row kPrepareKept = {8, 8.2, 9}, kPrepareTerm = {1.5, 1.6, 1.8}, kPrepareTermMiss = {1.6, 6.5, 22};
-constexpr double kPrepareScattered = 2.6;
+constexpr double kPrepareScattered = 30;
 // An element that is looked at one by one, and each of its faces.
-constexpr double kExamined = 100, kExaminedFace = 65;
+constexpr double kExamined = 100, kExaminedFace = 52;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
@@ -245,6 +246,7 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
     costs.in_float32 = front_end(kFloatTriangle, kFloatTriangle, kFloatMiss);
   }
   costs.in_float32 += vertices / elements * cost(kFloatVertex, level);
+  costs.recompute += kRecomputeThin * shape.doubtful * terms;
   costs.prepare += shape.doubtful * (kExamined + kExaminedFace * terms);
 
   const double kept = curve_bytes_of_element(shape.degree, tolerance);

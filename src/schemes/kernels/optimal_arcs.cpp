@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
 inline constexpr std::size_t kIntervals = 20;  // as ExactSamples
-inline constexpr double kGain = 2e-3;          // of the mean error, which may be left
+inline constexpr double kGain = 1e-4;          // of the mean error, which may be left
 inline constexpr double kNoError = 1e-10;      // radians, below which nobody looks
 inline constexpr double kLargestG = 0.77;      // an arc of 150 degrees
 

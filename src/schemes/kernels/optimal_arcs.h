@@ -18,7 +18,7 @@
 namespace chronormal::inline internal {
 
 /// Writes phi of eq. 6 for each element, and NaN for those that are left to others. The mean error is that of
-/// ExactSamples (mean_error.h), within 0.2 percent of the least. The same bits on every instruction set.
+/// ExactSamples (mean_error.h), within 0.01 percent of the least. The same bits on every instruction set.
 /// Both must have the same size.
 void find_optimal_arcs(std::span<const ControlNormals> normals, std::span<double> phis) noexcept;
 

@@ -293,18 +293,6 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Appends the places of lanes that are not to be trusted.
-HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std::size_t end, std::size_t count,
-                              std::uint32_t* doubtful) {
-  if (HWY_LIKELY(hn::AllTrue(kFloats, trusted))) return count;
-  alignas(64) float flags[kLanes];
-  hn::Store(hn::IfThenElseZero(trusted, hn::Set(kFloats, 1.0f)), kFloats, flags);
-  for (std::size_t i = 0; i < kLanes && first + i < end; ++i) {
-    if (flags[i] == 0) doubtful[count++] = static_cast<std::uint32_t>(first + i);
-  }
-  return count;
-}
-
 // Whether one of the 48 corners of a block is this vertex.
 HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   const auto wanted = hn::Set(kIndices, vertex);
@@ -345,8 +333,8 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
   }
 }
 
-// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() makes them of exact edges. The next block is loaded before one is worked on, so
-// that the machine does both at once.
+// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() makes them of exact edges. The next
+// block is loaded before one is worked on, so that the machine does both at once.
 template <std::size_t kStride, class Body>
 HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
   EdgeBlock blocks[2];

@@ -1,4 +1,5 @@
-// Writes unit normals from lanes into what a caller gave: packed, past the caches, as planes, or one by one.
+// Writes unit normals from lanes into what a caller gave: packed, past the caches, as planes, or one by one. And lists
+// those that are not to be trusted.
 //
 // Included once for each instruction set, as lanes-inl.h.
 
@@ -21,6 +22,18 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
+
+// Appends the places of lanes that are not to be trusted.
+HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std::size_t end, std::size_t count,
+                              std::uint32_t* doubtful) {
+  if (HWY_LIKELY(hn::AllTrue(kFloats, trusted))) return count;
+  alignas(64) float flags[kLanes];
+  hn::Store(hn::IfThenElseZero(trusted, hn::Set(kFloats, 1.0f)), kFloats, flags);
+  for (std::size_t i = 0; i < kLanes && first + i < end; ++i) {
+    if (flags[i] == 0) doubtful[count++] = static_cast<std::uint32_t>(first + i);
+  }
+  return count;
+}
 
 enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
 
