@@ -182,8 +182,10 @@ Result<std::vector<std::string>> sample_files(const SampleOutput& output, Elemen
     return Error{ErrorCode::kUsage, output.path,
                  "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
   }
-  for (const std::string& name : names) {
-    if (Status status = check_output(name, output.force); !status) return status.error();
+  // Of the files of a shard, those of the others may be there.
+  const IndexRange own = names.size() == count ? output.shard.of(count) : IndexRange{0, names.size()};
+  for (std::size_t i = own.first; i < own.end(); ++i) {
+    if (Status status = check_output(names[i], output.force); !status) return status.error();
   }
   return names;
 }

@@ -1,0 +1,66 @@
+/// How far shown normals are from the right ones, added up over pairs of a vertex and a sample: what an audit counts
+/// (workflow/audit.h says which pairs are judged).
+///
+/// Units      degrees
+/// Threads    values: as any other. Adding the same parts in the same order gives the same bits.
+#ifndef CHRONORMAL_WORKFLOW_MOTION_ERROR_H_
+#define CHRONORMAL_WORKFLOW_MOTION_ERROR_H_
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace chronormal {
+
+/// Bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
+inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
+inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
+
+/// Bins of MotionError::counts: below 2^-10 degrees, and then 128 to each doubling, so that a percentile is known to 0.001
+/// degrees or to 0.8 %.
+inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
+inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // up to 256 degrees
+
+/// A vertex at a moment, as the file counts.
+struct AuditPlace {
+  std::optional<std::size_t> mesh, primitive;  ///< of a glTF file
+  std::size_t vertex = 0;                      ///< of the primitive, or of the motion
+  std::size_t segment = 0;                     ///< of the subject
+  double at = 0;                               ///< weight of the target, or time in seconds
+};
+
+struct MotionError {
+  std::size_t judged = 0;  ///< pairs
+  double sum = 0, sum_of_squares = 0;
+  double worst = 0;
+  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+  std::array<std::size_t, kAuditBins> histogram{};
+  std::array<std::size_t, kAuditFineBins> counts{};  ///< the same, finely
+  std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
+  std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
+  AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
+
+  [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
+  [[nodiscard]] double rms() const noexcept {
+    return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
+  }
+  /// The error, in degrees, that at least this share of the judged pairs does not exceed, as counts know it; 0 where
+  /// nothing is judged. 0 < share <= 1.
+  [[nodiscard]] double percentile(double share) const noexcept;
+  /// Whether every pair can be lit and none is off by more than this.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
+  void add(double degrees, const AuditPlace& place) noexcept;
+  void add_unlit(const AuditPlace& place) noexcept;
+  void add(const MotionError& other) noexcept;
+};
+
+/// What was found in one segment, and at its ends.
+struct SegmentErrors {
+  std::size_t segment = 0;
+  MotionError error, at_keys;
+};
+
+}  // namespace chronormal
+
+#endif  // CHRONORMAL_WORKFLOW_MOTION_ERROR_H_
