@@ -65,7 +65,8 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
   PolygonNormals result;
   result.normals = {n0.without_rounding(), 0.5 * m.without_rounding(), n1.without_rounding()};
   result.errors = {n0.error(), 0.5 * m.error(), n1.error()};
-  result.magnitude = maximum_number(max_abs(n0.magnitude()), maximum_number(max_abs(m.magnitude()), max_abs(n1.magnitude())));
+  result.magnitude =
+      maximum_number(max_abs(n0.magnitude()), maximum_number(max_abs(m.magnitude()), max_abs(n1.magnitude())));
   if (!(result.largest_share() <= kLargestRounding)) settle_rounding(segment, face, result);
   return result;
 }

@@ -28,7 +28,7 @@ struct BoundedNormals {
   [[nodiscard]] double largest_share() const noexcept {
     const auto share = [](double error, const Vec3d& v) { return error == 0 ? 0 : error / max_abs(v); };
     return maximum_number(share(errors[0], normals.n0),
-                     maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
+                          maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
 };
 
