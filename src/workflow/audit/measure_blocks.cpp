@@ -57,21 +57,21 @@ std::vector<Block> make_blocks(const JudgedPart& part) {
 
 // The memory that it takes to measure a block.
 struct Scratch {
-  MovingTriangles triangles;
-  std::vector<MovingTriangles::Normal> faces;
+  TrianglesInMotion triangles;
+  std::vector<TrianglesInMotion::Normal> faces;
   PlanesOf4 start, end, between;  // right normals, at the ends of a segment and inside
   PlanesOf4 from, to;             // what a host keeps of those at the ends
   std::vector<double> degrees;
 };
 
 // The sums of the normals of faces, and of their sizes.
-void add_up(const Block& block, const std::vector<MovingTriangles::Normal>& faces, PlanesOf4& result) {
+void add_up(const Block& block, const std::vector<TrianglesInMotion::Normal>& faces, PlanesOf4& result) {
   result.resize(block.elements.count);
   std::uint32_t i = 0;
   for (std::size_t e = 0; e < block.elements.count; ++e) {
-    MovingTriangles::Normal sum{};
+    TrianglesInMotion::Normal sum{};
     for (; i < block.face_ends[e]; ++i) {
-      const MovingTriangles::Normal& n = faces[block.faces[i]];
+      const TrianglesInMotion::Normal& n = faces[block.faces[i]];
       sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z, sum.size + n.size};
     }
     result.x[e] = sum.x;

@@ -38,12 +38,12 @@ HWY_INLINE Real RoundedToFloat(Real a) {
 #endif
 }
 
-void TriangleNormals(const float* groups, std::size_t count, double t, MovingTriangles::Normal* result) {
+void TriangleNormals(const float* groups, std::size_t count, double t, TrianglesInMotion::Normal* result) {
   const Real of_t(t), s = Real(1.0) - of_t;
   for (std::size_t first = 0; first < count; first += kTriangles, groups += kTriangles * kPositionValues) {
-    MovingTriangles::Normal normals[kTriangles];
+    TrianglesInMotion::Normal normals[kTriangles];
     const std::size_t last = std::min(kTriangles, count - first);
-    MovingTriangles::Normal* const to = last == kTriangles ? result + first : normals;
+    TrianglesInMotion::Normal* const to = last == kTriangles ? result + first : normals;
     for (std::size_t lane = 0; lane < kTriangles; lane += kDoubleLanes) {
       const auto coordinate = [&](std::size_t k) HWY_ATTR {
         const float* const from = groups + k * kTriangles + lane;
@@ -126,8 +126,8 @@ namespace chronormal::inline internal {
 HWY_EXPORT(TriangleNormals);
 HWY_EXPORT(ShownAngles);
 
-void MovingTriangles::gather(VectorView<const float> from, VectorView<const float> to,
-                             std::span<const std::uint32_t> corners) {
+void TrianglesInMotion::gather(VectorView<const float> from, VectorView<const float> to,
+                               std::span<const std::uint32_t> corners) {
   assert(corners.size() % 3 == 0);
   count_ = corners.size() / 3;
   positions_.resize((count_ + kTriangles - 1) / kTriangles * kTriangles * kPositionValues);
@@ -143,7 +143,7 @@ void MovingTriangles::gather(VectorView<const float> from, VectorView<const floa
   }
 }
 
-void MovingTriangles::normals(double t, std::vector<Normal>& result) const {
+void TrianglesInMotion::normals(double t, std::vector<Normal>& result) const {
   result.resize(count_);
   HWY_DYNAMIC_DISPATCH(TriangleNormals)(positions_.data(), count_, t, result.data());
 }

@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 
 /// Some triangles between two keyframes. Positions are gathered once, so that each t costs a pass over memory that lies
 /// side by side. Can be used again and again; its memory stays.
-class MovingTriangles {
+class TrianglesInMotion {
  public:
   /// corners: three vertices for each triangle
   void gather(VectorView<const float> from, VectorView<const float> to, std::span<const std::uint32_t> corners);

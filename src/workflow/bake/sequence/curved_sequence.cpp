@@ -185,10 +185,10 @@ CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, P
   return result;
 }
 
-WeightTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
-                         std::span<const CurveBend> bends) {
+SequenceTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
+                           std::span<const CurveBend> bends) {
   const std::size_t keys = times.size(), of_keys = keys - 1, n = of_keys + with_velocities.size() + bends.size();
-  WeightTrack track{{times.begin(), times.end()}, std::vector<float>(keys * 3 * n, 0.0F)};
+  SequenceTrack track{{times.begin(), times.end()}, std::vector<float>(keys * 3 * n, 0.0F)};
   enum Row : std::size_t { kIn, kValue, kOut };
   const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
     return track.values[(key * 3 + row) * n + target];

@@ -53,8 +53,8 @@ struct CurvedNormals {
 [[nodiscard]] std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path);
 
 /// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file.
-[[nodiscard]] WeightTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
-                                       std::span<const CurveBend> bends);
+[[nodiscard]] SequenceTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
+                                         std::span<const CurveBend> bends);
 
 }  // namespace chronormal::inline internal
 

@@ -248,7 +248,7 @@ Result<std::string> write_curved(const Motion& motion, const SequenceNormals& no
     file.add_bend(bend.segment, bend.deltas);
     if (Status status = file.check_size(); !status) return status.error();
   }
-  const WeightTrack track = curved_track(times, with_velocities, curved.bends);
+  const SequenceTrack track = curved_track(times, with_velocities, curved.bends);
   if (Status status = file.check_size(sizeof(float) * (track.times.size() + track.values.size())); !status)
     return status.error();
   report.largest_error = kDegreesPerRadian * curved.largest_error;

@@ -50,9 +50,9 @@ std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
 }
 
 // Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
-WeightTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
+SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
   const std::size_t keys = targets.keys, n = targets.count();
-  WeightTrack track{times, std::vector<float>(keys * 3 * n, 0.0F)};
+  SequenceTrack track{times, std::vector<float>(keys * 3 * n, 0.0F)};
   enum Row : std::size_t { kIn, kValue, kOut };
   const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
     return track.values[(key * 3 + row) * n + target];
@@ -76,9 +76,9 @@ WeightTrack spline_track(const SequenceTargets& targets, const std::vector<float
 }
 
 // Of the others: the hats, and in bent segments 4 t (1 - t) at keys between.
-WeightTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
+SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
   const std::size_t n = targets.count();
-  WeightTrack track;
+  SequenceTrack track;
   const auto add_key = [&](float time) {
     track.times.push_back(time);
     track.values.resize(track.values.size() + n);
@@ -207,7 +207,7 @@ Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const s
                : finish(linear_track(targets, times), "LINEAR", mark_of(targets), rest);
 }
 
-Result<std::string> SequenceFile::finish(const WeightTrack& track, std::string_view interpolation,
+Result<std::string> SequenceFile::finish(const SequenceTrack& track, std::string_view interpolation,
                                          const GltfBakeMark& bake_mark, const std::vector<int>& rest) {
   const std::size_t input = builder_.add_scalars(track.times, {true, true}),
                     output = builder_.add_scalars(track.values, {false, true});

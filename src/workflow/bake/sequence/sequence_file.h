@@ -51,7 +51,7 @@ struct SequenceVertices {
 
 /// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
 /// out-tangents.
-struct WeightTrack {
+struct SequenceTrack {
   std::vector<float> times, values;
 };
 
@@ -79,7 +79,7 @@ class SequenceFile {
   /// would be too large.
   [[nodiscard]] Result<std::string> finish(const SequenceTargets& targets, const std::vector<float>& times);
   /// The same with a track and a mark of the caller's; rest are the weights of the mesh that no animation plays.
-  [[nodiscard]] Result<std::string> finish(const WeightTrack& track, std::string_view interpolation,
+  [[nodiscard]] Result<std::string> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest);
 
  private:

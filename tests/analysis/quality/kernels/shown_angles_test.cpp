@@ -14,7 +14,7 @@
 namespace chronormal::shown_angles_test {
 namespace {
 
-TEST(MovingTriangles, have_the_bits_of_vector_areas_of_interpolated_positions_on_every_instruction_set) {
+TEST(TrianglesInMotion, have_the_bits_of_vector_areas_of_interpolated_positions_on_every_instruction_set) {
   fixtures::Random random(6);
   std::size_t judged = 0;
   for (const test::HardMotions& hard : test::hard_motions()) {
@@ -22,10 +22,10 @@ TEST(MovingTriangles, have_the_bits_of_vector_areas_of_interpolated_positions_on
     if (!motion.topology.all_triangles()) continue;
     const Segment segment = motion.segment(0);
     const auto corners = motion.topology.corners();
-    MovingTriangles triangles;
+    TrianglesInMotion triangles;
     triangles.gather(segment.to, segment.from, corners.first(3));  // leaves something behind
     triangles.gather(segment.from, segment.to, corners);
-    std::vector<MovingTriangles::Normal> normals;
+    std::vector<TrianglesInMotion::Normal> normals;
     for (const double t : {0.0, 0.35, 1.0}) {
       for (const std::int64_t target : supported_targets()) {
         const ScopedTarget scoped(target);
