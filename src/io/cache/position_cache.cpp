@@ -42,8 +42,12 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
   for (PositionCache::Sample& sample : cache.samples)
     motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
   motion.connect(kind);
-  if (Status status = validate_outline(motion); !status)  // readers have looked at positions
-    return invalid_input(cache_name + ", " + status.error().place, status.error().message);
+  Status status = validate_outline(motion);
+  for (std::size_t k = 0; status && k < motion.keyframes.size(); ++k) {
+    const std::vector<float>& positions = motion.keyframes[k].positions;
+    if (!positions.empty()) status = validate_positions(motion, k, positions);
+  }
+  if (!status) return invalid_input(cache_name + ", " + status.error().place, status.error().message);
   return motion;
 }
 

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "tests/support/cache_bytes.h"
 
 namespace chronormal::position_cache_test {
@@ -51,11 +53,27 @@ TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {
             "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is not a finite number");
 }
 
-TEST(CheckKeyframes, refuses_a_keyframe_of_another_number_of_vertices) {
+TEST(MotionFromCache, looks_at_positions_only_where_there_are_some) {
+  PositionCache cache = cache_at({0, 1});
+  cache.samples[1].positions.clear();
+  EXPECT_TRUE(
+      motion_from_cache(Topology::triangles(3, {0, 1, 2}).value(), std::move(cache), "body.obj", "walk.pc2").ok());
+}
+
+TEST(EachKeyframe, refuses_a_keyframe_of_another_number_of_vertices) {
   Motion motion = test::turning_motion(0, 1);
-  EXPECT_TRUE(check_keyframes(motion).ok());
+  std::size_t count = 0;
+  const auto count_one = [&count](std::string_view bytes) -> Status {
+    EXPECT_EQ(bytes.size(), 3 * 3 * sizeof(float));
+    ++count;
+    return Success{};
+  };
+  MotionStream whole(motion);
+  EXPECT_TRUE(each_keyframe(whole, std::endian::little, count_one).ok());
+  EXPECT_EQ(count, 2U);
   motion.keyframes[1].positions.resize(6);
-  const Status status = check_keyframes(motion);
+  MotionStream broken(motion);
+  const Status status = each_keyframe(broken, std::endian::little, count_one);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kUsage);
   EXPECT_EQ(status.error().text(), "a keyframe has another number of coordinates than the vertices need");
