@@ -1,3 +1,4 @@
+// Makes the cases of our own functions: what is called, and how its result is verified before it is timed.
 #include "paths/ours.h"
 
 #include <memory>

@@ -1,3 +1,4 @@
+// Makes the cases of the plain loops and of the libraries that we are compared with.
 #include "paths/rivals.h"
 
 #include <cmath>

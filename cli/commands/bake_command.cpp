@@ -1,3 +1,4 @@
+// The command `bake`: its options, the file that it writes, and its report.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

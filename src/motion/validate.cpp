@@ -1,3 +1,4 @@
+// Checks a motion: its outline, and the positions of each keyframe.
 #include "chronormal/motion/motion.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Reads parts of a regular file by its descriptor.
 #include "io/bytes/positioned_file.h"
 
 #include <fcntl.h>

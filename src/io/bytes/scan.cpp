@@ -1,3 +1,4 @@
+// Parses numbers: a fast path for plain digits, and the strict functions for all others.
 #include "io/bytes/scan.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Reads samples from where a layout says that they lie, and checks their coordinates.
 #include "io/cache/cache_layout.h"
 
 #include <algorithm>

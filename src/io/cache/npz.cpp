@@ -1,3 +1,4 @@
+// Reads the arrays of NumPy files as a motion, all at once or as a layout, and writes motions as arrays.
 #include "io/cache/npz.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads OBJ files statement by statement, with fast paths for plain numbers and corners.
 #include "io/mesh/obj.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Compares the text of faces, and reads only the positions before it.
 #include "io/mesh/obj_faces.h"
 
 #include <algorithm>

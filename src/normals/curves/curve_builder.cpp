@@ -1,3 +1,4 @@
+// Makes curves in parts, in one go on all threads or in slices on one, and puts the parts one after the other.
 #include "normals/curves/curve_builder.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Computes velocities at keyframes, cubics through them, and the control normals of faces on them.
 #include "chronormal/normals/paths.h"
 
 #include <algorithm>

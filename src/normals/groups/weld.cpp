@@ -1,3 +1,4 @@
+// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other.
 #include "chronormal/normals/normal_groups.h"
 
 #include <algorithm>

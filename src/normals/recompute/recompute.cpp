@@ -1,3 +1,4 @@
+// Recomputes normals tile by tile, and looks at doubtful elements one by one.
 #include "chronormal/normals/recompute.h"
 
 #include <hwy/cache_control.h>

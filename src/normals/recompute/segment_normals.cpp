@@ -1,3 +1,4 @@
+// Measures the shape of a segment, models the costs of both ways, and takes the cheaper one.
 #include "chronormal/normals/segment_normals.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Measures blocks of outputs on all threads, and adds up their errors in the order of the outputs.
 #include "workflow/audit/measure_blocks.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Compares schemes block by block and in waves of blocks, and adds up their results in order.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>

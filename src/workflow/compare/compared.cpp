@@ -1,3 +1,4 @@
+// Adds up the results of blocks and segments, joins shards, and chooses the cheapest scheme within a tolerance.
 #include "workflow/compare/compared.h"
 
 #include <algorithm>

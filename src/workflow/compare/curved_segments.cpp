@@ -1,3 +1,4 @@
+// Holds the cubics of some segments, and makes a scheme of PathCurves.
 #include "workflow/compare/curved_segments.h"
 
 #include <chrono>

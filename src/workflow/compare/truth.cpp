@@ -1,3 +1,4 @@
+// Compares interpolated normals with those of keyframes that were left out.
 #include "chronormal/workflow/truth.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Looks at every segment of a motion for whatever may cause wrong normals.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Computes the normals of a motion at one moment after the other.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>

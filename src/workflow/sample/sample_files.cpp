@@ -1,3 +1,4 @@
+// Names the files of samples, and writes poses into them as they are computed.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>

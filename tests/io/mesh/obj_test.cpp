@@ -1,3 +1,4 @@
+// OBJ files: what is read, which numbers come of which text, and what is refused.
 #include "io/mesh/obj.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Parts of comparisons and audits: merged, they are the text of one run, and parts that do not fit are refused.
 #include "chronormal/workflow/parts.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Unpacks blocks of curves, evaluates them in lanes, and writes unit normals in the layout that the caller wants.
 #include "normals/curves/kernels/evaluate.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Evaluates triangles in lanes of float32, thin ones in lanes of double, and marks the doubtful ones.
 #include "normals/recompute/kernels/recompute_tiles.h"
 
 #include <hwy/cache_control.h>

@@ -1,3 +1,4 @@
+// Adds up cross products along paths in lanes of float32.
 #include "normals/recompute/kernels/rings.h"
 
 #include <hwy/cache_control.h>

@@ -1,3 +1,4 @@
+// Computes the unit normals of keys on curves, and fits the bends of segments to what their cubics lack.
 #include "workflow/bake/sequence/curved_sequence.h"
 
 #include <algorithm>
