@@ -43,7 +43,7 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
   for (PositionCache::Sample& sample : cache.samples)
     motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
   motion.connect(kind);
-  if (Status status = validate_outline(motion); !status)  // readers have looked at positions
+  if (Status status = validate_outline(motion); !status)  // the readers have checked positions
     return invalid_input(cache_name + ", " + status.error().place, status.error().message);
   return motion;
 }
