@@ -111,7 +111,7 @@ struct internal::OutputFile::State {
   std::optional<int> stream = {};
   Descriptor device{-1};
   std::string target = {};  // the file behind the symbolic links of path
-  bool replaces = false;    // whether target exists already; then:
+  bool replaces = false;    // whether target exists already, as:
   struct stat old {};
   std::unique_ptr<TemporaryFile> file = {};
   std::string gathered = {};  // what a stream or a device gets when it is finished

@@ -1,4 +1,4 @@
-// Comparisons of the deltas of blend shapes, against normals that are computed here.
+// Comparisons of the deltas of blend shapes have the errors that are computed here.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
