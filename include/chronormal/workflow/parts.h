@@ -5,8 +5,8 @@
 ///     chronormal merge part_*.json -o all.json                   as compare ... --json --no-times -o all.json
 ///
 /// A part of a comparison or an audit is a JSON object. It describes the whole task, and has the sums of each segment
-/// of the share with all of their bits. Only merge reads it, and only merge of the same version. A part of samples is a
-/// .npy array.
+/// of the share with all of their bits. Only merge reads it, and only where both have the same version of this format.
+/// A part of samples is a .npy array.
 ///
 /// Threads    everything here is pure, apart from reading and writing files.
 #ifndef CHRONORMAL_WORKFLOW_PARTS_H_
