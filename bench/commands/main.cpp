@@ -1,7 +1,8 @@
-// chronormal_bench_commands (./run bench --commands): what each command of the program takes on one large sequence,
-// beside the floor: looking at the bytes of its files (cat), moving them in memory (memcpy), and reading them as a motion.
-// And what it takes to read one frame of OBJ, beside a loop that finds its numbers with std::from_chars, and beside other
-// libraries where they are installed; all of them must find the same positions before they are timed.
+// chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
+// sequence, beside the least that is possible: looking at the bytes of its files (cat), moving them in memory (memcpy),
+// and reading them as a motion. It also measures the reading of one frame of OBJ, beside a loop that finds its numbers
+// with std::from_chars, and beside other libraries where they are installed; all of them must find the same positions
+// before they are timed.
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -85,7 +86,7 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// Of a child process that runs body and ends with what it returns.
+// Measures a child process that runs body and exits with its result.
 Times time_child(const std::string& name, const std::function<int()>& body) {
   const auto start = std::chrono::steady_clock::now();
   const pid_t child = ::fork();
@@ -99,7 +100,7 @@ Times time_child(const std::string& name, const std::function<int()>& body) {
   int status = 0;
   rusage usage{};
   ::wait4(child, &status, 0, &usage);
-  // An audit that finds faults ends with 4, and that is a result.
+  // An audit that finds faults exits with 4, which is no failure.
   if (!WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 4))
     throw std::runtime_error(fmt::format("{} failed", name));
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
@@ -160,7 +161,7 @@ void measure_input(const std::string& program, const std::string& title, const s
   }
 }
 
-// The vertices and corners of an OBJ file with triangles of plain indices, with no more care than that.
+// Reads the vertices and corners of an OBJ file that has triangles of plain indices only, without any check.
 std::vector<float> loop_over_numbers(std::string_view text) {
   std::vector<float> positions;
   std::vector<std::uint32_t> corners;
@@ -209,7 +210,7 @@ void measure_obj(const std::string& file) {
                        Assimp::Importer importer;
                        const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "obj");
                        if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-                       std::vector<float> positions;  // of corners: it has no others
+                       std::vector<float> positions;  // of corners, since the library has no others
                        for (unsigned m = 0; m < scene->mNumMeshes; ++m)
                          positions.resize(positions.size() + 3 * std::size_t{scene->mMeshes[m]->mNumVertices});
                        return positions;
@@ -223,7 +224,7 @@ void measure_obj(const std::string& file) {
   for (const Reader& reader : readers) {
     double best = 1e300;
     for (int i = 0; i < 5; ++i) {
-      const std::clock_t start = std::clock();  // of the processor: others may be at work beside us
+      const std::clock_t start = std::clock();  // processor time, since other programs may run beside this one
       const std::vector<float> positions = reader.read();
       best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
       if (reader.name != "assimp" && positions != expected)

@@ -59,7 +59,7 @@ BlendSet make_sparse(const Mesh& mesh) {
   return set;
 }
 
-// Each moves every vertex by a wave of its own.
+// Makes targets that each move every vertex by a wave of its own.
 BlendSet make_dense(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();

@@ -12,7 +12,7 @@ namespace chronormal::bench {
 
 void run_faces(Suite& suite, const Size& size);
 void run_vertices(Suite& suite, const Size& size);
-/// Meshes that are no torus: thin triangles, varied valence, a sphere that collapses, and those of other people that
+/// Meshes other than the torus: thin triangles, varied valence, a sphere that collapses, and those of other people that
 /// CHRONORMAL_DATA has (a dance, a face).
 void run_meshes(Suite& suite);
 /// Every scheme, at random access and played.

@@ -1,5 +1,5 @@
-// Unit normals on meshes that are no torus, ours and in plain loops: thin triangles, varied valence, a collapse, and
-// real ones.
+// Times unit normals on meshes other than the torus, ours and those of plain loops: thin triangles, varied valence, a
+// collapse, and real meshes.
 
 #include <fmt/core.h>
 
@@ -22,10 +22,10 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// Needles and vertices whose faces nearly cancel: for gross mistakes only.
+// The limit for needles and for vertices whose faces nearly cancel, which reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
-// The torus, drawn out along one axis so that half of its triangles have an aspect of 10 and more.
+// The torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
 Mesh thin() {
   const Mesh torus(Elements::kFaces, kFaces, false);
   std::vector<float> from(torus.from().begin(), torus.from().end()), to(torus.to().begin(), torus.to().end());
@@ -33,7 +33,7 @@ Mesh thin() {
   return {torus.topology(), from, to};
 }
 
-// The torus with every third edge of a quad turned, so that vertices have from 4 to 8 faces and more.
+// The torus with the diagonal of every third quad turned, so that vertices have from 4 to 8 faces and more.
 Mesh varied() {
   const Mesh torus(Elements::kFaces, kFaces, false);
   std::vector<std::uint32_t> corners(torus.topology().corners().begin(), torus.topology().corners().end());

@@ -1,3 +1,4 @@
+// Describes the machine on which a run is measured, and restarts the program with huge pages.
 #include "measure/machine.h"
 
 #include <fmt/core.h>

@@ -11,7 +11,7 @@ namespace chronormal::bench {
 /// Names and values, in the order in which they are shown: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// How far ahead evaluations ask for curves (PrefetchRule), as this run has found out.
+/// The distance at which evaluations prefetch curves (PrefetchRule), as found out in this run.
 [[nodiscard]] std::string chosen_prefetch();
 
 /// Makes every large allocation of this process come in huge pages, also those of libraries, by starting the program

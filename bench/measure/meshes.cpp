@@ -1,3 +1,4 @@
+// Makes the meshes that are measured, in grid order and shuffled.
 #include "measure/meshes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Makes the cases of our own functions: what is called, and how its result is verified before it is timed.
 #include "paths/ours.h"
 
 #include <memory>
@@ -71,8 +72,8 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
   return one;
 }
 
-// Bits of positions are lost against the size of the mesh, and edges get shorter the more of them there are; and what
-// has no normal in float32 at all is said by (0, 0, 0), which the oracle does not ask about.
+// Positions lose bits against the size of the mesh, and edges get shorter the more of them there are. An element
+// without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)

@@ -1,3 +1,4 @@
+// Makes the cases of the plain loops and of the libraries that we are compared with.
 #include "paths/rivals.h"
 
 #include <cmath>
@@ -79,7 +80,8 @@ std::vector<peers::Library> libraries() {
 
 }  // namespace
 
-// Float32 positions are rounded against the size of the whole mesh, edges get shorter the more of them there are.
+// Positions in float32 are rounded against the size of the whole mesh, and edges get shorter the more of them there
+// are.
 double float_limit(std::size_t elements) { return 2e-6 * std::sqrt(static_cast<double>(elements)) + 1e-5; }
 
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit) {

@@ -1,3 +1,4 @@
+// The command `audit`: its options, and how its result is printed or becomes a part of a shard.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// The command `bake`: its options, the file that it writes, and its report.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -37,7 +38,7 @@ struct Options {
   bool animations_only = false, plan = false;
   std::optional<std::string> drivers;  // where to write them beside the result
   PathArgument path;
-  std::optional<std::string> poses;  // a file of what rigs are made for
+  std::optional<std::string> poses;  // the file of the poses that a rig is made for
   bool json = false, no_audit = false;
 };
 

@@ -1,3 +1,4 @@
+// The command `compare`: its options, and how its result is printed or becomes a part of a shard.
 #include <cmath>
 #include <memory>
 #include <optional>

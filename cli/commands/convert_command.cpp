@@ -1,3 +1,4 @@
+// The command `convert`: it writes a motion in another format.
 #include <memory>
 #include <utility>
 

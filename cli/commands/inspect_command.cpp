@@ -1,3 +1,4 @@
+// The command `inspect`: its options, and how it lists what a file contains.
 #include <memory>
 #include <utility>
 

@@ -1,3 +1,4 @@
+// The command `merge`: it joins the parts that shards wrote.
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -113,7 +113,7 @@ std::string footer(const std::vector<Question>& questions) {
 
 Command query_command() {
   auto options = std::make_shared<Options>();
-  // A question has an interval of time, in place of one of keyframes.
+  // A question takes an interval of time here, and not a range of keyframes.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
   input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});
   for (const Question& question : options->questions)

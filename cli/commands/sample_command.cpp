@@ -1,3 +1,4 @@
+// The command `sample`: its options, and the files of normals that it writes.
 #include <memory>
 #include <utility>
 

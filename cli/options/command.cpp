@@ -1,3 +1,4 @@
+// Parses the options that commands share, and opens inputs for them.
 #include "cli/options/command.h"
 
 #include <string_view>

@@ -69,9 +69,9 @@ struct JudgeArguments {
 struct ShardArgument {
   std::optional<std::string> text;
 
-  /// of_what is what is divided, and what OUT is then, for the help.
+  /// of_what ends the line of help: it says what is divided, and what OUT is then.
   [[nodiscard]] Option option(const std::string& of_what);
-  /// Errors: kUsage where it is no such share.
+  /// Errors: kUsage where the text is no share I/N.
   [[nodiscard]] Result<std::optional<Shard>> read() const;
 };
 
@@ -79,14 +79,14 @@ struct ShardArgument {
 struct PathArgument {
   std::string name = "linear";
 
-  /// `what` is the end of the help.
+  /// `what` ends the text of help.
   [[nodiscard]] std::vector<Option> table(const std::string& what);
   /// Errors: kUsage for a path that does not exist.
   [[nodiscard]] Result<PathKind> read() const;
 };
-/// Errors: kUsage where an input has no such paths (normals/paths.h), or cannot be read.
+/// Checks that an input has such paths (normals/paths.h). Errors: kUsage where it does not; those of reading it.
 [[nodiscard]] Status check_path(Input& input, PathKind path);
-/// Warns where keyframes are too far apart for curves through them.
+/// Warns where the keyframes are too far apart for curves through them.
 void warn_if_sparse(const std::string& command, PathKind path, double bend);
 
 /// Errors: kUsage where hosts are named and the input is no glTF file.

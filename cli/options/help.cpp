@@ -270,7 +270,7 @@ std::string help_of_command(const Command& command, std::size_t columns) {
   for (auto table = command.tables.begin() + 1; table != command.tables.end(); ++table)
     std::for_each(table->begin(), table->end(), add_row);
   text += row("-h, --help", "print this", columns);
-  std::string heading = "\nOptions for what is read:\n";  // where there are any
+  std::string heading = "\nOptions for what is read:\n";  // printed only where there are such options
   for (const Option& option : command.tables.front()) {
     if (names_of(option).empty()) continue;
     text += std::exchange(heading, "");

@@ -1,3 +1,4 @@
+// Reads the values of --times and --weights.
 #include "cli/options/moments.h"
 
 #include <algorithm>

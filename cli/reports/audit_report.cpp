@@ -1,3 +1,4 @@
+// Prints the result of `audit` as tables and lists.
 #include "cli/reports/audit_report.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Prints the result of `bake` as tables and lists.
 #include "cli/reports/bake_report.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Prints the result of `compare` as a table and as CSV.
 #include "cli/reports/compare_report.h"
 
 #include <cmath>

@@ -16,7 +16,7 @@ class SmallSet {
  public:
   SmallSet() { slots_.fill(kEmpty); }
 
-  /// Whether the number was not in the set. There must be room: up to kMost numbers.
+  /// Adds a number. Returns whether it was not in the set before. There must be room: a set holds up to kMost numbers.
   bool add(std::uint32_t number) {
     for (std::size_t slot = number * 2654435761U >> 22;; slot = (slot + 1) % slots_.size()) {
       if (slots_[slot] == number) return false;

@@ -1,5 +1,5 @@
-// Holds a window of keyframes. Those that leave it give their memory to those that come, so that a pass over a motion
-// takes memory once: for the window, and for the keyframe that is read ahead.
+// Holds a window of keyframes. Keyframes that leave the window give their memory to those that enter it, so that a pass
+// over a motion allocates memory once, for the window and for the keyframe that is read ahead.
 #include "chronormal/motion/motion_stream.h"
 
 #include <algorithm>
@@ -37,12 +37,12 @@ class ReadAhead {
                          [&read, &motion, keyframe, this] { return read(motion, keyframe, positions_); });
       keyframe_ = keyframe;
     } catch (const std::system_error&) {
-      keyframe_.reset();  // no thread: it is read when its time comes
+      keyframe_.reset();  // without a thread, it is read when it is asked for
     }
 #endif
   }
 
-  // Waits for the end of reading, and gives the memory back.
+  // Waits until the keyframe is read, and returns its memory.
   Status finish(std::vector<float>& positions) {
     Status status = Success{};
 #ifdef CHRONORMAL_HAVE_TBB
@@ -64,7 +64,7 @@ class ReadAhead {
 }  // namespace
 
 struct MotionStream::State {
-  const Motion* whole = nullptr;  // or else:
+  const Motion* whole = nullptr;  // otherwise nullptr, and the rest counts:
   Motion outline = {};
   Reader read = {};
   bool keeps_all = false;

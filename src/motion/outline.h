@@ -1,4 +1,5 @@
-/// The two halves of validate(): a motion but for its positions, and those of one keyframe. Private.
+/// The two halves of validate(): one checks a motion without its positions, the other the positions of one keyframe.
+/// Private.
 #ifndef CHRONORMAL_MOTION_OUTLINE_H_
 #define CHRONORMAL_MOTION_OUTLINE_H_
 
@@ -10,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Checks what validate() checks, but for positions.
+/// Checks everything that validate() checks, except positions.
 [[nodiscard]] Status validate_outline(const Motion& motion);
 
 /// Checks the positions that keyframe k is to have.

@@ -1,3 +1,4 @@
+// Checks a motion: its outline, and the positions of each keyframe.
 #include "chronormal/motion/motion.h"
 
 #include <cmath>
@@ -37,7 +38,7 @@ Status check_mesh(const Motion& motion) {
   return Success{};
 }
 
-// What a keyframe has beside its positions.
+// Checks everything in a keyframe except its positions.
 Status check_rest(const Motion& motion, std::size_t k) {
   const Motion::Keyframe& keyframe = motion.keyframes[k];
   if (!keyframe.velocities.empty() && keyframe.velocities.size() != 3 * motion.topology.vertex_count())

@@ -65,7 +65,7 @@ struct OptimalQuaternion : UniformArc {
   }
 
   std::size_t first_ = 0;
-  std::vector<double> phis_;  // of the elements of a block; NaN where it takes a search
+  std::vector<double> phis_;  // of the elements of a block; NaN where the slower search is needed
 };
 
 }  // namespace

@@ -1,8 +1,8 @@
-// The angle of a vector in lanes of double, bit for bit that of portable::atan2() for y >= 0, and a scalar to write
-// formulas in.
+// The angle of a vector in lanes of double, bit for bit that of portable::atan2() for y >= 0, and the type Real, in
+// which formulas are written as for one number.
 //
-// Included once for each instruction set, as lanes-inl.h. The polynomial is Highway's for the arc tangent on [0, 1], in
-// the same order but never fused, as the single lane of core/portable_math has it.
+// This file is included once for each instruction set, as lanes-inl.h is. The polynomial is that of Highway for the arc
+// tangent on [0, 1], in the same order but never fused, as core/portable_math has it for one number.
 
 #include <hwy/highway.h>
 
@@ -37,7 +37,7 @@ struct Real {
   friend HWY_INLINE Real operator/(Real a, Real b) { return hn::Div(a.v, b.v); }
 };
 
-// Which of the elements a condition holds for.
+// The elements for which a condition holds.
 struct RealMask {
   hn::Mask<DoubleTag> m;
 
@@ -54,7 +54,7 @@ HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(ma
 HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
 HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
 HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
-// b where one of them is NaN.
+// The result is b where one of them is NaN.
 HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
 HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
 // Whether the sign bit is set, that of -0 too.
@@ -83,7 +83,7 @@ HWY_INLINE Real max_abs(const Real3& a) {
   return select(largest == largest, largest, select(of_two == of_two, of_two, z));
 }
 
-// Of q in [0, 1].
+// The arc tangent of q in [0, 1].
 HWY_INLINE Real arc_tangent(Real q) {
   const Real x = q * q, x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
   const auto pair = [x](double c0, double c1) HWY_ATTR { return Real(c1) * x + Real(c0); };

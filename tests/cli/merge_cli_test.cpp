@@ -1,4 +1,5 @@
-// `--shard` and `merge`: what many machines write is what one would have written. And keyframes that are chosen.
+// `--shard` and `merge`: many machines together write what one would have written. The choice of keyframes is tested
+// here, too.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// MotionStream: what is held, what is read and how often, and what becomes of errors of the reader.
 #include "chronormal/motion/motion_stream.h"
 
 #include <gtest/gtest.h>

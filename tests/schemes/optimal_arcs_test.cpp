@@ -1,5 +1,5 @@
-// The fast search of quaternion:optimal, on every instruction set, and where it leaves an element to the slow one. How
-// good its arcs are, oracle_test.cpp measures by a dense search.
+// The fast search of quaternion:optimal on every instruction set, and the elements that it leaves to the slow one.
+// oracle_test.cpp measures by a dense search how good its arcs are.
 #include "schemes/kernels/optimal_arcs.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Vec3d vector(fixtures::Random& random) {
   return {p[0], p[1], p[2]};
 }
 
-// Elements that turn by about so much, on a path that is bent by about this share of it.
+// Makes elements that turn by about so much, on a path that is bent by about this share of the turn.
 std::vector<ControlNormals> turning(fixtures::Random& random, double turn, double bend, std::size_t count) {
   std::vector<ControlNormals> normals;
   for (std::size_t i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ TEST(OptimalArcs, are_within_a_few_ten_thousandths_of_the_best_of_many) {
       const ExactSamples exact(normals[i]);
       const double error = exact.mean_error(circles.arc(phis[i]));
       double best = error;
-      // Dense where arcs are long, too: by the tangent of phi as well as by phi.
+      // One set of samples covers the whole family, and the other is dense around the arc that was found.
       for (int k = -200; k <= 200; ++k) {
         best = std::min(best, exact.mean_error(circles.arc(k * kPi / 400)));
         best = std::min(best, exact.mean_error(circles.arc(phis[i] + 1e-4 * k)));

@@ -1,5 +1,5 @@
-/// A sequence of keyframes whose vertices turn, swell and wander, and where they are on curves through these keyframes, by the
-/// formulas of textbooks. It shares no code with the product.
+/// A sequence of keyframes whose vertices turn, swell and wander, and the positions of these vertices on curves through
+/// the keyframes, by the formulas of textbooks. It shares no code with the product.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 #define CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 
@@ -48,9 +48,9 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Where all vertices are on the cubic from keyframe s to s + 1 at local t: (V, 3). Velocities are those of the keyframes
-/// where `given`, and else of the parabola through a keyframe and its neighbours, or at both ends of the cubic through
-/// the nearest four (fewer where there are fewer keyframes).
+/// The positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. Velocities are those of the
+/// keyframes where `given`, otherwise those of the parabola through a keyframe and its neighbours, and at both ends
+/// those of the cubic through the nearest four keyframes (or fewer where there are fewer).
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;
@@ -86,7 +86,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Normals of all faces, or of all vertices, of these positions, by areas: (elements, 3).
+/// The normals (elements, 3) of all faces, or of all vertices with area weights, at these positions.
 [[nodiscard]] inline std::vector<std::array<long double, 3>> normals_of(const Motion& motion,
                                                                         const std::vector<long double>& positions,
                                                                         bool of_vertices) {

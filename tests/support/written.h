@@ -1,4 +1,4 @@
-/// What a motion becomes as a file, through the door that everybody uses.
+/// The bytes of a motion as a file, by the function that programs use, write_motion().
 #ifndef CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 #define CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 

@@ -1,4 +1,5 @@
-// What unit normals cost on meshes that are no torus, and what a frame costs by how many there are in a segment.
+// Writes what unit normals cost on meshes other than the torus, and what a frame costs, by the number of frames in a
+// segment.
 
 #include <fmt/core.h>
 
@@ -22,7 +23,7 @@ constexpr std::array<Way, 4> kWays = {
     Way{"exact", "prepare exact", "exact to float3", Colour::kBlue, Mark::kDisc},
     Way{"compact", "prepare compact", "compact to float3", Colour::kGreen, Mark::kDiamond}};
 
-// Nanoseconds of a frame where a segment has so many of them; 0: not measured.
+// The nanoseconds that a frame takes where a segment has so many frames; 0: not measured.
 double of_a_frame(const Results& results, const std::string& group, const std::string& size, const Way& way,
                   int frames) {
   const Row* const evaluate = results.find(group, size, kGrid, way.evaluate);
@@ -54,7 +55,7 @@ Panel frames_panel(const Results& results, const std::string& title, const std::
   return panel;
 }
 
-// From how many frames on curves are ahead of a rival.
+// The number of frames in a segment from which on curves are faster than a rival.
 std::string ahead_from(const Results& results, const std::string& group, const std::string& size, const Way& curves,
                        const Way& rival) {
   for (int frames = 1; frames <= 999; ++frames) {

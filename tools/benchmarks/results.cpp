@@ -221,7 +221,7 @@ std::vector<std::string> missing_rows(const Results& results) {
   std::vector<std::string> missing;
   const auto need = [&](const std::string& group, const Column& column, const std::string& name, bool many_threads) {
     if (may_be_missing(group, column, name)) return;
-    // What later runs measure is not asked of earlier ones.
+    // Earlier runs need not have what only later ones measure.
     if (name == "recompute in float32" && !results.knows(group, name)) return;
     if (results.find(group, column.size, column.order, name, many_threads) == nullptr)
       missing.push_back(fmt::format("{}, {}, {}: {}{}", group, column.size, column.order, name,

@@ -41,7 +41,7 @@ struct Results {
   /// The row of a path or a rival; nullptr where there is none. On many threads: of the same path, however many.
   [[nodiscard]] const Row* find(const std::string& group, const std::string& size, const std::string& order,
                                 const std::string& path, bool many_threads = false) const;
-  /// Whether there is any row of this group, or of this path in it. Results from before there were such rows have none.
+  /// Whether there is any row of this group, or of this path in it. Older results may have no such rows.
   [[nodiscard]] bool knows(const std::string& group, const std::string& path = "") const;
   [[nodiscard]] const std::string& machine_value(const std::string& key) const;
 };
@@ -66,9 +66,9 @@ inline const std::string kGrid = "grid", kShuffled = "shuffled";
 [[nodiscard]] const std::vector<std::string>& schemes();
 [[nodiscard]] const std::vector<std::string>& blend_actives();  ///< numbers of active targets, as rows name them
 [[nodiscard]] const std::vector<std::string>& blend_ways();
-/// The same of few targets that move everything.
+/// The same for few targets that move everything.
 [[nodiscard]] const std::vector<std::string>& dense_actives();
-/// Meshes that are no torus, and the rows of their tables.
+/// Meshes other than the torus, and the rows of their tables.
 [[nodiscard]] const std::vector<std::string>& other_meshes();
 [[nodiscard]] const std::vector<std::string>& paths_on_meshes();
 /// The name of the row of one way.

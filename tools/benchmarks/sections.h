@@ -18,8 +18,8 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 /// The part on blend shapes; empty where no run measured them.
 [[nodiscard]] std::string blend_part(const Results& results, const std::string& folder);
 
-/// The parts on other meshes, and on what a frame costs by how many there are in a segment; empty where no run measured
-/// them.
+/// The parts on other meshes, and on the cost of a frame by the number of frames in a segment; both are empty where no
+/// run measured them.
 [[nodiscard]] std::string meshes_part(const Results& results, const std::string& folder);
 [[nodiscard]] std::string frames_part(const Results& results, const std::string& folder);
 

@@ -1,5 +1,5 @@
-# What errors of normals come to on the screen, and what the corners of n(t) at keyframes do over time: for tools/truth/truth.py.
-# Computed in double from the positions of keyframes alone.
+# Measures for tools/truth/truth.py what errors of normals come to on the screen, and how much dn/dt jumps at keyframes.
+# Everything is computed in double from the positions of keyframes alone.
 import numpy as np
 
 LIGHT = np.array([0.4, 0.5, 0.77]) / np.linalg.norm([0.4, 0.5, 0.77])
@@ -12,7 +12,7 @@ def unit(vectors):
 
 
 def normals_of(positions, faces):
-    """Unit normals (n, 3) of vertices, by areas."""
+    """Unit normals (n, 3) of vertices, weighted by area."""
     corners = positions[faces]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sums = np.zeros_like(positions)
@@ -35,7 +35,7 @@ def de_casteljau(points, t):
 
 
 def schemes(at, t):
-    """Unit normals by scheme, from the exact ones at(t) of the nodes that each takes."""
+    """Unit normals by scheme, interpolated from the exact ones, at(t), at the nodes of the scheme."""
     start, end = at(0), at(1)
     return {'linear': unit((1 - t) * start + t * end),
             'slerp': slerp(start, end, t),
@@ -96,7 +96,7 @@ def differences(start, end, faces, view, t=0.25, size=512):
 
 
 def catmull_rom(keys, times, s, t):
-    """Positions on the curve of chronormal: velocities of parabolas, and at the ends of the cubic through four."""
+    """Positions on the curves of chronormal: velocities are those of parabolas, and at both ends of the cubic through four keyframes."""
     def velocity(k):
         first, last = (max(k - 1, 0), min(k + 2, len(keys))) if 0 < k < len(keys) - 1 else (0, 4) if k == 0 else (len(keys) - 4, len(keys))
         nodes = range(max(first, 0), min(last, len(keys)))
@@ -128,7 +128,7 @@ def jumps(keys, times, faces, at):
 
 
 def mach_bands(keys, times, faces):
-    """By way between keyframes, the share by which dn/dt jumps."""
+    """The share by which dn/dt jumps, by the path between keyframes."""
     normals = [normals_of(key, faces) for key in keys]
     return {'linear': jumps(keys, times, faces, lambda s, t: unit((1 - t) * normals[s] + t * normals[s + 1])),
             'polynomial': jumps(keys, times, faces, lambda s, t: normals_of((1 - t) * keys[s] + t * keys[s + 1], faces)),

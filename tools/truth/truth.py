@@ -1,6 +1,6 @@
-# Writes docs/truth.md from tools/truth/truth.md.in: motions whose truth is known, as many keyframes as it takes, and sequences by
-# other people in CHRONORMAL_DATA, each given to `chronormal compare --truth`; and what errors come to on the screen and at keyframes
-# (shading.py). --check says where the page is another.
+# Writes docs/truth.md from tools/truth/truth.md.in. It gives motions whose truth is known, and sequences by other
+# people in CHRONORMAL_DATA, to `chronormal compare --truth`, and measures what errors come to on the screen and at
+# keyframes (shading.py). With --check it fails where the page would differ.
 import json
 import os
 import pathlib
@@ -112,7 +112,7 @@ def sampled(path, *moments):
 
 
 def screens(data):
-    """The differences on the screen, for the dance and a face."""
+    """The table of differences on the screen, for the dance and a face."""
     lines = []
     for title, path, moments in [('the dance', 'sequences/rumba_13', ['--times', 'keys']),
                                  ('a face', 'rigs/ict_capture.glb', ['--animation', '0', '--times', '0:0.5:4'])]:
@@ -133,7 +133,7 @@ def screens(data):
 
 
 def bands(data):
-    """By how much dn/dt jumps at keyframes, for motions that are known and for the dance."""
+    """The table of jumps of dn/dt at keyframes, for motions that are known and for the dance."""
     columns = []
     for name, (mesh, moved) in MOTIONS.items():
         times = np.linspace(0, 1, 9)
@@ -146,7 +146,7 @@ def bands(data):
 
 
 def table_1(data):
-    """Sums relative to linear over 21 samples of each segment, as Table 1 of the paper has them."""
+    """The table of sums relative to linear over 21 samples of each segment, as in Table 1 of the paper."""
     names = ['linear', 'quadratic', 'cubic', 'polynomial', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal', 'circle:timed']
     columns = []
     for path in ['sequences/rumba_13', 'rigs/ict_capture.glb']:
@@ -158,7 +158,7 @@ def table_1(data):
     return '\n'.join(lines + [f'| `{name}` | ' + ' | '.join(number(column[name]) for column in columns) + ' |' for name in names])
 
 
-# What is measured on other people's meshes, each between two comments of the page.
+# The tables that are measured on other people's meshes; each stands between two comments of the page.
 MEASURED = {'sequences': sequences, 'screen': screens, 'keyframes': bands, 'table 1': table_1}
 
 
@@ -170,7 +170,8 @@ def main():
         sys.exit('set CHRONORMAL_DATA to the folder of the real data: the page has figures of its files')
     page = text.replace('@turn@', known('turn')).replace('@twist@', known('twist'))
     for name, measure in MEASURED.items():
-        # Without the data what is there stays: a page without other people's meshes would say less than it did.
+        # Without the data, the tables of the page stay as they are: a page without other people's meshes would say less
+        # than before.
         begin, end = f'<!-- {name} -->\n', '\n<!-- end -->'
         table = measure(pathlib.Path(data)) if data else there.split(begin)[1].split(end)[0]
         page = page.replace(f'@{name}@', table)

@@ -1,8 +1,8 @@
 """Draws the picture of docs/vtk.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
-that page: how far the normals of both are off on the built-in morphs.
+that page, which shows how far the normals of both are off on the built-in morphs.
 
     picture.py PROGRAM            writes the picture into docs/pictures
-    picture.py PROGRAM --check    draws it elsewhere, and ends with 1 where it looks different, or the table does
+    picture.py PROGRAM --check    draws it elsewhere, and exits with 1 where the picture or the table is different
 """
 
 import subprocess

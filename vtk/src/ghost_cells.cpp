@@ -1,4 +1,4 @@
-// Levels of ghost cells, counted outward from the cells of a piece; VTK 9 marks ghosts, and not how far away they are.
+// Counts the levels of ghost cells outward from the cells of a piece, since VTK 9 marks ghosts without their levels.
 #include "ghost_cells.h"
 
 #include <vtkCellData.h>
@@ -20,7 +20,7 @@ namespace {
 const char* const kFlags = vtkDataSetAttributes::GhostArrayName();
 constexpr const char* kMeanwhile = "chronormal: ghosts";
 
-// The cells beyond so many levels, marked as vtkPolyData::RemoveGhostCells() wants them.
+// Marks the cells beyond so many levels, in the way that vtkPolyData::RemoveGhostCells() expects.
 vtkSmartPointer<vtkUnsignedCharArray> cells_beyond(vtkPolyData* piece, vtkUnsignedCharArray* ghosts, int levels) {
   const auto beyond = vtkSmartPointer<vtkUnsignedCharArray>::New();
   beyond->SetName(kFlags);
@@ -56,7 +56,7 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() drops the flags of what is left: they go by another name meanwhile.
+  // RemoveGhostCells() drops the flags of the cells that stay, so these have another name meanwhile.
   const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
   for (vtkDataSetAttributes* const attributes : all) {
     vtkDataArray* const flags = attributes->GetArray(kFlags);

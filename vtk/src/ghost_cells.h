@@ -7,8 +7,8 @@
 namespace chronormal::vtk {
 
 /// Removes the ghost cells that are more than so many levels away from the cells of the piece, and the points that only
-/// they use. A ghost cell is of level 1 where it shares a point with a cell of the piece, of level 2 where it shares one
-/// with a ghost cell of level 1, and so on. Cells that are hidden, and no copies, stay. O(levels x corners).
+/// they use. A ghost cell is of level 1 where it shares a point with a cell of the piece, of level 2 where it shares a
+/// point with a ghost cell of level 1, and so on. Cells that are hidden but are no copies stay. O(levels x corners).
 void keep_ghost_levels(vtkPolyData* piece, int levels);
 
 }  // namespace chronormal::vtk

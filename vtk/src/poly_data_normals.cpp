@@ -1,4 +1,5 @@
-// Normals of faces at both ends of a segment, sums over the faces of points and cells, and their directions at t.
+// Computes the control normals of faces between two steps, their sums over the faces of points and cells, and the
+// directions of these at t.
 #include "poly_data_normals.h"
 
 #include <vtkCellArray.h>
@@ -78,7 +79,7 @@ Status check_positions(vtkPolyData* mesh) {
   return Success{};
 }
 
-// Polygons, and the triangles of strips, each with the cell that it is of.
+// Polygons, and the triangles of strips, each with the cell that it belongs to.
 struct Faces {
   Topology topology;
   std::vector<std::uint32_t> cells;
@@ -105,7 +106,7 @@ Faces find_faces(vtkPolyData* mesh) {
   for (vtkIdType c = 0; c < mesh->GetNumberOfStrips(); ++c, ++cell) {
     mesh->GetStrips()->GetCellAtId(c, points);
     for (vtkIdType k = 0; k + 2 < points->GetNumberOfIds(); ++k) {
-      const vtkIdType turned = k % 2;  // every second triangle of a strip is wound the other way
+      const vtkIdType turned = k % 2;  // 1 for every second triangle of a strip, which is wound the other way
       for (const vtkIdType i : {k + turned, k + 1 - turned, k + 2}) corners.push_back(number(points->GetId(i)));
       end_face(cell);
     }
@@ -115,8 +116,8 @@ Faces find_faces(vtkPolyData* mesh) {
   return {std::move(topology).value(), std::move(cells)};
 }
 
-// eq. 5 of docs/theory.md in double, for positions that are not in float: the edges e(t), f(t) of each triangle of the fan
-// have the product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
+// Evaluates eq. 5 of docs/theory.md in double, for positions that are not in float: the edges e(t), f(t) of each
+// triangle of the fan have the product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
 ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std::span<const std::uint32_t> face) {
   struct Edge {
     Vec3d from, to;
@@ -161,7 +162,8 @@ std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to,
   return result;
 }
 
-// The sum of terms in the order of their values, which knows nothing of the order in which a mesh or a piece of it has them.
+// The sum of terms in the order of their values, which does not depend on the order in which a mesh or a piece of it
+// has them.
 ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   const auto values = [](const ControlNormals& n) {
     return std::tie(n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z);
@@ -188,12 +190,13 @@ struct Vectors {
   vtkSmartPointer<vtkDataArray> array;
 };
 
-// Which faces each element has the sum of.
+// The faces whose control normals each element adds up.
 struct Groups {
   // for_pairs(body) calls body(element, face) for each face of each element, in the same order every time.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
-    // By counting: ends[e + 1] counts e, then ends[e] is where e begins, and in the end where it ends.
+    // This is a counting sort: ends[e + 1] counts the faces of e, then ends[e] is where e begins, and finally where it
+    // ends.
     for_pairs([this](std::size_t element, std::size_t) { ++ends[element + 1]; });
     for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
     faces.resize(ends.back());

@@ -1,4 +1,4 @@
-// The filter as pipelines see it: what it asks of its input, block by block what becomes of the data, and errors.
+// The filter as pipelines see it: what it asks of its input, what it makes of the data block by block, and its errors.
 #include "vtkChronormalInterpolator.h"
 
 #include <vtkCellData.h>
@@ -27,13 +27,13 @@ vtkStandardNewMacro(vtkChronormalInterpolator);
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-// What one execution is asked for.
+// The request of one execution.
 struct vtkChronormalInterpolator::Request {
   double start = 0;   // the time of the earlier step
   double end = 0;     // that of the later one
   double t = 0;       // from the earlier step, 0, to the later one, 1
   int ghosts = -1;    // how many levels of ghost cells to keep, or -1 where a whole is asked for
-  std::string place;  // of the data in composite data, for messages
+  std::string place;  // where the data are in composite data, for messages
 };
 
 namespace {
@@ -46,13 +46,14 @@ bool has_normals(vtkDataSet* data) {
   return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
 }
 
-// Ids, flags of ghosts, and texts: what would be mixed as if it were an amount, or is no array of numbers at all.
+// Whether an array has names and not amounts: ids, ghost flags, and texts. It must not be mixed as if it had amounts.
 bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
   return array == of->GetGlobalIds() || array == of->GetPedigreeIds() ||
          array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
 }
 
-// What vtkTemporalInterpolator may mix: all but normals and texts, which it cannot.
+// A copy of the data with what vtkTemporalInterpolator may mix: all arrays except normals, and texts, which it cannot
+// mix.
 vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   copy->ShallowCopy(data);
@@ -64,7 +65,7 @@ vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   return copy;
 }
 
-// Takes names from the step before.
+// Takes arrays of names from the earlier step.
 void keep_names(vtkDataSet* before, vtkDataSet* output) {
   const Attributes from = attributes(before), to = attributes(output);
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -106,7 +107,8 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
   const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  // The steps that vtkMultiTimeStepAlgorithm keeps are of one piece. It forgets them when it is asked for information.
+  // The steps that vtkMultiTimeStepAlgorithm keeps belong to one piece. It forgets them when it is asked for
+  // information.
   const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
   if (piece != this->KeptPiece) {
     vtkNew<vtkInformation> forget;
@@ -125,8 +127,8 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
                                                    vtkInformationVector* outputs) {
   if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
 
-  // At the ends of the range vtkTemporalInterpolator asks for one step. A mesh that has no area there has a direction all
-  // the same, the limit from within the segment, so both steps are needed.
+  // At the ends of the range vtkTemporalInterpolator asks for one step. A mesh that has no area there still has
+  // normals, their limits from within the segment, so both steps are needed.
   vtkInformation* const in = inputs[0]->GetInformationObject(0);
   const int count = in->Length(Pipeline::TIME_STEPS());
   if (count >= 2 && in->Length(UPDATE_TIME_STEPS()) == 1) {

@@ -9,9 +9,9 @@
 ///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
 ///            double where the points are.
 /// Time       Any time: outside the range of the input it is that of the nearer end.
-/// Arrays     Ids, ghost flags and texts are those of the step before, since they are names and not amounts.
-/// Pieces     Where a piece is asked for, one more ghost level is asked of the input, so that the normals along seams
-///            have the bits of the whole; ghost cells that nobody asked for are removed again.
+/// Arrays     Ids, ghost flags and texts are those of the earlier step, since they are names and not amounts.
+/// Pieces     Where a piece is asked for, the filter asks its input for one more ghost level, so that the normals along
+///            seams have the bits of the whole mesh; ghost cells that were not asked for are removed again.
 /// Errors     Where the cells of a mesh differ between the two steps, where normals belong to data other than
 ///            vtkPolyData, and where blocks are missing in one of the steps, there is an error, and an empty output.
 #ifndef vtkChronormalInterpolator_h
@@ -63,7 +63,7 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
 
   bool ComputePointNormals = true;
   bool ComputeCellNormals = false;
-  std::array<int, 3> KeptPiece = {0, 1, 0};  // which piece of how many, with how many ghost levels, was asked for last
+  std::array<int, 3> KeptPiece = {0, 1, 0};  // the number of the last piece, of how many, and its ghost levels
 };
 
 #endif

@@ -1,5 +1,5 @@
-"""A sheet that bends, turns and folds, as a source with time steps; and its normals from positions alone, by cross
-products in double, which is what the filter is held against."""
+"""A sheet that bends, turns and folds, as a source with time steps, and its normals from positions alone, by cross
+products in double, with which the results of the filter are compared."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -14,7 +14,7 @@ TIMES = (0.0, 1.0, 2.5)
 
 
 def positions(time, side=SIDE):
-    """(n, 3) in float32: waves that run along a sheet which turns about its middle line, more at one end."""
+    """Positions (n, 3) in float32: waves run along a sheet that turns about its middle line, more at one end."""
     u, v = (x.reshape(-1) for x in np.meshgrid(*2 * [np.linspace(0, 1, side)], indexing="ij"))
     height = 0.3 * np.sin(3 * u + 2 * v + 2 * time) + time * u * v
     angle = 2 * time * v
@@ -34,7 +34,7 @@ def triangles(side=SIDE):
 
 
 def between(time, side=SIDE):
-    """Positions at any time, as straight lines between the steps have them, in double."""
+    """Positions at any time, on straight lines between the steps, in double."""
     time = min(max(time, TIMES[0]), TIMES[-1])
     k = min(int(np.searchsorted(TIMES, time, side="right")), len(TIMES) - 1)
     t = (time - TIMES[k - 1]) / (TIMES[k] - TIMES[k - 1])
@@ -42,13 +42,13 @@ def between(time, side=SIDE):
 
 
 def areas(points, faces):
-    """Vector areas of polygons, by Newell's sums over their edges."""
+    """Vector areas of polygons, by Newell's method."""
     corners = points[faces] - points[faces[:, :1]]
     return np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
 
 
 def unit(vectors):
-    """Of length 1, but zero vectors as they are."""
+    """Vectors scaled to length 1; zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(lengths == 0, 1, lengths)
 
@@ -127,7 +127,7 @@ class Steps(VTKPythonAlgorithmBase):
 
 
 def numbers(data):
-    """Which points of the whole mesh these are."""
+    """The numbers that these points have in the whole mesh."""
     return np.rint(vtk_to_numpy(data.GetPointData().GetArray("number"))).astype(int)
 
 

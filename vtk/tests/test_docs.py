@@ -1,4 +1,4 @@
-"""The page docs/vtk.md: its lines of Python run, and give right normals."""
+"""The lines of Python in docs/vtk.md run, and give right normals."""
 
 import re
 import unittest

@@ -1,4 +1,4 @@
-"""Two and three ranks of MPI: what vtkMPIController distributes has the bits of the whole, at seams too."""
+"""On two and three ranks of MPI, pieces under vtkMPIController have the bits of the whole mesh, at seams too."""
 
 import os
 import subprocess

@@ -4,7 +4,7 @@
 /// (p(t) - a(t)) . n(t) is zero, a cubic in t; where it is between the edges too, it crosses. What is *inside* is told by
 /// the winding number w, how many times the surface goes round the point: inside where w is not 0. A crossing changes w
 /// by one: by +1 where the point goes from the front of a face, to which the normal points, to its back (inward), and by
-/// -1 the other way. So between any two times, of which none is such a moment as *Moments* below describes,
+/// -1 the other way. So between any two times, neither of which is a moment as described under *Moments* below,
 ///
 ///     w(later) - w(earlier) = inward crossings - outward crossings
 ///
@@ -20,9 +20,9 @@
 ///            surface (normals/normal_groups.h), so that seams of a file do not open it. A face of more than three
 ///            corners is the fan of triangles around its first one.
 /// Moments    What happens within a moment of 2^-47 of a segment is reported by its sum where it cannot be told apart: a
-///            point that touches an edge from outside has no crossing, and one that goes through it has one. In the very
-///            moment in which it touches, the tie may be decided either way, and so w may be another than right before
-///            and right after.
+///            point that touches an edge from outside has no crossing, and one that goes through it has one. At the
+///            very moment of touching, the tie may be decided either way, so that w may differ from its value right
+///            before and right after.
 /// Shapes     P = points, as (P, 3) float32.
 /// Threads    const functions may run at the same time, and use all cores. Results are the same on any number.
 /// Source     docs/theory.md, section 2; Edelsbrunner, Muecke, Simulation of Simplicity (1990).

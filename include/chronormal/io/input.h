@@ -62,15 +62,16 @@ struct InputOptions {
   FileResolver resolve = {};
   /// Called after each file that was read.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
-  /// Which keyframes of a sequence count: the first, the last, and how far it is from one to the next.
+  /// The keyframes of a sequence that count: the first, the last, and the step from one to the next.
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
-  /// Leave positions in the files until they are asked for: of mesh files, .pc2, .mdd, .npy and .npz that are stored and
-  /// in C order. Who sets it asks for Input::stream(); other inputs are read at once, and so are meshes where the normals
-  /// of all of them are kept. What is wrong in a keyframe is found when that is read.
+  /// Leaves positions in the files until they are asked for: in mesh files, .pc2 and .mdd, and in .npy and .npz that
+  /// are stored and in C order. A caller that sets it should ask for Input::stream(). Other inputs are read at once,
+  /// and so are mesh files where the normals of all of them are kept. An error in a keyframe is found when the keyframe
+  /// is read.
   bool stream = false;
-  /// Keyframes that take no more bytes together than this stay in memory, once they were read.
+  /// Keyframes that take no more bytes together than this stay in memory once they have been read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1; }
@@ -112,16 +113,16 @@ class Input {
 
   /// What moves: of a document what the options chose (and read now, when it is asked for the first time); with
   /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All
-  /// keyframes are in memory, as most who compute want them; those who need them one by one should ask for stream().
-  /// Errors: of a document: of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
-  /// nothing moves, or keyframes would take more than 4 GiB. Of keyframes that were left in files: of reading them.
+  /// keyframes are in memory, as most callers want them; callers that need them one by one should ask for stream().
+  /// Errors: of a document, those of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
+  /// nothing moves, or keyframes would take more than 4 GiB; where keyframes were left in files, those of reading them.
   [[nodiscard]] Result<const Motion*> motion();
 
-  /// The same motion, of which keyframes are there as they are asked for; it lives as long as the input. Errors: those of
-  /// motion(), but for reading keyframes.
+  /// The same motion as a stream, which reads keyframes when they are asked for and lives as long as the input. Errors:
+  /// those of motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
-  /// Keyframe k of the motion, from 0, in any order. It is good until the next call of anything that reads keyframes.
+  /// Returns keyframe k of the motion, from 0, in any order. It is valid until the next call that reads keyframes.
   /// Errors: those of motion(), and of reading the file.
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
@@ -154,7 +155,8 @@ class Input {
 
 /// Opens what the options name, and reads it, but for a glTF document, of which nothing but its JSON is read.
 ///
-/// Errors: those of check_input(); kUsage for keyframes to choose among that are not there, or none of a sequence; kFailed for files that are not there or can not be read; those of the readers, with
+/// Errors: those of check_input(); kUsage where the chosen keyframes are not there, or the input is no sequence;
+/// kFailed for files that are not there or cannot be read; those of the readers, with
 /// the file in the place ("frame 3 (walk_3.obj), line 17"); kInvalidInput for fewer than two keyframes, vertices or
 /// faces that change between them, folders without meshes or with several formats; kUsage for inputs that do not go
 /// together.

@@ -57,7 +57,7 @@ void remove_temporaries() noexcept;
 ///
 /// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
 /// expansion is that of the file that the motion came from, if any: a file for each keyframe repeats all faces.
-/// A stream is written as its keyframes come; its errors are those of this, too.
+/// A stream is written as its keyframes are read; errors of the stream are returned, too.
 /// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form, and a motion that the format
 /// does not hold: targets in a point cache, faces of different numbers of corners in .npz. Else those of
 /// write_output(); where a file exists and force is not given, nothing is written.

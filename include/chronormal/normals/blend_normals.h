@@ -49,7 +49,7 @@ enum class BlendPath {
 /// "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
-/// A gigabyte: many dense targets have pairs beyond that, which would hardly ever be the cheapest way.
+/// The default limit, a gigabyte: the terms of many dense targets take more, and would hardly ever be the cheapest way.
 inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
 
 struct BlendNormalsOptions {

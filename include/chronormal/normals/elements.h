@@ -41,7 +41,7 @@ struct ElementOptions {
 /// [0, 180]; kInvalidInput where there is not one smoothing group for each face, or one finite normal for each corner.
 /// The motion may stand still: a keyframe without segments. Preconditions: it is valid else, and the kind is not faces
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
-/// The same of a stream: reads keyframes as weld_coincident() does. Errors: those of the stream, too.
+/// The same for a stream, of which it reads keyframes as weld_coincident() does. Errors: also those of the stream.
 [[nodiscard]] Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options);
 
 }  // namespace chronormal

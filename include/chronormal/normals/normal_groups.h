@@ -65,7 +65,7 @@ struct Points {
 /// may belong to two sides of a slit. Faces are not looked at. O(V log V), and the number of keyframes times as much
 /// where vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
-/// The same of a stream: reads keyframes until no two vertices coincide. Errors: those of the stream.
+/// The same for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
 /// Stored normals closer than this are one normal that was rounded twice.

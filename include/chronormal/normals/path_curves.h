@@ -1,15 +1,16 @@
 /// Unit normals of vertices on cubics, of degree 6 in time, at the speed of memory: NormalCurves for curved paths.
 ///
 /// The seven control normals of an element are kept in float32, 84 bytes, divided by a power of two, and evaluated by a
-/// kernel: a Bernstein sum and a root. Where float32 cannot carry an element to kPathAngle at every t, because n(t) gets
-/// shorter than 1 / 2.6 of sum w_k |c_k|, the element is flagged and evaluated in double, with the degenerate cases of
-/// unit_normal_at() in paths.h. That it does not is proven, and not sampled: all seven control normals lie within 67
-/// degrees of one direction, or 2.6^2 |n|^2 - (sum w_k |c_k|)^2 has Bernstein coefficients, after some subdivisions, of
-/// which none is negative.
+/// kernel: a Bernstein sum and a root. Where n(t) may get shorter than 1 / 2.6 of sum w_k |c_k|, float32 might not keep
+/// the element within kPathAngle at every t. Such an element is flagged and evaluated in double, with the degenerate
+/// cases of unit_normal_at() in paths.h. That n(t) stays longer is proven, and not sampled: either all seven control
+/// normals lie within 67 degrees of one direction, or 2.6^2 |n|^2 - (sum w_k |c_k|)^2 has, after some subdivisions, no
+/// negative Bernstein coefficient.
 ///
-/// Units      t: fraction of the segment, in [0, 1]; what lies outside is moved to the nearer end
-/// Errors     none; a t of NaN gives (0, 0, 0)
-/// Threads    const members may run at once; the same bits on any number of threads and on every instruction set
+/// Units      t: fraction of the segment, in [0, 1]; a t outside is moved to the nearer end.
+/// Errors     none; a t of NaN gives (0, 0, 0).
+/// Threads    const members may run at once. Results have the same bits on any number of threads and on every
+///            instruction set.
 #ifndef CHRONORMAL_NORMALS_PATH_CURVES_H_
 #define CHRONORMAL_NORMALS_PATH_CURVES_H_
 
@@ -25,19 +26,19 @@
 
 namespace chronormal {
 
-/// No normal of PathCurves turns from that of its control normals by more, in radians.
+/// The largest angle, in radians, between a normal of PathCurves and the exact one of the same control normals.
 inline constexpr double kPathAngle = 1e-6;
 
-/// The control normals of all faces, or of all groups of their corners, on all cores. 168 bytes for each of either.
+/// Computes the control normals of all faces, or of all groups of their corners, on all cores. Each takes 168 bytes.
 [[nodiscard]] std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment);
 [[nodiscard]] std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment,
                                                                  const NormalGroups& groups);
 
 class PathCurves {
  public:
-  /// Curves of no elements.
+  /// Creates curves of no elements.
   PathCurves() noexcept;
-  /// Packs control normals, each on its own.
+  /// Packs control normals, each independently of the others.
   explicit PathCurves(std::span<const PolynomialNormals<3>> normals, Threads threads = Threads::kOne);
   PathCurves(PathCurves&& other) noexcept;
   PathCurves& operator=(PathCurves&& other) noexcept;
@@ -48,9 +49,9 @@ class PathCurves {
   std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne) const;
 
   [[nodiscard]] std::size_t size() const noexcept;
-  /// How many elements are evaluated in double.
+  /// The number of elements that are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Memory that an evaluation reads, in bytes.
+  /// The memory that an evaluation reads, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

@@ -64,15 +64,15 @@ using PolynomialNormals = Bernstein<Vec3d, 2 * K>;
 enum class PathKind {
   kLinear,      ///< straight, as players do
   kCatmullRom,  ///< on cubics whose velocities follow from the keyframes: catmull_rom_segment()
-  kHermite,     ///< on cubics with the velocities of the keyframes, and of kCatmullRom where a keyframe has none
+  kHermite,     ///< on cubics with the velocities of the keyframes, or those of kCatmullRom where a keyframe has none
 };
 
-/// "linear", "catmull-rom" or "hermite".
+/// The name of a path: "linear", "catmull-rom" or "hermite".
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Finds a path by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<PathKind> make_path(std::string_view name);
-/// Whether a motion has such paths. Errors: kUsage for curves of a motion that is no sequence, and for kHermite where no
-/// keyframe has velocities.
+/// Checks that a motion has such paths. Errors: kUsage for curves in a motion that is no sequence, and for kHermite
+/// where no keyframe has velocities.
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
 /// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two neighbours
@@ -82,14 +82,14 @@ enum class PathKind {
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);
 
-/// The path from keys[i] to keys[i + 1], straight ones as cubics too. Preconditions: those of catmull_rom_segment()
+/// The path from keys[i] to keys[i + 1] as a cubic, straight paths too. Preconditions: those of catmull_rom_segment()
 [[nodiscard]] PolynomialSegment<3> path_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
                                                 std::size_t i, PathKind kind);
-/// The same of segment i of a sequence.
+/// The same for segment i of a sequence.
 [[nodiscard]] PolynomialSegment<3> path_segment(const Motion& motion, std::size_t i, PathKind kind);
 
-/// What the keyframes say about the velocity at keyframe `at`, as kCatmullRom has it: sum of share_j p_j over those of the
-/// keyframes first, first + 1, ... that it follows from.
+/// The velocity at keyframe `at` as kCatmullRom has it: the sum of share[j] p(first + j) over the positions p of the
+/// keyframes first, first + 1, ... from which it follows.
 struct VelocityShares {
   std::size_t first = 0;
   std::vector<double> share;  ///< per second
@@ -97,13 +97,13 @@ struct VelocityShares {
 /// times must ascend; at < times.size()
 [[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
 
-/// How far a sequence of keyframes is from a straight way, every `every`-th of them: of every three that follow each other,
-/// the second difference of a vertex against the way that it went, added up over all. A rigid turn by an angle a
-/// from keyframe to keyframe has sin(a / 2).
+/// How far the paths through a sequence of keyframes, or through every `every`-th of them, are from straight: for every
+/// three successive keyframes the second difference of a vertex, relative to the way that it went, where both are added
+/// up over all vertices and keyframes. A rigid turn by an angle a from keyframe to keyframe has sin(a / 2).
 [[nodiscard]] double bend_of(const Motion& motion, std::size_t every = 1);
-/// The same of a stream, of which three keyframes are held at a time. Errors: those of the stream.
+/// The same for a stream, of which three keyframes are held at a time. Errors: those of the stream.
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
-/// Above this bend, a curve through the keyframes means little.
+/// Above this bend, a curve through the keyframes tells little about the motion.
 inline constexpr double kTooSparse = 0.5;
 
 /// Where the vertices are at a local t.
@@ -116,8 +116,8 @@ template <std::size_t K>
 void polynomial_face_normals(const PolynomialSegment<K>& segment, IndexRange faces,
                              std::span<PolynomialNormals<K>> result) noexcept;
 
-/// The normals of a range of faces at t, from the positions there: cross products of edges, and no control normals. What is
-/// nothing but rounding is zero. result must have faces.count elements
+/// The normals of a range of faces at t, from the positions there: cross products of edges, without control normals. A
+/// result that is nothing but rounding is zero. result must have faces.count elements
 template <std::size_t K>
 void polynomial_face_normals_at(const PolynomialSegment<K>& segment, double t, IndexRange faces,
                                 std::span<Vec3d> result) noexcept;

@@ -1,6 +1,6 @@
-/// Unit normals of one segment by whichever way is cheaper: prepared curves, or made anew at every t.
+/// Unit normals of one segment in whichever way is cheaper: by prepared curves, or recomputed at every t.
 ///
-/// Curves (NormalCurves) are evaluated several times faster than normals are made anew (NormalRecompute), but have to
+/// Curves (NormalCurves) are evaluated several times faster than normals are recomputed (NormalRecompute), but have to
 /// be prepared. Which of the two costs less depends on how often the segment will be evaluated, and on the mesh: a
 /// SegmentNormals asks a model of both, says what it chose and why, and does it.
 ///
@@ -11,8 +11,9 @@
 /// Model      a pure function of what it is given: no clock, no thread count, nothing read from the machine. Its
 ///            constants were measured on one core of a Xeon of 2.6 GHz; on others both ways get faster or slower
 ///            together, and the choice is wrong only where both cost nearly the same.
-/// Shading    where no accuracy is promised (FloatRecompute), making normals anew is two to four times cheaper, and curves
-///            have to be asked for more often before they pay: a caller for whom float32 is enough says so.
+/// Shading    Where no accuracy is promised (FloatRecompute), recomputing normals is two to four times cheaper, and
+///            curves have to be evaluated more often before they pay. A caller for whom float32 is enough sets
+///            float_recompute.
 /// Accuracy   recompute within 1e-6 rad of exact arithmetic, curves within the tolerance that is asked for; both for
 ///            every element, at every t. A FloatRecompute promises none.
 /// Ownership  the segment's positions and topology, and the groups, must outlive the object.
@@ -51,8 +52,8 @@ struct StrategyOptions {
   double evaluations = 1;
   /// Of curves, in radians; see CurveOptions.
   double tolerance = kExactTolerance;
-  /// Makes normals anew with this one, in float32, where that is cheaper than curves. It must be of the topology and the
-  /// groups, and outlive the object. nullptr: with a NormalRecompute, within 1e-6 rad.
+  /// Recomputes normals with this object, in float32, where that is cheaper than curves. It must be of the topology and
+  /// the groups, and outlive the object. nullptr: normals are recomputed by a NormalRecompute, within 1e-6 rad.
   FloatRecompute* float_recompute = nullptr;
   /// Takes this one whatever it costs.
   std::optional<NormalStrategy> forced = {};
@@ -69,9 +70,9 @@ struct MeshShape {
   double lines_per_face = 0;
   /// Of the normals in t, 0 to 2, on the average.
   double degree = 2;
-  /// Shares of the elements: whose faces are too far apart for a window over them; that have to be prepared one by one,
-  /// since they nearly collapse on their way; and that are kept in double then, where curves are exact and where they are
-  /// compact.
+  /// Shares of the elements: scattered, whose faces are too far apart for a window over them; doubtful, which have to
+  /// be prepared one by one, since they nearly collapse in the segment; and flagged, which are then kept in double, in
+  /// exact and in compact curves.
   double scattered = 0, doubtful = 0, flagged = 0, flagged_compact = 0;
 };
 
@@ -90,8 +91,8 @@ struct StrategyCosts {
   double in_float32 = 0;   ///< by a FloatRecompute, each time; likewise
   double curve_bytes = 0;  ///< kept by curves, all together
 
-  /// From how many evaluations on curves are cheaper than making normals anew, within 1e-6 rad or in float32; infinity
-  /// where they never are.
+  /// The number of evaluations from which on curves are cheaper than recomputing normals, within 1e-6 rad or in
+  /// float32; infinity where they never are.
   [[nodiscard]] double break_even() const noexcept { return break_even_with(recompute); }
   [[nodiscard]] double break_even_in_float32() const noexcept { return break_even_with(in_float32); }
 
@@ -132,7 +133,7 @@ class SegmentNormals {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  // Another's recompute, and what it is asked about.
+  // The FloatRecompute of the caller, and the segment for which it is asked.
   struct InFloat32 {
     FloatRecompute* recompute;
     Segment segment;

@@ -78,8 +78,9 @@ struct AuditOptions {
   PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
   bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
   bool keep_errors = false;           ///< every single one, in Audit::errors
-  /// Of a sequence of straight paths: judge this share of the segments only, and keep what each of them gave, in Audit::measured. What is
-  /// asked of the whole motion (which vertices move, how long a normal gets) is found anew by every shard.
+  /// For sequences on straight paths: judges this share of the segments only, and keeps the errors of each of them in
+  /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
+  /// long a normal gets).
   std::optional<Shard> shard = {};
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -177,7 +178,7 @@ struct Audit {
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
-  std::vector<SegmentErrors> measured;  ///< of a shard: of each of its segments; the rest is of them alone
+  std::vector<SegmentErrors> measured;  ///< of a shard: one for each of its segments; all else covers these alone
 
   /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
   [[nodiscard]] bool is_within(double degrees) const noexcept {
@@ -198,23 +199,24 @@ struct Audit {
 /// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
 /// which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to keep that take more
-/// than kMostErrorBytes.
+/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to
+/// keep that take more than kMostErrorBytes.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
 /// then. Without stored
 /// normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
-/// between. Errors: kUsage for the rule gltf, for hosts, for fewer than 2 samples, and of check_path(); kInvalidInput for normals that do not fit.
+/// between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; those of check_path();
+/// kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// The same of a stream, of which two keyframes are held at a time; it is read twice, and up to where all vertices have moved
-/// and none coincide any more once again for each of the two. Errors: those of the stream, too.
+/// The same for a stream, of which two keyframes are held at a time. It is read twice; it is read once more up to where
+/// all vertices have moved, and once more up to where none coincide any more. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
-/// Puts the shards of one audit together, in any order: the audit that one run would have made. Errors: kUsage where they are
-/// not shards of the same audit, or not each segment is in one of them.
-/// There must be one at least
+/// Joins the shards of one audit, which may come in any order, into the audit that one run would have made. Errors:
+/// kUsage unless they are shards of the same audit, and each segment is in exactly one of them.
+/// There must be at least one shard
 [[nodiscard]] Result<Audit> merge(std::vector<Audit> shards);
 
 }  // namespace chronormal

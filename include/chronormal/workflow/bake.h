@@ -77,8 +77,9 @@ struct BakeOptions {
   /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
   std::vector<RigPose> poses = {};
-  /// Of sequences, how vertices move between keyframes. On curved paths positions are exact, by weights that are cubic
-  /// splines, and normals are fitted to the tolerance, with a stated error: endpoint alone does that, by area.
+  /// How the vertices of a sequence move between keyframes. On curved paths positions are exact, by weights that are
+  /// cubic splines, and normals are fitted to the tolerance, with a stated error: only endpoint does that, with area
+  /// weights.
   PathKind path = PathKind::kLinear;
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -200,9 +201,8 @@ struct SequenceBake {
 /// glb gets the bytes of the file.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
 /// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area or a
-/// tolerance below kLeastKeyTolerance, of curved paths for another encoding than endpoint or other weights, and those of
-/// check_path(). Precondition: the motion is valid and a
-/// sequence (segments k -> k + 1)
+/// tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights; those
+/// of check_path(). Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 }  // namespace chronormal

@@ -60,10 +60,11 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
-  /// Compare this share of the segments only, and keep what each of them gave, in Comparison::compared. Of straight paths.
+  /// For straight paths: compares this share of the segments only, and keeps the results of each in
+  /// Comparison::compared.
   std::optional<Shard> shard = {};
-  /// How the vertices of a sequence move: on curved paths every scheme is held against the exact normals of these curves,
-  /// and one more row, "exact", is PathCurves (normals/path_curves.h).
+  /// How the vertices of a sequence move. On curved paths every scheme is compared with the exact normals of these
+  /// curves, and one more row, "exact", is for PathCurves (normals/path_curves.h).
   PathKind path = PathKind::kLinear;
 };
 
@@ -79,8 +80,8 @@ struct CertifiedError {
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element; times are those of a thread among all that work, the median over segments of that over blocks of up
-/// to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves are most of it).
+/// element; times are those of one thread among all that work: the median over segments of the median over blocks of up
+/// to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves take most of the time).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
@@ -96,7 +97,7 @@ struct SchemeComparison {
   std::optional<CertifiedError> certified = {};  ///< where it was asked for
 };
 
-/// What one scheme did in one segment.
+/// The results of one scheme in one segment.
 struct SchemeTally {
   Quality quality;
   std::size_t fallbacks = 0, flagged = 0;
@@ -104,7 +105,7 @@ struct SchemeTally {
   CertifiedError certified = {};
 };
 
-/// What all schemes did in one segment: every row, and linear behind them where it is none of them.
+/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;
@@ -118,33 +119,34 @@ struct Comparison {
   std::size_t segments = 0;
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
-  MotionKind motion = MotionKind::kSequence;  ///< what the segments are
-  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme, in their order
-  std::optional<double> tolerance = {};       ///< degrees, where it was given
-  PathKind path = PathKind::kLinear;          ///< that all of them are held against
-  double bend = 0;                            ///< of a curved path: bend_of(), to hold against kTooSparse
-  std::optional<std::size_t> cheapest = {};   ///< of the schemes: within the tolerance for certain; nothing: none is
-  std::vector<ComparedSegment> compared =
-      {};  ///< of a shard: of each of its segments; the rows are those of them alone
+  MotionKind motion = MotionKind::kSequence;   ///< what the segments are
+  std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme, in their order
+  std::optional<double> tolerance = {};        ///< degrees, where it was given
+  PathKind path = PathKind::kLinear;           ///< whose exact normals all rows are compared with
+  double bend = 0;                             ///< of a curved path: bend_of(), to hold against kTooSparse
+  std::optional<std::size_t> cheapest = {};    ///< of the schemes: within the tolerance for certain; nothing: none is
+  std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access or of curved paths, those of check_path(), and errors to keep that take more than kMostErrorBytes.
+///            tolerance, certificates of sequential access or of curved paths, and errors to keep that take more than
+///            kMostErrorBytes; those of check_path().
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
-/// The same of a stream, a few segments of which are held at a time: as many as have a few thousand elements for each
-/// thread, but at least one. Errors: those of the stream, too.
+/// The same for a stream, of which a few segments are held at a time: as many as have a few thousand elements for each
+/// thread, but at least one. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
-/// Puts the shards of one comparison together, in any order: the comparison that one run would have made, but that no times
-/// are measured. Errors: kUsage where they are not shards of the same comparison, or not each segment is in one of them.
-/// There must be one at least
+/// Joins the shards of one comparison, which may come in any order, into the comparison that one run would have made,
+/// but without times. Errors: kUsage unless they are shards of the same comparison, and each segment is in exactly one
+/// of them.
+/// There must be at least one shard
 [[nodiscard]] Result<Comparison> merge(std::vector<Comparison> shards);
 
 /// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a

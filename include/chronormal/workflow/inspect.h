@@ -90,7 +90,7 @@ struct Inspection {
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
-/// The same of a stream: as many keyframes are held as threads work, and one more. Errors: those of the stream.
+/// The same for a stream, of which one keyframe more is held than threads work. Errors: those of the stream.
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 

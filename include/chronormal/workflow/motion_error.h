@@ -1,8 +1,8 @@
-/// How far shown normals are from the right ones, added up over pairs of a vertex and a sample: what an audit counts
+/// The errors that an audit adds up: how far shown normals are from the right ones, over pairs of a vertex and a sample
 /// (workflow/audit.h says which pairs are judged).
 ///
 /// Units      degrees
-/// Threads    values: as any other. Adding the same parts in the same order gives the same bits.
+/// Threads    these are plain values. Adding the same parts in the same order gives the same bits.
 #ifndef CHRONORMAL_WORKFLOW_MOTION_ERROR_H_
 #define CHRONORMAL_WORKFLOW_MOTION_ERROR_H_
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
 inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // up to 256 degrees
 
-/// A vertex at a moment, as the file counts.
+/// A vertex at a moment, numbered as in the file.
 struct AuditPlace {
   std::optional<std::size_t> mesh, primitive;  ///< of a glTF file
   std::size_t vertex = 0;                      ///< of the primitive, or of the motion
@@ -36,7 +36,7 @@ struct MotionError {
   double worst = 0;
   AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
-  std::array<std::size_t, kAuditFineBins> counts{};  ///< the same, finely
+  std::array<std::size_t, kAuditFineBins> counts{};  ///< the same in finer bins
   std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
   std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
   AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
@@ -55,7 +55,7 @@ struct MotionError {
   void add(const MotionError& other) noexcept;
 };
 
-/// What was found in one segment, and at its ends.
+/// The errors in one segment, and those at its ends alone.
 struct SegmentErrors {
   std::size_t segment = 0;
   MotionError error, at_keys;

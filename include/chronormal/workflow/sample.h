@@ -79,8 +79,8 @@ class NormalSampler {
   /// Errors: of make_groups(); kUsage for faces with another weighting than area, for the length kArea with one, and for
   /// curved paths of a motion that is no sequence.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
-  /// The same of a stream: a pose at a time reads the two keyframes around it, four for curved paths, and one of weights
-  /// all of them. Errors: those of the stream, there and here.
+  /// The same for a stream: a pose at a time reads the two keyframes around it (four on curved paths), and a pose of
+  /// weights reads all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
   /// The pose at a time. evaluations says how many times of its segment will follow each other, this one included; what
@@ -91,7 +91,7 @@ class NormalSampler {
   /// float32.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
-  /// The pose of keyframe 0: all there is of a mesh that stands still. A stream must hold that keyframe.
+  /// The pose of keyframe 0, the only one of a mesh that stands still. A stream must hold that keyframe.
   [[nodiscard]] Pose at_rest() const;
 
   /// How many faces, vertices or corners there are.
@@ -119,7 +119,7 @@ class NormalSampler {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   }
 
-  std::unique_ptr<MotionStream> whole_ = {};  // of a motion
+  std::unique_ptr<MotionStream> whole_ = {};  // where a motion was given
   MotionStream* stream_;
   const Motion* motion_;  // of the stream
   SampleOptions options_;
@@ -140,7 +140,7 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 /// The format of a file by its extension; nothing where that is none of these.
 [[nodiscard]] std::optional<SampleFormat> find_sample_format(std::string_view path);
 
-/// The most bytes that the arrays of a .npz file may have that goes to a stream: they are in memory until it is written.
+/// The most bytes that the arrays of a .npz file may have that goes to a pipe: they are in memory until it is written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 /// Moments in the order of the output. One list at most; where both are empty, the mesh stands still.
@@ -157,13 +157,14 @@ struct SampleOutput {
   std::string path;  ///< "-" is the standard output; %d or %0Nd in a name of .ply or .obj is the number of the moment
   SampleFormat format = SampleFormat::kNpy;
   bool force = false;
-  /// Write this share of the moments only: .ply and .obj with the numbers that they have among all, .npy of as many rows
-  /// (workflow/parts.h puts them together). The bits are those of one run.
+  /// Writes this share of the moments only: .ply and .obj files with the numbers that they would have among all, or
+  /// .npy with as many rows (workflow/parts.h joins them). The bits are those of one run.
   Shard shard = {};
 };
 
 /// The files that `count` moments will be written to. Asks before a long computation whether that can be. Errors:
-/// kUsage for normals of corners in PLY, a shard of .npz, and for several moments in one .ply or .obj; those of check_output().
+/// kUsage for normals of corners in PLY, for a shard of .npz, and for several moments in one .ply or .obj; those of
+/// check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 
@@ -172,12 +173,13 @@ struct SampleSummary {
   std::size_t zeros = 0;    ///< how many of them are (0, 0, 0)
 };
 
-/// Computes and writes as it goes: one pose at a time is in memory. Only a .npz file for a pipe is gathered there, since
-/// its checksums stand before what they are of.
+/// Computes the poses and writes each at once, so that only one is in memory. Only a .npz file for a pipe is gathered
+/// in memory, since its checksums come before the bytes that they cover.
 /// progress(done, total), if given, is called after each moment.
 ///
-/// Errors: of NormalSampler, sample_files() and write_output(); kUsage for more than kMostSampleBytes there. All moments are
-/// checked before the first is computed, and a file of the names that exist stops all unless force is given.
+/// Errors: of NormalSampler, sample_files() and write_output(); kUsage for more than kMostSampleBytes in memory. All
+/// moments are checked before the first is computed, and a file of the names that exist stops all unless force is
+/// given.
 [[nodiscard]] Result<SampleSummary> write_samples(
     const Motion& motion, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -1,5 +1,5 @@
-/// A share of the segments of a motion, for many machines that divide one work: each computes its own, and what they found is
-/// put together (workflow/parts.h) into what one machine would have found, to the last bit.
+/// A share of the segments of a motion, for many machines that divide one task: each machine computes its own shard,
+/// and the results are joined (workflow/parts.h) into what one machine would have found, to the last bit.
 #ifndef CHRONORMAL_WORKFLOW_SHARD_H_
 #define CHRONORMAL_WORKFLOW_SHARD_H_
 
@@ -10,12 +10,12 @@
 
 namespace chronormal {
 
-/// The index-th of count shares, from 0; as it stands, all of it.
+/// The index-th of count shares, from 0. By default a shard is everything.
 struct Shard {
   std::size_t index = 0, count = 1;
 
-  /// Its share of so many things in a row: all shares together have each of them once, in order, and as many as each
-  /// other but for one.
+  /// The share of a row of `total` things that this shard has. All shards together have each thing once and in order,
+  /// and their sizes differ by at most one.
   [[nodiscard]] IndexRange of(std::size_t total) const noexcept {
     assert(index < count);
     const auto begin = [&](std::size_t i) { return total / count * i + total % count * i / count; };

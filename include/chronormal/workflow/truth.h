@@ -9,7 +9,7 @@
 ///            cubics through the kept keyframes. Its velocity at each of them is that of the parabola through it and its
 ///            two neighbours, and at an end of the motion that of the cubic through the nearest four. Its normals are
 ///            exact on that path. "hermite": the same with the velocities of the keyframes, where they have them.
-/// Bend       bend_of() the kept keyframes, in normals/paths.h
+/// Bend       that of the kept keyframes, by bend_of() in normals/paths.h.
 /// Source     docs/truth.md.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_H_
@@ -50,8 +50,8 @@ struct TruthComparison {
   std::vector<TruthRow> rows;
 };
 
-/// Holds schemes on straight paths, and exact normals on curved ones, against the keyframes that were left out. A row
-/// for each scheme, then one for "catmull-rom", and one for "hermite" where keyframes have velocities.
+/// Compares schemes on straight paths, and exact normals on curved ones, with the keyframes that were left out. There
+/// is a row for each scheme, then one for "catmull-rom", and one for "hermite" where keyframes have velocities.
 ///
 /// Errors     kUsage for a motion that is no sequence (targets and animations of weights are straight: there is no
 ///            other truth), fewer than two kept keyframes, and what compare() refuses in schemes and elements.

@@ -1,3 +1,4 @@
+// Adds up angular errors.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>

@@ -62,7 +62,8 @@ template <class Real>
   return count;
 }
 
-/// The bytes of numbers: where they lie, or in storage where they have another order there.
+/// The bytes of numbers in this order: those of the array itself, or a copy in storage where the machine has another
+/// order.
 [[nodiscard]] inline std::string_view bytes_of(std::span<const float> values, std::endian order, std::string& storage) {
   if (order == std::endian::native) return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
   storage.resize(values.size_bytes());

@@ -47,12 +47,12 @@ class Descriptor {
   return descriptor;
 }
 
-/// What the system says to a path. errno is not looked at.
+/// What the system says about a path. errno is not looked at.
 [[nodiscard]] inline Error failure(const std::string& path, int system_error) {
   return Error{ErrorCode::kFailed, path, std::generic_category().message(system_error)};
 }
 
-/// Waits where the other side set a pipe to non-blocking. False for any other error in errno.
+/// Waits until a pipe that the other side made non-blocking is ready. Returns false for any other error in errno.
 [[nodiscard]] inline bool may_go_on(int descriptor, short events) {
   if (errno == EINTR) return true;
   if (errno != EAGAIN) return false;

@@ -1,3 +1,4 @@
+// Maps a regular file into memory, and reads any other to its end.
 #include "io/bytes/file.h"
 
 #include <fcntl.h>

@@ -22,7 +22,7 @@
 namespace chronormal {
 namespace {
 
-// Writes everything. False, with errno, on failure.
+// Writes everything. Returns false, with errno, on failure.
 bool write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -35,7 +35,7 @@ bool write_all(int descriptor, std::string_view bytes) {
   return true;
 }
 
-// Writes one piece after the other, little ones together. False, with errno, on failure.
+// Writes one piece after the other, and small pieces together. Returns false, with errno, on failure.
 bool write_all(int descriptor, std::span<const std::string_view> pieces) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string block;
@@ -52,7 +52,7 @@ bool write_all(int descriptor, std::span<const std::string_view> pieces) {
   return write_all(descriptor, block);
 }
 
-// Writes everything at a place of a file. False, with errno, on failure.
+// Writes everything at a place of a file. Returns false, with errno, on failure.
 bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(at));
@@ -64,7 +64,7 @@ bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
   return true;
 }
 
-// The descriptor for which a path stands that names a stream of this process.
+// The descriptor that a path stands for where it names a stream of this process.
 std::optional<int> stream_descriptor(std::string_view path) {
   if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
   if (path == "/dev/stderr") return STDERR_FILENO;
@@ -78,7 +78,7 @@ std::optional<int> stream_descriptor(std::string_view path) {
   return std::nullopt;
 }
 
-// The file that is written when somebody writes to path: the end of a chain of symbolic links, which need not exist.
+// The file that is written when a program writes to path: the end of a chain of symbolic links, which need not exist.
 std::string follow_links(const std::string& path) {
   constexpr int kLongestChain = 40;
   std::filesystem::path target = path;
@@ -91,7 +91,7 @@ std::string follow_links(const std::string& path) {
   return target.string();
 }
 
-// Makes the rename last through a power cut. File systems that can not do it are none of our business.
+// Makes the rename last through a power cut. Errors are ignored, since some file systems cannot do it.
 void flush_folder_of(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const Descriptor descriptor(open_descriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY));
@@ -104,27 +104,27 @@ Error exists_already(const std::string& path) {
 
 }  // namespace
 
-// One of three: a stream of this process, a device or a pipe of the file system, a new file.
+// The output is one of three: a stream of this process, a device or a pipe of the file system, or a new file.
 struct internal::OutputFile::State {
   std::string path;
   bool force = false;
   std::optional<int> stream = {};
   Descriptor device{-1};
-  std::string target = {};  // of path, behind symbolic links
-  bool replaces = false;    // what is there already:
+  std::string target = {};  // the file behind the symbolic links of path
+  bool replaces = false;    // whether target exists already, as:
   struct stat old {};
   std::unique_ptr<TemporaryFile> file = {};
-  std::string gathered = {};  // what a stream or a device gets in the end
+  std::string gathered = {};  // what a stream or a device gets when it is finished
 
   [[nodiscard]] int descriptor() const noexcept {
     return stream ? *stream : file != nullptr ? file->descriptor() : device.number();
   }
   [[nodiscard]] Error error() const { return failure(stream && path == "-" ? "<stdout>" : path, errno); }
 
-  // Flushes the new file to disk, and gives it its name. False, with errno, on failure.
+  // Flushes the new file to disk, and gives it its name. Returns false, with errno, on failure.
   [[nodiscard]] bool replace_target() {
     if (replaces) {
-      if (::fchown(file->descriptor(), old.st_uid, old.st_gid) != 0) errno = 0;  // only the owner or root may
+      if (::fchown(file->descriptor(), old.st_uid, old.st_gid) != 0) errno = 0;  // only the owner or root may do that
       if (::fchmod(file->descriptor(), old.st_mode & 07777) != 0) return false;
     }
     if (::fsync(file->descriptor()) != 0 && errno != EINVAL && errno != EROFS) return false;
@@ -158,7 +158,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
     return OutputFile(std::move(state));
   }
   state->target = follow_links(path);
-  // Until it has the permissions of the file that it replaces, nobody else may read it.
+  // Nobody else may read the new file until it has the permissions of the file that it replaces.
   state->file = std::make_unique<TemporaryFile>(state->target, state->replaces ? 0600 : 0666);
   if (state->file->is_open()) return OutputFile(std::move(state));
   Error error = failure(path, errno);

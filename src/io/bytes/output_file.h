@@ -1,11 +1,12 @@
-/// A file that is written as its bytes come, and that nobody sees before it is whole: chronormal/io/output.h says how. Private
-/// to io and workflow.
+/// A file that is written as its bytes come, and that nobody sees before it is whole, as chronormal/io/output.h
+/// describes. Private to io and workflow.
 ///
 ///     Result<OutputFile> file = OutputFile::create(path, force);
 ///     ... file.value().append(header); file.value().append(row);      // each a Status
 ///     ... file.value().finish();                                      // now the file is there
 ///
-/// What is dropped before finish() leaves nothing behind, but on streams, which have seen all that was appended.
+/// An object that is destroyed before finish() leaves nothing behind, except on streams, which have seen all that was
+/// appended.
 ///
 /// Threads    one file belongs to one thread at a time.
 #ifndef CHRONORMAL_IO_BYTES_OUTPUT_FILE_H_
@@ -23,20 +24,21 @@ namespace chronormal::inline internal {
 
 class OutputFile {
  public:
-  /// Errors: those of write_output() in chronormal/io/output.h, as far as they are known before a byte is written.
+  /// Begins a file. Errors: those of write_output() in chronormal/io/output.h, as far as they are known before a byte
+  /// is written.
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();
 
-  /// Writes behind all that was appended.
+  /// Writes bytes behind all that was appended.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }
-  /// The same of pieces, one after the other.
+  /// The same for several pieces, one after the other.
   [[nodiscard]] Status append(std::span<const std::string_view> pieces);
 
-  /// Writes from byte `at` on, wherever that is. A stream gets what was put when it is finished: all is held in memory
-  /// until then. One file is either appended to or put together.
+  /// Writes from byte `at` on, wherever that is. A stream gets these bytes when it is finished, and all of them are
+  /// held in memory until then. A file must be written either by append() or by this function alone.
   [[nodiscard]] Status put(std::uint64_t at, std::string_view bytes);
 
   /// Ends the file and gives it its name.

@@ -1,3 +1,4 @@
+// Reads parts of a regular file by its descriptor.
 #include "io/bytes/positioned_file.h"
 
 #include <fcntl.h>
@@ -12,7 +13,7 @@ namespace chronormal::inline internal {
 
 std::optional<PositionedFile> PositionedFile::open(const std::string& path) {
   struct stat status {};
-  // A pipe that is opened and closed again has lost its writer: look before.
+  // A pipe that is opened and closed again loses its writer, so the kind of the file is checked first.
   if (path == "-" || ::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   Descriptor descriptor(open_descriptor(path, O_RDONLY));
   if (!descriptor.is_open() || ::fstat(descriptor.number(), &status) != 0 || !S_ISREG(status.st_mode))

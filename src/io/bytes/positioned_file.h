@@ -1,5 +1,5 @@
-/// A file of which parts are read, wherever they lie, by a descriptor and without mapping it: of a file that is longer than
-/// memory, and that may be cut while it is read. Private to io.
+/// A file of which parts are read, wherever they lie, by a descriptor and without a mapping: the file may be larger
+/// than memory, and may be shortened while it is read. Private to io.
 ///
 /// Threads    read() may be called from several at the same time.
 #ifndef CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_
@@ -17,14 +17,14 @@ namespace chronormal::inline internal {
 
 class PositionedFile {
  public:
-  /// Opens a regular file; nothing for anything else, and for what can not be opened.
+  /// Opens a regular file; returns nothing for any other, and for one that cannot be opened.
   [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
 
-  /// Bytes, when it was opened.
+  /// The size of the file in bytes when it was opened.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Fills bytes with those from `at` on. Errors: kFailed with the path as the place: the file has become shorter, and
-  /// whatever the system refuses.
+  /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, where the file
+  /// has become shorter or the system refuses to read.
   [[nodiscard]] Status read(std::uint64_t at, std::span<char> bytes) const;
 
  private:

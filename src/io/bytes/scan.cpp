@@ -1,3 +1,4 @@
+// Parses numbers: a fast path for plain digits, and the strict functions for all others.
 #include "io/bytes/scan.h"
 
 #include <cmath>
@@ -61,9 +62,9 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
 }
 
-// With a whole number w of at most 53 bits and p up to 22, w / 10^p or w 10^p is one correctly rounded double (Clinger
-// 1990). Rounded again to float it is right unless it lies in the middle between two floats, to which it may itself have
-// been rounded.
+// With an integer w of at most 53 bits and p up to 22, w / 10^p and w 10^p are correctly rounded doubles (Clinger
+// 1990). Rounded again to float, such a double gives the right result, unless it lies in the middle between two floats:
+// it may have been rounded to that middle.
 bool take_plain_float(std::string_view& line, float& value) noexcept {
   static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                        1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};

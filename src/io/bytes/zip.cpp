@@ -1,3 +1,4 @@
+// Reads the directory and the members of zip files, and makes the headers of those that are written.
 #include "io/bytes/zip.h"
 
 #include <zlib.h>
@@ -200,7 +201,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
 
 Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) {
   Frame frame;
-  std::uint64_t end = 0;  // of the file so far
+  std::uint64_t end = 0;  // where the file ends so far
   std::string& directory = frame.directory.bytes;
   const auto put16 = [](std::string& text, std::uint64_t value) {
     binary::append(text, static_cast<std::uint16_t>(value), kOrder);

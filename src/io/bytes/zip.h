@@ -38,18 +38,18 @@ struct Member {
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
                                                    std::string& storage, const std::string& name);
 
-/// The checksum of bytes that follow those of which `so_far` is one.
+/// Continues a checksum: `so_far` is that of all bytes before these.
 [[nodiscard]] std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far = 0);
 
-/// A member that is to be written, stored: its name, and what is known of its bytes.
+/// A stored member that is to be written: its name, and the size and the checksum of its bytes.
 struct StoredMember {
   std::string_view name;
   std::uint64_t size = 0;
   std::uint32_t checksum = 0;
 };
 
-/// All of a zip file but the bytes of its members: where each has its header, which is followed by its bytes, and what
-/// stands behind the last one. Checksums move nothing, so that they may be 0 until they are known.
+/// A zip file without the bytes of its members: the place of each header, which its bytes follow, and the records
+/// behind the last member. Checksums do not change any place, so they may be 0 until they are known.
 struct Frame {
   struct Header {
     std::uint64_t at = 0;

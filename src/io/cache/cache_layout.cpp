@@ -1,3 +1,4 @@
+// Reads samples from where a layout says that they lie, and checks their coordinates.
 #include "io/cache/cache_layout.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Status decode_coordinates(const CacheLayout& layout, const std::string& name, st
 
 Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name, std::size_t k,
                    std::span<float> positions) {
-  constexpr std::size_t kBlock = std::size_t{1} << 15;  // coordinates: they stay in cache until they are looked at
+  constexpr std::size_t kBlock = std::size_t{1} << 15;  // coordinates, which stay in cache until they are checked
   std::vector<char> bytes(std::min(kBlock, positions.size()) * layout.item_size);
   for (std::size_t first = 0; first < positions.size(); first += kBlock) {
     const std::span<float> block = positions.subspan(first, std::min(kBlock, positions.size() - first));

@@ -23,7 +23,7 @@
 
 namespace chronormal::inline internal {
 
-/// How many bytes from the beginning of a file a layout is found in, at most; a file that needs more has none.
+/// The number of bytes at the beginning of a file in which its layout is looked for; a file that needs more has none.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {
@@ -32,7 +32,7 @@ struct CacheLayout {
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< 4 or 8
   std::endian order = std::endian::little;
-  std::string array = {};  ///< what NumPy calls it: errors name an element of it, and not a byte
+  std::string array = {};  ///< the name of the array in NumPy: errors then name an element, and not a byte
 
   [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }
   [[nodiscard]] std::uint64_t sample_begin(std::size_t k) const noexcept {
@@ -40,12 +40,13 @@ struct CacheLayout {
   }
 };
 
-/// Reads coordinates of sample k, from `first` on, out of their bytes. Errors: kInvalidInput for one that is not finite or
-/// too large for float32, with the place "NAME, byte N, sample K, vertex V", or "NAME, positions[K, V, C]".
+/// Converts the bytes of coordinates of sample k, from coordinate `first` on. Errors: kInvalidInput for a coordinate
+/// that is not finite or too large for float32, with the place "NAME, byte N, sample K, vertex V", or "NAME,
+/// positions[K, V, C]".
 [[nodiscard]] Status decode_coordinates(const CacheLayout& layout, const std::string& name, std::size_t k,
                                         std::size_t first, std::string_view bytes, std::span<float> result);
 
-/// Reads sample k of a file; the errors are those, and of PositionedFile.
+/// Reads sample k of a file. Errors: the same, and those of PositionedFile.
 [[nodiscard]] Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name,
                                  std::size_t k, std::span<float> positions);
 

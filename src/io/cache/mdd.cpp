@@ -1,3 +1,4 @@
+// Finds the samples of an MDD file, and writes MDD files.
 #include "io/cache/mdd.h"
 
 #include <bit>

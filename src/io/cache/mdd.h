@@ -29,16 +29,16 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions are, of a file of so many bytes that begins with these: all, or kLayoutBytes. Errors: those of
-/// read_mdd(), but for coordinates, and kInvalidInput for times that lie behind these bytes.
+/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
+/// Errors: those of read_mdd(), except for coordinates; kInvalidInput for times that lie behind these bytes.
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// The counts and times of a motion. Errors: kUsage without a place: blend shapes, more than 2^31 - 1 vertices or keyframes,
-/// and times that are the same as float32.
+/// Makes the header of a motion, its counts and times. Errors, without a place: kUsage for blend shapes, for more than
+/// 2^31 - 1 vertices or keyframes, and for times that are the same in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
-/// Writes these, and the positions as they come. Errors: those, of the stream and of the file.
+/// Writes the header, and the positions as they are read. Errors: those of the header, the stream and the file.
 [[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

@@ -1,3 +1,4 @@
+// Reads the arrays of NumPy files as a motion, all at once or as a layout, and writes motions as arrays.
 #include "io/cache/npz.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ Status check_positions(const Array& array, const std::string& place, const std::
                        what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
-// Where positions in C order are, in a file that has the array from byte `begin` on.
+// The layout of positions in C order, in a file that has the array from byte `begin` on.
 CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
@@ -50,7 +51,7 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// The samples of an array (T, V, 3) of the file of this name.
+// Reads the samples of an array (T, V, 3), in the file of this name.
 Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what) {
   const std::string place = name + ", " + what;
   if (Status status = check_positions(array, place, what); !status) return status.error();
@@ -112,7 +113,7 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
   return Success{};
 }
 
-// Velocities per second, of the shape of the positions.
+// Takes velocities per second, in an array of the shape of the positions.
 Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
   Result<PositionCache> read = read_positions(array, name, "velocities");
   if (!read) return read.error();
@@ -170,7 +171,7 @@ class Archive {
     return result;
   }
 
-  // Where positions lie in the file that can be read one by one: they are stored, in C order.
+  // Finds where positions lie that can be read one by one: those that are stored, in C order.
   [[nodiscard]] Result<std::optional<CacheLayout>> find_stored(std::string_view array) {
     constexpr std::uint16_t kStored = 0;
     const zip::Member* const member = find(array);
@@ -223,7 +224,7 @@ class Archive {
   std::string storage_;
 };
 
-// Reads a motion; or with a layout, all of it but positions that can be read one by one, and where those are.
+// Reads a motion. With a layout, it leaves positions in the file that can be read one by one, and says where they lie.
 Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
                                std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);

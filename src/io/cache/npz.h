@@ -42,16 +42,17 @@ namespace chronormal::inline internal {
 ///
 /// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
-/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, velocities of another shape than the positions, times that
-/// do not ascend, an unknown kind. Sizes that disagree between directory, member and array header are refused before
-/// memory is taken.
+/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, velocities
+/// of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree between
+/// directory, member and array header are refused before memory is taken.
 /// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so expansion
 /// is asked first, with bytes and numbers of what is deflated, and what a keyframe takes beside its positions.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// The same but for positions that are stored in C order: layout says where in the file they lie, and the keyframes have
-/// none. Where they are not, all is read, and layout is nothing. The checksum of positions is not verified then.
+/// The same, except that positions which are stored in C order stay in the file: layout says where they lie, the
+/// keyframes have none, and the checksum of the positions is not verified. Other positions are read, and layout is
+/// nothing.
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
@@ -60,16 +61,16 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions are, of a file of so many bytes that begins with these: all, or kLayoutBytes. Errors: those of
-/// read_npy(), but for coordinates, and kInvalidInput for the order of Fortran.
+/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
+/// Errors: those of read_npy(), except for coordinates; kInvalidInput for Fortran order.
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Writes, as they come, positions (float32), faces (int32, or uint32 for more than 2^31 vertices), times (float64) of what
-/// has any, velocities where all keyframes have them, and the kind of what is no sequence, stored, so that the arrays can
-/// be mapped. The same motion gives the same bytes.
-/// Errors: kUsage without a place: a mesh that does not move, and faces of different numbers of corners, which no (F,
-/// k) array holds; those of the stream and of the file.
+/// Writes positions (float32) as they are read, faces (int32, or uint32 for more than 2^31 vertices), times (float64)
+/// where there are any, velocities where all keyframes have them, and the kind of a motion that is no sequence. Arrays
+/// are stored, so that they can be mapped. The same motion gives the same bytes.
+/// Errors, without a place: kUsage for a mesh that does not move, and for faces of different numbers of corners, which
+/// no (F, k) array holds; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
 /// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.
@@ -104,7 +105,7 @@ struct NpzMember {
 /// Writes a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
-/// A .npz file, stored, of which some arrays grow as it is written: all of them at the same time.
+/// A .npz file of stored arrays, of which some grow while it is written, all of them at the same time.
 ///
 ///     NpzOutput npz(file);
 ///     const std::size_t normals = npz.add_growing("normals", {moments, outputs, 3});
@@ -112,26 +113,26 @@ struct NpzMember {
 ///     ... npz.begin(); npz.append(normals, row); ... npz.finish(); file.finish();      // each a Status
 class NpzOutput {
  public:
-  /// The file must outlive this.
+  /// The file must outlive this object.
   explicit NpzOutput(OutputFile& file) : file_(&file) {}
 
   /// Adds an array that is whole.
   void add(const NpzMember& member);
-  /// Adds an array of float32 in C order; returns its number for append().
+  /// Adds an array of float32 in C order that grows, and returns its number for append().
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape);
 
-  /// Once all are added.
+  /// Writes the headers; call it once all arrays are added.
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
-  /// Once all bytes of the shapes are there.
+  /// Ends the file; call it once the growing arrays have all bytes of their shapes.
   [[nodiscard]] Status finish();
 
  private:
   struct Member {
     std::string name, start;
     std::uint64_t size = 0;
-    std::uint64_t end = 0;  // of what is written, in the file
+    std::uint64_t end = 0;  // where in the file ends what is written
     std::uint32_t checksum = 0;
   };
   [[nodiscard]] zip::Frame frame() const;

@@ -1,3 +1,4 @@
+// Finds the samples of a PC2 file, and writes PC2 files.
 #include "io/cache/pc2.h"
 
 #include <bit>

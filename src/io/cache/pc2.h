@@ -34,16 +34,18 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions are, of a file of so many bytes that begins with these: all, or kLayoutBytes. Errors: those of
-/// read_pc2(), but for coordinates.
+/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
+/// Errors: those of read_pc2(), except for coordinates.
 [[nodiscard]] Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// The header of a motion. PC2 keeps no list of times: they must be at equal steps, to a thousandth of one. Errors:
-/// kUsage without a place: times at other steps, blend shapes, more than 2^31 - 1 vertices or keyframes.
+/// Makes the header of a motion. PC2 keeps no list of times: they must be at equal steps, to a thousandth of a step.
+/// Errors, without a place: kUsage for times at other steps, for blend shapes, and for more than 2^31 - 1 vertices or
+/// keyframes.
 [[nodiscard]] Result<std::string> pc2_header(const Motion& motion, double frames_per_second = 1);
 
-/// Writes the header, at one frame a second, and the positions as they come. Errors: those, of the stream and of the file.
+/// Writes the header, at one frame a second, and the positions as they are read. Errors: those of the header, the
+/// stream and the file.
 [[nodiscard]] Status write_pc2(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

@@ -41,7 +41,7 @@ struct Counts {
   return Success{};
 }
 
-/// The layout of these counts, all of its times 0. Precondition: check_counts().
+/// The layout for these counts, with all times 0. Precondition: check_counts() found no error.
 [[nodiscard]] inline CacheLayout layout_of(Counts counts, std::size_t begin, std::endian order) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(counts.vertices);
@@ -60,7 +60,7 @@ struct Counts {
   return Success{};
 }
 
-/// Writes a header and the positions of all keyframes behind it. Errors: those of the header, the stream and the file.
+/// Writes a header, and the positions of all keyframes behind it. Errors: those of the header, the stream and the file.
 [[nodiscard]] inline Status write(const Result<std::string>& header, MotionStream& stream, std::endian order,
                                   OutputFile& file) {
   if (!header) return header.error();

@@ -54,14 +54,15 @@ struct CacheOptions {
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                                const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
-/// Whether the keyframes of a motion are a list of samples, two or more. Errors: kUsage without a place.
+/// Checks that the keyframes of a motion are a list of two samples or more. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
 /// Whether they are one sequence besides, so that a format can hold them that knows nothing else: segments join all
 /// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
-/// Hands out the coordinates of one keyframe after the other, as bytes of float32. Errors: those of the stream and of each.
+/// Calls each() with the coordinates of one keyframe after the other, as bytes of float32. Errors: those of the stream
+/// and of each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);
 

@@ -45,13 +45,13 @@ struct Format {
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
-  /// The same, but that positions which can be read one by one are left in the file; nullptr where there are none.
+  /// The same, but leaves positions in the file that can be read one by one; nullptr where there are none.
   Result<Motion> (*read_outline)(std::string_view bytes, const std::string& name, double frames_per_second,
                                  std::size_t max_expansion, std::optional<CacheLayout>& layout) = nullptr;
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
-  /// Finds where samples lie (io/cache/cache_layout.h); nullptr where they can not be read one by one.
+  /// Finds where samples lie (io/cache/cache_layout.h); nullptr where they cannot be read one by one.
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 

@@ -37,7 +37,7 @@ Error not_animated(const std::string& input) {
   return misuse(input, "--animation chooses among those of a glTF file, which this is not");
 }
 
-// What is chosen among keyframes, and these are none of a sequence.
+// The error for a choice of keyframes in an input that is no sequence.
 Error chooses_nothing(const InputOptions& options) {
   return misuse(options.from > 0 ? "--from"
                 : options.to     ? "--to"
@@ -91,7 +91,7 @@ Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& ca
   return input.format->read_cache(file.value().bytes(), file_name_of(input.path), cache_options);
 }
 
-// Keeps the keyframes that the options choose, of a motion that was read whole.
+// Keeps the chosen keyframes of a motion that was read whole.
 Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (!options.chooses_frames()) return Success{};
   if (motion.kind != MotionKind::kSequence || motion.segments.empty()) return chooses_nothing(options);
@@ -104,8 +104,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   return Success{};
 }
 
-// A motion that is there but for its positions, as a stream of those that the options choose. The file is opened again:
-// nothing is read by its name, and nothing of it is mapped.
+// Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream has a descriptor
+// of its own: it does not read the file by its name, and maps nothing.
 Result<MotionStream> stream_samples(const InputOptions& options, Motion outline, PositionedFile file,
                                     CacheLayout layout, const std::string& name) {
   std::vector<std::size_t> frames(outline.keyframes.size());
@@ -124,15 +124,15 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   return MotionStream(std::move(outline), read, options.kept_bytes);
 }
 
-// The cache that has this layout, without positions.
+// The cache of a layout, without positions.
 Result<PositionCache> outline_of(const CacheLayout& layout) {
   PositionCache cache{layout.vertex_count, {}};
   for (const double time : layout.times) cache.samples.push_back({time, {}});
   return cache;
 }
 
-// The layout of a cache whose samples can be read one by one; nothing where they can not, or where something is wrong,
-// which the reader of the whole file says.
+// The layout of a cache whose samples can be read one by one. It is nothing where they cannot, and where something is
+// wrong, which the reader of the whole file reports.
 struct FoundSamples {
   PositionedFile file;
   CacheLayout layout;
@@ -226,7 +226,7 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
-// Reads a file that holds a whole motion, or its outline where samples can be read one by one.
+// Reads a file that holds a whole motion, or only its outline where samples can be read one by one.
 Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);

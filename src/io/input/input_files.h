@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 /// A motion as it is read from files, and what they store beside it.
 struct ReadMotion {
   Motion motion;
-  std::optional<MotionStream> stream = {};  ///< of it; or in place of it, where keyframes are still in files
+  std::optional<MotionStream> stream = {};  ///< of the motion, or in place of it where keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;         ///< as Input has it
@@ -48,8 +48,8 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// The keyframes of a sequence of so many that the options choose. Errors: kUsage with the option as the place, where there
-/// are not two.
+/// The keyframes that the options choose among so many. Errors: kUsage with the option as the place, where there are
+/// fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
 /// Whether other has the vertex count and the faces of first, which messages call first_name.

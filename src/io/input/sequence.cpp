@@ -62,14 +62,14 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
   return error;
 }
 
-// A frame that is not the first.
+// A frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
-  std::uint64_t bytes = 0;  // of its file, where nobody has counted them
+  std::uint64_t bytes = 0;  // the size of its file, where it was not counted otherwise
 };
 
-// faces: those of the first frame, where their text can be compared. shaded: gets the normals of the frame, where they
-// are wanted.
+// Reads a frame. `faces` are those of the first frame, where their text can be compared; `shaded` gets the normals of
+// the frame, where they are wanted.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Topology& topology,
                      const std::string& first_name) {
@@ -91,14 +91,14 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
   return {std::move(mesh.value().positions), counted};
 }
 
-// The faces of a file whose text can be compared with that of others; nothing for other formats than OBJ.
+// The faces of a file whose text can be compared with that of other files; nothing for other formats than OBJ.
 std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
   const Format* const format = find_format(file_name_of(path), bytes);
   if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
   return ObjFaces(bytes, positions);
 }
 
-// Of all files; nothing where one of them is none that can be read again, such as a pipe, or is not there.
+// The sizes of all files; nothing where one of them is not there, or cannot be read again, such as a pipe.
 std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
   std::uint64_t bytes = 0;
   for (const std::size_t k : frames) {
@@ -119,7 +119,7 @@ Result<std::vector<std::string>> find_frames(const InputOptions& options) {
 
 namespace {
 
-// Which of the files are keyframes.
+// The numbers of the files that are keyframes.
 Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& files, const InputOptions& options) {
   const std::size_t total = files.size();
   if (total < 2)
@@ -155,8 +155,9 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions));
 
-  // The frames that follow, as many at a time as there are threads, but for those of a resolver, which may not be ready
-  // for that, and where the normals of one depend on whether the frame before had some.
+  // Reads the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
+  // may not be safe to call from several threads, and where the normals of a frame depend on whether the one before had
+  // some.
   const bool keeps_normals = options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;

@@ -14,16 +14,17 @@ namespace chronormal::inline internal {
 /// Errors: those of find_input_files(); kInvalidInput for a folder without meshes, or with files of two formats.
 [[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options);
 
-/// Reads these files as keyframes, those of them that the options choose; each takes the name of its file. Only one file is open at a time, and one topology
-/// is kept. The result is valid (motion/motion.h).
+/// Reads those of these files that the options choose as keyframes; each takes the name of its file. Beside the first
+/// file, no more files are open at a time than there are threads, and one topology is kept. The result is valid
+/// (motion/motion.h).
 ///
 /// Errors: those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj), line 17");
 /// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
-/// The same but that the files of keyframes after the first are read when the stream asks for them, with the errors of
-/// that file. All are read at once where they are small (InputOptions::kept_bytes), where one is no regular file, and where
-/// the options keep the normals of all and the first file stores some.
+/// The same, except that the files of keyframes after the first are read when the stream asks for them, with the errors
+/// of each file. All files are read at once where they are small (InputOptions::kept_bytes), where one is no regular
+/// file, and where the options keep the normals of all and the first file stores some.
 [[nodiscard]] Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 }  // namespace chronormal::inline internal

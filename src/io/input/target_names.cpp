@@ -1,3 +1,4 @@
+// Finds the names of the morph targets of an input, and looks targets up by name.
 #include "chronormal/io/target_names.h"
 
 #include <algorithm>

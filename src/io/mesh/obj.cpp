@@ -1,3 +1,4 @@
+// Reads OBJ files statement by statement, with fast paths for plain numbers and corners.
 #include "io/mesh/obj.h"
 
 #include <algorithm>
@@ -190,8 +191,8 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   return Success{};
 }
 
-// Takes a corner that counts its vertex from the first of the file, in digits alone; 0 where it is none, and the line
-// stays as it is.
+// Takes a corner that is a positive index in digits alone. Returns 0 where the next word is no such corner; the line
+// then stays as it is.
 std::int64_t take_plain_corner(std::string_view& line) {
   constexpr std::ptrdiff_t kMostDigits = 9;
   const char* at = line.data();

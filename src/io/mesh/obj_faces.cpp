@@ -1,3 +1,4 @@
+// Compares the text of faces, and reads only the positions before it.
 #include "io/mesh/obj_faces.h"
 
 #include <algorithm>
@@ -8,10 +9,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// What stands before the first face.
+// The part of a file before its first face.
 struct Head {
   std::vector<float> positions;
-  std::size_t end = 0;  // where the line of that face begins
+  std::size_t end = 0;  // where the line of the first face begins
 };
 
 std::optional<Head> read_head(std::string_view bytes, std::size_t expected) {

@@ -1,3 +1,4 @@
+// Computes the control normals of faces, and evaluates them in double and, where that is not enough, in integers.
 #include "chronormal/normals/control_normals.h"
 
 #include <cassert>

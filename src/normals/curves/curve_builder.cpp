@@ -1,3 +1,4 @@
+// Makes curves in parts, in one go on all threads or in slices on one, and puts the parts one after the other.
 #include "normals/curves/curve_builder.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ constexpr std::size_t kMostRows = std::size_t{4} << 20;
 // every vertex is one.
 class EndsSideBySide {
  public:
-  // Into memory that is there, where that is enough. Nothing is copied yet.
+  // Uses the memory that is there, where that is enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -68,7 +69,7 @@ class EndsSideBySide {
   Segment from_, segment_;
 };
 
-// Curves that are being made: part after part on one thread, a chunk at a time, or parts on all.
+// Curves that are being made, either part after part on one thread, a chunk at a time, or many parts on all threads.
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
@@ -78,7 +79,7 @@ class Build {
     curves_.size = size;
     curves_.keeps_lengths = !(options.tolerance > kExactTolerance);
     if (size == 0) return;
-    // Room for the worst; what is not written costs nothing.
+    // There is room for the largest result; memory that is not written costs nothing.
     if (curves_.blocks.capacity() < whole() * kWorst) {
       curves_.blocks = {};
       curves_.blocks = AlignedBytes(whole() * kWorst);
@@ -103,8 +104,8 @@ class Build {
     }
   }
 
-  // Makes all parts, each thread from a source of its own and into memory near it. How long the parts before one are is
-  // known when they are made, and then it is copied to where it belongs, by the thread that made it.
+  // Makes all parts, each thread from a source of its own and into memory near it. The place of a part is known when
+  // all parts before it are made; then the thread that made the part copies it there.
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
@@ -125,10 +126,10 @@ class Build {
           while (builder.make_chunk(source)) {
           }
         } catch (...) {
-          end_at(0);  // nobody waits for what will not come
+          end_at(0);  // so that no thread waits for a part that will not come
           throw;
         }
-        // Whoever makes an earlier part has begun with it.
+        // Every earlier part has been begun by some thread.
         if (p > 0) ends[p - 1].wait(kNotKnown);
         std::byte* const to = curves_.blocks.data() + (p > 0 ? ends[p - 1].load() : 0);
         end_at(static_cast<std::size_t>(to - curves_.blocks.data()) + parts_[p].bytes);
@@ -138,7 +139,7 @@ class Build {
     });
   }
 
-  // Puts what the parts found one after the other.
+  // Puts the results of the parts one after the other.
   CurveData finish() {
     std::size_t bytes = 0;
     for (const CurvePart& made : parts_) {
@@ -180,7 +181,7 @@ class Build {
   PrecisionLimits limits_;
   std::size_t part_;  // elements
   std::vector<CurvePart> parts_;
-  // Of parts that are made one after the other: the next one, what makes it, and the bytes of those before.
+  // For parts that are made one after the other: the next part, its builder, and the bytes of the parts before.
   std::size_t next_ = 0, bytes_ = 0;
   std::optional<PartBuilder> builder_;
 };
@@ -198,14 +199,14 @@ CurveData build(std::size_t size, const CurveOptions& options, Threads threads, 
   return build.finish();
 }
 
-// The memory that curves before these had for the ends of a mesh in no order.
+// The memory that earlier curves had for the ends of a mesh in no order.
 AlignedArray<float> scratch_of(CurveData* reuse) {
   return reuse != nullptr ? std::exchange(reuse->scratch, {}) : AlignedArray<float>();
 }
 
 bool are_far_apart(const Segment& segment) { return lines_per_face(*segment.topology) > kScatteredLines; }
 
-// Whether both ends of vertices have to be laid side by side first.
+// Whether both ends of each vertex must be copied side by side first.
 bool needs_ends(const Segment& segment, const NormalGroups* groups) {
   if (groups != nullptr) return are_far_apart(segment);
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
@@ -251,8 +252,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// Three steps, one after the other: ends side by side, the control normals of all faces, and curves. The first two for
-// meshes in no order only.
+// There are three steps: copying both ends of each vertex side by side, computing the control normals of all faces, and
+// making the curves. The first two are for meshes in no order only.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),
@@ -289,7 +290,7 @@ struct CurveSlices::State {
 
   struct Step {
     std::size_t count = 0;
-    double share = 0;  // of all work, about
+    double share = 0;  // of all work, approximately
     std::size_t done = 0;
   };
 

@@ -30,7 +30,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// The same on one thread in slices, with the same bits: see CurvePreparation. The segment and the groups must outlive it.
+/// Builds the same curves on one thread in slices, with the same bits: see CurvePreparation. The segment and the groups
+/// must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);
@@ -40,7 +41,7 @@ class CurveSlices {
 
   /// Does this share of the work, or what is left of it; returns whether all is done.
   bool advance(double share);
-  /// Does what is left and returns the curves; once.
+  /// Does what is left, and returns the curves. It may be called once.
   [[nodiscard]] CurveData finish();
 
  private:

@@ -1,3 +1,4 @@
+// Passes the calls of a preparation on to CurveSlices (curve_builder.h).
 #include "chronormal/normals/curve_preparation.h"
 
 #include "normals/curves/curve_builder.h"

@@ -1,5 +1,5 @@
-/// Makes a part of some curves: chunk by chunk, from tiles of control normals to packed blocks. What curve_builder.cpp is
-/// made of.
+/// Makes one part of some curves, chunk by chunk, from tiles of control normals to packed blocks; curve_builder.cpp
+/// puts the parts together.
 #ifndef CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
 
@@ -27,22 +27,22 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kChunkTiles = 32;
 inline constexpr std::size_t kChunk = kChunkTiles * kTile;
-inline constexpr std::size_t kWrittenTiles = 4;  // by one call of a source
+inline constexpr std::size_t kWrittenTiles = 4;  // that one call of a source writes
 
 inline constexpr std::size_t kShortestRun = 4;  // blocks
 
-// Blocks are scaled so that no component is above 2^50 and no end that counts below 2^-52: then |n(t)|^2, at worst that
-// of 2^-53 / 64, stays in the range of float32.
+// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2, at worst
+// that of 2^-53 / 64, stays in the range of float32.
 inline constexpr int kLargestExponent = 50;
 inline constexpr double kLargestComponent = 0x1p50;
 inline constexpr double kSmallestEnd = 0x1p-52;
 inline constexpr double kSmallestShare = kSmallestEnd / kLargestComponent;
-// Below this, that scale itself would leave the range of double.
+// Below this, the scale itself would leave the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
 
 inline double smaller_end(const ControlNormals& c) { return std::min(max_abs(c.n0), max_abs(c.n1)); }
 
-// The fewest bits that keep the tolerance for this element at every t; nothing where double is needed.
+// The fewest bits that keep this element within the tolerance at every t; nothing where double is needed.
 inline std::optional<Precision> precision_for(const ControlNormals& normals, const PrecisionLimits& limits) {
   const double largest = largest_component(normals);
   if (!(largest >= kSmallestMesh)) return std::nullopt;
@@ -65,10 +65,10 @@ inline ControlNormals scaled(double scale, const ControlNormals& c) {
   return {scale * c.n0, scale * c.m, scale * c.n1};
 }
 
-// What a flagged element leaves in its block, whatever the kind.
+// The contents of a flagged element in its block, whatever the kind of the block.
 inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
-// What a block must be able to hold.
+// The precision that a block must be able to hold.
 struct Need {
   Precision precision = Precision::k11;
   int degree = 0;
@@ -120,7 +120,7 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// What one thread makes at a time.
+// The part that one thread makes at a time.
 struct CurvePart {
   IndexRange elements;
   std::byte* begin = nullptr;  // of its blocks
@@ -148,7 +148,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   Examined result;
   result.normals = rounded.normals;
   double share = rounded.largest_share();
-  // Control normals that a caller gave are exact by definition: there are no positions to compute better ones from.
+  // Control normals that a caller gave are exact by definition, since there are no positions from which better ones
+  // could be computed.
   constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
   if constexpr (kHasExact) {
     if (!(share <= kLargestShare)) {
@@ -218,9 +219,9 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Asks for the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had: it
-  // comes while tiles are computed, a little at a time, for the core would wait where more is asked for than can be
-  // under way.
+  // Prefetches the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had. It
+  // arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait where more is
+  // requested than can be in flight.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
     constexpr std::size_t kCacheLine = 64;
@@ -230,7 +231,7 @@ class PartBuilder {
 #endif
   }
 
-  // Looks in double at the elements of a tile that a glance cannot judge. Returns those that are flagged, as bits.
+  // Examines in double the elements of a tile that the quick test did not settle. Returns the flagged ones as bits.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, TileSummary& summary, ControlTile& tile, Need& need) {
     std::uint32_t flagged = 0, needs_exact = 0;

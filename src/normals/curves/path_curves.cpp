@@ -1,8 +1,9 @@
-// PathCurves: blocks of 16 elements for the kernel, and the flagged elements, which are written over what it makes of them.
+// Packs elements into blocks of 16 for the kernel; flagged elements are evaluated in double, and overwrite the results
+// of the kernel.
 //
-// The angle in float32, with u = 2^-24: a control normal, its weight and their product are rounded once each, and a
-// product goes through three additions, so that n(t) is off by 6 u sum w_k |c_k| at most, and turns by 6 u r where
-// |n(t)| >= sum w_k |c_k| / r; the last product, by 1 / |n|, turns it by u. With r = 2.6 that is 9.9e-7.
+// The error in float32 is as follows, with u = 2^-24. A control normal, its weight and their product are rounded once
+// each, and a product goes through three additions. So n(t) is off by at most 6 u sum w_k |c_k|, and turns by at most 6
+// u r where |n(t)| >= sum w_k |c_k| / r; the last product, with 1 / |n|, turns it by u. With r = 2.6 that is 9.9e-7.
 
 #include "chronormal/normals/path_curves.h"
 
@@ -21,14 +22,14 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kPiece = 8192;   // of elements, a multiple of a block; what a thread does at a time
+constexpr std::size_t kPiece = 8192;   // elements that a thread takes at a time, a multiple of a block
 constexpr double kLongestRatio = 2.6;  // r
-constexpr double kSmallest = 0x1p-40;  // of the largest control normal: the root of |n|^2 stays in range of float32
+constexpr double kSmallest = 0x1p-40;  // of the largest control normal: |n|^2 stays in the range of float32
 
 using Controls = PolynomialNormals<3>;
 static_assert(std::tuple_size_v<Controls> == kPathControls);
 
-// What the products of two coefficients of degree 6 count in the coefficient of degree 12 that they belong to.
+// The factors of products of two coefficients of degree 6 in the coefficient of degree 12 that they belong to.
 struct ProductShares {
   double of[kPathControls][kPathControls];
   constexpr ProductShares() : of() {
@@ -38,7 +39,8 @@ struct ProductShares {
 };
 constexpr ProductShares kShares;
 
-// Whether float32 can carry an element: proven at a glance, or else by the coefficients of r^2 |n|^2 - (sum w_k |c_k|)^2.
+// Whether float32 can carry an element. The proof is a quick test, or else the signs of the coefficients of r^2 |n|^2 -
+// (sum w_k |c_k|)^2.
 bool stays_long(const Controls& n, double largest) {
   std::array<double, kPathControls> lengths;
   Vec3d sum;
@@ -154,13 +156,13 @@ std::size_t PathCurves::unit_normals(double time, VectorView<float> result, Thre
   return without_direction;
 }
 
-// The range begins at a block.
+// Evaluates a range of elements that begins at a block.
 std::size_t PathCurves::Data::evaluate(IndexRange range, double t, VectorView<float> result,
                                        MemoryAccess pass) const noexcept {
   if (range.count == 0) return 0;
   const PathWeights weights = weights_at(t);
   const float* const first_block = blocks.data() + range.first / kTile * kPathBlock;
-  std::size_t done = range.count / kTile * kTile;  // in whole blocks, where the kernel may write all of them
+  std::size_t done = range.count / kTile * kTile;  // the elements of whole blocks, all of which the kernel may write
   if (result.is_packed())
     evaluate_path_blocks(first_block, done / kTile, weights,
                          PackedResult{result.x + 3 * range.first, access_to(pass, result.x)});

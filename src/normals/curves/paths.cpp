@@ -1,3 +1,4 @@
+// Computes velocities at keyframes, cubics through them, and the control normals of faces on them.
 #include "chronormal/normals/paths.h"
 
 #include <algorithm>
@@ -124,7 +125,7 @@ Status check_path(const Motion& motion, PathKind kind) {
   return Success{};
 }
 
-// The derivative at a key of the polynomial through it and its neighbours, of Lagrange's form.
+// The derivative at a key of the polynomial through it and its neighbours, in Lagrange form.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());
@@ -156,11 +157,11 @@ Result<double> bend_of(MotionStream& stream, std::size_t every) {
     const Motion::Keyframe &from = motion.keyframes[i - every], &middle = motion.keyframes[i],
                            &to = motion.keyframes[i + every];
     const auto before = packed(from.positions), at = packed(middle.positions), after = packed(to.positions);
-    // Times may be uneven: what counts is the place on the straight way at the time of the middle one.
+    // Times may be uneven, so the middle keyframe is compared with the place on the straight line at its time.
     const double part = (middle.time - from.time) / (to.time - from.time);
     for (std::size_t v = 0; v < at.count; ++v) {
       const Vec3d p = to_double(before[v]), q = to_double(at[v]), r = to_double(after[v]);
-      // Of even times, twice the distance from the middle is the second difference.
+      // With even times, the second difference is twice the distance from the middle.
       bent += 2 * length(q - ((1 - part) * p + part * r));
       way += length(q - p) + length(r - q);
     }

@@ -1,3 +1,4 @@
+// Finds a kind of element by its name, and makes the groups for it.
 #include "chronormal/normals/elements.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other.
 #include "chronormal/normals/normal_groups.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 // A total order of coordinates in which -0 and 0 are the same.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// Where the coordinates of a vertex stand in the total order; of separate bodies none are equal.
+// The place of a vertex in the total order; vertices of separate bodies are never equal.
 using PlaceKey = std::array<std::uint32_t, 3>;
 
 PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
@@ -46,7 +47,8 @@ Points separate_points(std::size_t vertex_count) {
 Result<Points> weld_coincident(MotionStream& stream) {
   const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
-  // Vertices that coincide as far as was looked stand side by side; keyframe after keyframe tells some of them apart.
+  // Vertices that coincide in all keyframes so far are neighbours in the list; each further keyframe tells some of them
+  // apart.
   using Coinciding = std::span<std::uint32_t>;
   std::vector<Coinciding> found = {order}, before;
   const auto keep = [&found](Coinciding vertices) {

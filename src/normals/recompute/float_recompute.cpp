@@ -1,5 +1,5 @@
-// Positions at t first, into rows that a vector loads at once; then paths around sixteen elements at a time
-// (kernels/rings.h). The paths are made once, from the topology alone.
+// Interpolates all positions at t into rows that a vector loads at once, and then goes along the paths around sixteen
+// elements at a time (kernels/rings.h). The paths are made once, from the topology alone.
 
 #include "chronormal/normals/float_recompute.h"
 
@@ -25,12 +25,12 @@ namespace {
 
 constexpr std::size_t kBlockOfPoints = 16384;
 constexpr std::size_t kBlockOfElements = 4096;  // a multiple of kRingLanes
-constexpr std::size_t kMostSearched = 64;       // pieces of a path; beyond that, who comes next is not looked for
+constexpr std::size_t kMostSearched = 64;       // pieces of a path; in longer paths, nothing looks for the next piece
 // Points that fit here may be read in any order.
 constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 constexpr double kMostLinesPerFace = 1;
 
-using Path = std::vector<std::uint32_t>;  // the centre first
+using Path = std::vector<std::uint32_t>;  // the first point is the centre
 
 // The paths around elements, one after the other.
 class PathMaker {
@@ -62,7 +62,7 @@ class PathMaker {
     std::size_t first, last;  // of points_
   };
 
-  // The corners of a face that follow this one; and all of them, back to it, where it is not the centre.
+  // The corners of a face that follow this one, or all of them back to it where this corner is not the centre.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
     const std::size_t first = points_.size();
     const std::size_t at = corner - static_cast<std::size_t>(face.data() - topology_.corners().data());
@@ -72,7 +72,7 @@ class PathMaker {
     pieces_.push_back({first, points_.size() - 1});
   }
 
-  // Adds a piece to the path, through the centre where it does not join.
+  // Adds a piece to the path; it goes through the centre where the piece does not join the last one.
   void append(const Piece& piece) {
     std::size_t from = piece.first;
     if (path_.size() > 1 && path_.back() == points_[from]) {
@@ -83,7 +83,7 @@ class PathMaker {
     for (; from <= piece.last; ++from) path_.push_back(points_[from]);
   }
 
-  // One that joins; else one that none leads to; else any.
+  // Takes a piece that joins the last one, or else a piece that no other leads to, or else any.
   [[nodiscard]] std::size_t next_piece() const {
     const auto start = [this](std::size_t piece) { return points_[pieces_[piece].first]; };
     for (std::size_t i = 0; i < pieces_.size() && path_.size() > 1; ++i) {
@@ -111,7 +111,7 @@ struct Slices {
   [[nodiscard]] RingSlices view() const { return {indices.data(), first_row.data(), first_row.size() - 1}; }
 };
 
-// path_of(element) gives the centre and the path of each.
+// path_of(element) gives the centre and the path of an element.
 template <class PathOf>
 Slices make_slices(std::size_t count, const PathOf& path_of) {
   Slices slices;
@@ -119,13 +119,13 @@ Slices make_slices(std::size_t count, const PathOf& path_of) {
     const std::size_t begin = slices.indices.size();
     std::size_t rows = 0;
     for (std::size_t lane = 0; lane < kRingLanes; ++lane) {
-      // Behind the last element a path that adds nothing.
+      // Behind the last element, slices are filled up with a path that adds nothing.
       static const Path kNone = {0, 0};
       const Path& path = first + lane < count ? path_of(first + lane) : kNone;
       const auto row = [&](std::size_t r) { return &slices.indices[begin + kRingLanes * r]; };
       for (; rows < path.size(); ++rows) {
         slices.indices.resize(begin + kRingLanes * (rows + 1));
-        if (rows > 0) std::copy_n(row(0), lane, row(rows));  // the paths so far end there
+        if (rows > 0) std::copy_n(row(0), lane, row(rows));  // shorter paths repeat their last point
       }
       for (std::size_t r = 0; r < rows; ++r) row(r)[lane] = path[r < path.size() ? r : 0];
     }
@@ -148,7 +148,7 @@ struct FloatRecompute::Parts {
 
   const Topology& topology;
   std::size_t size;
-  Slices slices;  // none: faces, all triangles
+  Slices slices;  // empty for faces that are all triangles
   AlignedArray<float> points;
   bool fetch = false;
 };
@@ -171,7 +171,7 @@ std::size_t FloatRecompute::Parts::unit_normals(VectorView<const float> from, Ve
       const IndexRange some{range.first / kRingLanes, (range.count + kRingLanes - 1) / kRingLanes};
       zeros += ring_unit_normals(ring_points, slices.view(), some, part, stream);
     }
-    // Other threads see what was written past the caches.
+    // Makes what was written past the caches visible to other threads.
     if (stream) hwy::FlushStream();
   });
   return zeros;
@@ -186,7 +186,7 @@ FloatRecompute::FloatRecompute(const Topology& topology) {
   Slices slices;
   if (!topology.all_triangles()) {
     slices = make_slices(topology.face_count(), [&](std::size_t f) {
-      const auto face = topology.face(f);  // the first corner, and around it the others
+      const auto face = topology.face(f);  // the first corner is the centre, and the others are the path
       return Path(face.begin(), face.end());
     });
   }

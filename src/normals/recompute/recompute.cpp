@@ -1,3 +1,4 @@
+// Recomputes normals tile by tile, and looks at doubtful elements one by one.
 #include "chronormal/normals/recompute.h"
 
 #include <hwy/cache_control.h>
@@ -87,7 +88,8 @@ struct QuickNormal {
 
 bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && largest <= 0x1p100f; }
 
-// From exact edges, where those in float32 are not precise enough: thin triangles. a and b are those of quick_normal().
+// The normal of a thin triangle, from exact edges, where edges in float32 are not precise enough. a and b are those of
+// quick_normal().
 QuickNormal thin_normal(const Segment& segment, std::size_t f, double t, float a, float b) {
   const auto face = segment.topology->face(f);
   const auto edge_to = [&](std::size_t c) {

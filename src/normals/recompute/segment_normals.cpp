@@ -1,3 +1,4 @@
+// Measures the shape of a segment, models the costs of both ways, and takes the cheaper one.
 #include "chronormal/normals/segment_normals.h"
 
 #include <algorithm>
@@ -33,12 +34,13 @@ struct Row {
 // Recompute, faces: a triangle; the triangle of a polygon; a line of positions that was not at hand.
 constexpr Row kRecomputeTriangle = {3.4, 3.5, 4}, kRecomputePolygon = {17, 17.5, 18};
 constexpr Row kRecomputeMiss = {0.3, 1, 4.2};
-// Recompute, groups: a triangle kept for its sum; a term of a sum; one that was not at hand; and what
-// is added for a term of a scattered element, and of one with thin faces.
+// Recompute, groups: a triangle kept for its sum; a term of a sum; a term that was not in a near cache; and what is
+// added for a term of a scattered element, and of an element with thin faces.
 constexpr Row kRecomputeKept = {3.7, 3.8, 4.2}, kRecomputeTerm = {0.75, 0.85, 1.1},
               kRecomputeTermMiss = {0.04, 2.4, 5.2};
 constexpr double kRecomputeScattered = 45, kRecomputeThin = 3.2;
-// In float32: a triangle, a term of a sum, and one that was not at hand; a vertex whose position is interpolated.
+// In float32: a triangle, a term of a sum, and a term that was not in a near cache; a vertex whose position is
+// interpolated.
 constexpr Row kFloatTriangle = {1.3, 1.5, 2.2}, kFloatTerm = {0.5, 0.6, 0.9}, kFloatMiss = {0.05, 1, 4};
 constexpr Row kFloatVertex = {0.25, 0.4, 1.2};
 
@@ -46,12 +48,12 @@ constexpr Row kFloatVertex = {0.25, 0.4, 1.2};
 constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kPrepareMiss = {1.1, 3, 6};
 constexpr Row kPrepareKept = {8, 8.2, 9}, kPrepareTerm = {1.5, 1.6, 1.8}, kPrepareTermMiss = {1.6, 6.5, 22};
 constexpr double kPrepareScattered = 30;
-// An element that is looked at one by one, and each of its faces.
+// An element that is examined on its own, and each of its faces.
 constexpr double kExamined = 100, kExaminedFace = 52;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
-// Evaluating curves: an element, and each byte read and written; and one in double.
+// Evaluating curves: an element, each byte that is read or written, and an element in double.
 constexpr Row kEvaluate = {0.43, 0.2, 0}, kEvaluateByte = {0.0006, 0.015, 0.04};
 constexpr double kEvaluateFlagged = 7.5;
 
@@ -110,7 +112,7 @@ void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
     for (std::size_t lane = 0; lane < elements.count; ++lane) {
       if ((summary.uncertain >> lane & 1) == 0) continue;
       ++doubtful;
-      if (doubtful % 4 != 1) continue;  // a quarter of them
+      if (doubtful % 4 != 1) continue;  // a sample of a quarter of them
       const ControlNormals normals = source.in_double(first + lane).normals;
       flagged += precision_for(normals, exact) ? 0U : 4U;
       flagged_compact += precision_for(normals, compact) ? 0U : 4U;

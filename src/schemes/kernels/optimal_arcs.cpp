@@ -22,9 +22,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-inline constexpr std::size_t kIntervals = 20;  // as ExactSamples
-inline constexpr double kGain = 1e-4;          // of the mean error, which may be left
-inline constexpr double kNoError = 1e-10;      // radians, below which nobody looks
+inline constexpr std::size_t kIntervals = 20;  // as in ExactSamples
+inline constexpr double kGain = 1e-4;          // the share of the mean error that may be left to gain
+inline constexpr double kNoError = 1e-10;      // radians; smaller errors are not searched
 inline constexpr double kLargestG = 0.77;      // an arc of 150 degrees
 
 // Sine and cosine of x in [0, 0.16], to the rounding of double.
@@ -53,7 +53,7 @@ HWY_INLINE Real angle_of_chord(Real square) {
   return Real(2.0) * sqrt(z) * series;
 }
 
-// A lane each.
+// A search for one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
   Real cosine, tangent;  // of half the angle between the ends
@@ -115,7 +115,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   search.cosine = dot(start, search.bisector);
   const Real3 half = Real(0.5) * (end - start);
   search.tangent = sqrt(dot(half, half)) / search.cosine;
-  // Where a normal is short against its control normals, its direction is left to those who look closer.
+  // Where a normal is short against its control normals, its direction is left to the slower search.
   const Real size = dot(n0, n0) + dot(m, m) + dot(n1, n1);
   Real3 before = start;
   for (std::size_t i = 0; i < kIntervals; ++i) {
@@ -137,7 +137,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   good = good & (along > zero) & (absolute(g) < Real(kLargestG));
   if (!any(good)) return none;
 
-  // The first step is as long as moves the middle by a part of the mean error.
+  // The first step moves the middle by a part of the mean error.
   Bracket bracket;
   bracket.middle = select(good, g, zero);
   bracket.at_middle = search.mean_error(bracket.middle);
@@ -180,7 +180,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     const RealMask longer_right = right > left;
     const Real longer = select(longer_right, right, zero - left);
     if (i % 3 == 2) move = Real(0.381966011250105) * longer;
-    // Neither on the middle, nor on the ends.
+    // The new point must differ from the middle and from the ends.
     const Real least = Real(0.05) * smaller_of(left, right);
     move = select(absolute(move) < least, Real(0.05) * longer, move);
     move = larger_of(smaller_of(move, Real(0.95) * right), Real(-0.95) * left);
@@ -235,7 +235,7 @@ HWY_EXPORT(FindOptimalArcs);
 void find_optimal_arcs(std::span<const ControlNormals> normals, std::span<double> phis) noexcept {
   assert(normals.size() == phis.size());
   HWY_DYNAMIC_DISPATCH(FindOptimalArcs)(normals, phis.data());
-  for (double& phi : phis) phi = portable::atan(phi);  // of NaN it is NaN
+  for (double& phi : phis) phi = portable::atan(phi);  // NaN stays NaN
 }
 
 }  // namespace chronormal::inline internal

@@ -24,7 +24,7 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
-// Whether two shards may be of one audit: of the same vertices at the same samples, by the same rule.
+// Whether two shards may belong to one audit: of the same vertices at the same samples, by the same rule.
 bool are_of_one(const Audit& a, const Audit& b) {
   const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&

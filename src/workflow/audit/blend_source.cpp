@@ -1,3 +1,4 @@
+// Blends positions and stored normals of a mesh by its weights, as a host does.
 #include "workflow/audit/blend_source.h"
 
 #include <algorithm>
@@ -133,7 +134,7 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// The deltas of the normals of a target, in runs of outputs. Runs have few zeros between them, and none around them.
+// The deltas of the normals of a target, in runs of outputs. A run contains few zero deltas, and none at its ends.
 const BlendSource::TurnedRuns& BlendSource::turned(std::size_t k) {
   if (turned_[k]) return *turned_[k];
   constexpr std::size_t kMostZeros = 4;
@@ -159,8 +160,8 @@ const BlendSource::TurnedRuns& BlendSource::turned(std::size_t k) {
   return result;
 }
 
-// N + sum w D in float32, target after target, as hosts add. A delta of zero changes no sum and is left out; a weight that is
-// not finite makes no sum a finite one, whatever the delta is.
+// N + sum w D in float32, target after target, as hosts add. A delta of zero changes no sum and is left out, even where
+// its weight is not finite: such a weight never makes a sum finite, whatever the delta is.
 void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) {
   const std::span<const JudgedOutput> outputs = part_.outputs();
   sums.resize(3 * outputs.size());
@@ -182,7 +183,7 @@ void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>&
         for (std::size_t i = 3 * range.first; i < 3 * range.end(); ++i) sums[i] = weight - weight;
         continue;
       }
-      std::size_t before = 0;  // deltas of the runs before
+      std::size_t before = 0;  // the number of deltas of the runs before
       for (const IndexRange& run : turns.runs) {
         if (run.first >= range.end()) break;
         if (run.end() > range.first) {

@@ -36,7 +36,7 @@ class BlendSource {
   /// shading and part must outlive this. Outputs are those of the part.
   BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
 
-  /// All is there.
+  /// Does nothing: all data are in memory.
   [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
   /// Writes the positions at any weights, and leaves the moment that was placed as it is.
@@ -44,7 +44,7 @@ class BlendSource {
   /// The weights of the moment that was placed.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
   void forget() { known_ = false; }
-  /// Adds up what the moment that was placed shows.
+  /// Adds up the normals that are shown at the moment that was placed.
   void show();
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;

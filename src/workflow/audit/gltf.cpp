@@ -95,7 +95,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
                 sample.error, sample.each, source.now(), hosts.now()});
   };
   const bool are_watched = static_cast<bool>(mesh.watch);
-  // Nothing is read on the way, so that nothing can go wrong.
+  // Nothing is read here, so that there can be no error.
   (void)measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index, are_watched}, judge_hosts);
   return Measured{std::move(subject), hosts.take()};
 }

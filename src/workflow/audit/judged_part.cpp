@@ -1,3 +1,4 @@
+// Numbers the vertices and faces that a judged part needs, and computes its right normals.
 #include "workflow/audit/judged_part.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   result.sizes.resize(elements_.size());
   parallel_each(result.faces.size(), kRange, [&](std::size_t f) { result.faces[f] = face_normal(positions, f); });
   numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
-    // The faces that were computed lately: neighbours ask for them again.
+    // The faces that were computed last, since neighbours ask for them again.
     struct Known {
       std::uint32_t face = kUnused;
       Vec3d normal;

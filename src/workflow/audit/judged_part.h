@@ -17,7 +17,7 @@ namespace chronormal::inline internal {
 /// What one task takes.
 inline constexpr std::size_t kRange = 4096;
 
-/// What is left of terms that cancel, as a share of their size, is their rounding and no direction.
+/// Where terms cancel, a sum below this share of their size is nothing but rounding, and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
 /// Something that shows a normal: a vertex, or a corner where a vertex has several normals.
@@ -44,7 +44,7 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
 
-  /// The faces of an element, and the corners of a face as vertices() counts them.
+  /// The faces of an element, and the corners of a face, numbered as in vertices().
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t element) const noexcept {
     return std::span(faces_of_element_)
         .subspan(element_offsets_[element], element_offsets_[element + 1] - element_offsets_[element]);

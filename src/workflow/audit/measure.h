@@ -32,7 +32,8 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   std::size_t bin = 0;
   for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
   ++errors.histogram[bin];
-  // A doubling is an exponent of double, and its bins are the first bits of the fraction: both together are one number.
+  // Each doubling is an exponent of double, and its bins are the first bits of the fraction; both together are one
+  // number.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
@@ -85,8 +86,9 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element: those of a quadratic follow from its ends and its middle. (On
-/// curved paths they are those of the parabola through these, which is near enough for a scale.)
+/// The length of the largest control normal of each element. The control normals of a quadratic follow from its ends
+/// and its middle. (On curved paths they are those of the parabola through these three, which is near enough for a
+/// scale.)
 template <class Source>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, std::size_t segments,
                                                                   PlacedPart& placed) {
@@ -150,13 +152,13 @@ struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
   bool are_watched = false;                        ///< each_sample looks at them
-  Shard shard = {};                                ///< of the segments that are measured
-  std::vector<SegmentErrors>* segments = nullptr;  ///< what each of them gave; nullptr: nowhere
+  Shard shard = {};                                ///< the share of the segments that is measured
+  std::vector<SegmentErrors>* segments = nullptr;  ///< gets the errors of each segment; nullptr: not kept
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
-/// Adds up segment by segment, so that sums do not depend on where a motion is divided.
+/// Adds up errors segment by segment, so that sums do not depend on where a motion is divided.
 inline void add_segment(SegmentErrors found, const KeptErrors& kept, AuditSubject& subject) {
   subject.error.add(found.error);
   subject.at_keys.add(found.at_keys);

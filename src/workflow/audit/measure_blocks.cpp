@@ -1,3 +1,4 @@
+// Measures blocks of outputs on all threads, and adds up their errors in the order of the outputs.
 #include "workflow/audit/measure_blocks.h"
 
 #include <algorithm>
@@ -16,13 +17,13 @@
 namespace chronormal::inline internal {
 namespace {
 
-// As many blocks at a time as keep all threads busy and their results few.
+// As many blocks at a time as keep all threads busy, while their results stay few.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
 // The errors of a block at all samples of a segment take 20 kB each.
 constexpr std::size_t kMostSamples = 128;
 
-// Outputs, and what their normals are made of.
+// Some outputs, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
   std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
@@ -90,12 +91,12 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// As largest_control_normals() of measure.h; makes those larger that are in these segments.
+// Does what largest_control_normals() in measure.h does: enlarges the lengths where they are larger in these segments.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   largest.resize(block.elements.count);
   Scratch scratch;
-  std::optional<std::size_t> keyframe;  // which scratch.end is of
+  std::optional<std::size_t> keyframe;  // that scratch.end belongs to
   for (const std::size_t s : segments) {
     const Segment segment = motion.segment(s);
     scratch.triangles.gather(segment.from, segment.to, block.corners);
@@ -114,7 +115,7 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
   }
 }
 
-// What is interpolated of right normals at a keyframe, as a host keeps them.
+// The normals that a host stores at a keyframe, and interpolates, made from the right ones.
 void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
@@ -130,11 +131,11 @@ double time_of_sample(std::size_t i, std::size_t samples) {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
 
-// Adds those of all outputs, in their order, as MotionError::add() and add_unlit() do.
+// Adds the errors of all outputs, in their order, as MotionError::add() and add_unlit() do.
 template <class At>
 void add_errors(std::span<const double> of_elements, const Block& block, const JudgedPart& part, MotionError& result,
                 const At& at) {
-  double sum = 0, sum_of_squares = 0, worst = 0;  // in registers
+  double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
   std::size_t judged = 0;
   for (const JudgedOutput& output : part.outputs().subspan(block.outputs.first, block.outputs.count)) {
     double degrees = of_elements[output.element - block.elements.first];
@@ -202,7 +203,7 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
   const Motion& motion = stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
   std::vector<std::vector<double>> largest(blocks.size());
-  // Segments that are held together share what they have at the keyframes between them.
+  // Segments that are held together share the normals at the keyframes between them.
   const std::size_t at_once = stream.keeps_all() ? segments.size() : 1;
   for (std::size_t s = 0; s < segments.size(); s += at_once) {
     const std::span<const std::size_t> held = segments.subspan(s, at_once);
@@ -223,7 +224,7 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
       parallel_for(count, [&](std::size_t b) {
         measure_block(segment, s, blocks[first + b], largest[first + b], part, rule, at, scratch[b], wave[b]);
       });
-      // In order, so that sums do not depend on the threads.
+      // Errors are added in order, so that sums do not depend on the number of threads.
       for (std::size_t b = 0; b < count; ++b)
         for (std::size_t i = 0; i < of_samples.size(); ++i) of_samples[i].add(wave[b][i]);
     }

@@ -119,7 +119,7 @@ class SequenceSource {
   const JudgedPart& part_;
   AuditRule rule_;
   PathKind path_;
-  PolynomialSegment<3> curve_;  // of the segment below, on curved paths
+  PolynomialSegment<3> curve_;  // of segment curve_index_, on curved paths
   std::size_t curve_index_ = static_cast<std::size_t>(-1);
   std::vector<Vec3d> first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
@@ -303,7 +303,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const Result<std::vector<bool>> moves = moving_vertices(stream, segments);
     if (!moves) return moves.error();
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
-    if (!is_targets) groups = NormalGroups();  // the part has all that is needed of them
+    if (!is_targets) groups = NormalGroups();  // the part has all that is needed of the groups
     if (part.outputs().empty()) {
       ++result.still;
       for (std::size_t s = 0; s < share.of(subject.segments).count; ++s) progress();

@@ -1,3 +1,4 @@
+// Compares the deltas of blend shapes with exact normals.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>

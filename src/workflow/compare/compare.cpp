@@ -1,3 +1,4 @@
+// Compares schemes block by block and in waves of blocks, and adds up their results in order.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-// The median, which a thread that was interrupted does not move.
+// The median, which does not change where a thread was interrupted.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -41,7 +42,7 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-// What one scheme did on one block, or on all blocks of a segment so far.
+// The results of one scheme on one block, or on all blocks of a segment so far.
 struct Tally : SchemeTally {
   std::vector<Quality> samples;                // of a block, where they are kept
   std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
@@ -53,7 +54,7 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme, the median of each segment: what is held grows with segments and not with faces.
+// The times of one scheme, as the median of each segment, so that the memory grows with segments and not with faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -82,7 +83,7 @@ class Elements {
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Holds everything against the exact normals of curved paths. This must stay where it is from now on.
+  // Compares everything with the exact normals of curved paths. The object must not be moved from now on.
   void follow(const Motion& motion, PathKind path) { curved_.emplace(motion, path, groups_ ? &*groups_ : nullptr); }
   [[nodiscard]] std::unique_ptr<Scheme> make(const std::string& name) const {
     return curved_ && name == kExactCurve ? curved_->scheme() : make_scheme(name).value();
@@ -129,12 +130,12 @@ class Elements {
     }
     return errors;
   }
-  // For exact_normals(); nothing where these are not of triangles on straight lines.
+  // For exact_normals(); nothing where these are not normals of triangles on straight lines.
   [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
     if (groups_ || curved_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
-  // Of any length.
+  // Exact normals, of any length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
                      double t, std::span<Vec3d> result) const noexcept {
     if (curved_) return curved_->exact_normals(segment.index, range, t, result);
@@ -366,7 +367,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
       const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
       wave[i] = compare_block(segment, *all, range, names, options, each);
     });
-    // In order, and segment by segment, so that sums depend neither on threads nor on where a motion is divided.
+    // Results are added in order and segment by segment, so that sums depend neither on the number of threads nor on
+    // where a motion is divided.
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t segment = (first + i) / blocks_per_segment, first_sample = segment * options.samples;
       for (std::size_t s = 0; s < names.size(); ++s) {

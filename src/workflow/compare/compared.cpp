@@ -1,3 +1,4 @@
+// Adds up the results of blocks and segments, joins shards, and chooses the cheapest scheme within a tolerance.
 #include "workflow/compare/compared.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace chronormal {
 namespace {
 
-// Below this mean, the error of linear is its rounding, and no measure for others.
+// Below this mean, the error of linear is nothing but rounding, and the errors of other schemes are not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
@@ -22,7 +23,7 @@ std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& 
   return cheapest;
 }
 
-// Whether two shards may be of one comparison: of the same elements at the same samples, by the same schemes.
+// Whether two shards may belong to one comparison: of the same elements at the same samples, by the same schemes.
 bool are_of_one(const Comparison& a, const Comparison& b) {
   const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
     return one.scheme == other.scheme && one.sequential == other.sequential &&

@@ -1,3 +1,4 @@
+// Holds the cubics of some segments, and makes a scheme of PathCurves.
 #include "workflow/compare/curved_segments.h"
 
 #include <chrono>
@@ -11,7 +12,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The exact normals of the curve, whatever control normals of straight motion a block has.
+// A scheme that shows the exact normals of the curve; it ignores the control normals of straight motion of a block.
 class CurveScheme final : public Scheme {
  public:
   explicit CurveScheme(const CurvedSegments& segments) : segments_(segments) {}
@@ -27,7 +28,7 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
   [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
   [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }
-  // Seven products and six sums of vectors, and a division by the length.
+  // There are seven products and six sums of vectors, and a division by the length.
   [[nodiscard]] OperationCounts operations() const override {
     return {.add = 6 * 3 + 2, .multiply = 7 * 3 + 3 + 3, .divide = 1, .sqrt = 1};
   }

@@ -1,4 +1,4 @@
-/// What a comparison on curved paths needs of each segment: the exact normals there, and the scheme that is made of them.
+/// The exact normals that a comparison on curved paths needs in each segment, and a scheme that is made of them.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_CURVED_SEGMENTS_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_CURVED_SEGMENTS_H_
@@ -17,25 +17,25 @@
 
 namespace chronormal::inline internal {
 
-/// The row of the exact normals of a curved path.
+/// The name of the row of the exact normals of a curved path.
 inline constexpr std::string_view kExactCurve = "exact";
 
 class CurvedSegments {
  public:
-  /// groups: nullptr for faces. Motion and groups must outlive this.
+  /// groups is nullptr for faces. The motion and the groups must outlive the object.
   CurvedSegments(const Motion& motion, PathKind path, const NormalGroups* groups)
       : motion_(&motion), path_(path), groups_(groups) {}
 
-  /// Makes ready for segments first to last, and forgets those before.
+  /// Prepares for segments first to last, and forgets those before.
   void enter(std::size_t first, std::size_t last);
-  /// What faces that groups share cost one thread in a segment, nanoseconds; 0 for faces.
+  /// The time, in nanoseconds of one thread, for the faces of a segment that groups share; 0 for faces.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
 
   /// The normals of a range of elements of a segment that was entered, from the positions of vertices at t.
   void exact_normals(std::size_t segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept;
   /// The control normals of degree 6 of a range of elements.
   [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(std::size_t segment, IndexRange range) const;
-  /// PathCurves as a scheme, on blocks of segments that were entered. This must outlive it.
+  /// PathCurves as a scheme, on blocks of segments that were entered. This object must outlive the scheme.
   [[nodiscard]] std::unique_ptr<Scheme> scheme() const;
 
  private:

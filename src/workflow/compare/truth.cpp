@@ -1,3 +1,4 @@
+// Compares interpolated normals with those of keyframes that were left out.
 #include "chronormal/workflow/truth.h"
 
 #include <algorithm>
@@ -96,7 +97,7 @@ struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<std::vector<PolynomialNormals<3>>> curved;  // of each curved path
+  std::vector<std::vector<PolynomialNormals<3>>> curved;  // those of each curved path
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);

@@ -1,4 +1,4 @@
-/// What shards of any work share when they are put together (chronormal/workflow/shard.h). Private to workflow.
+/// Helps to join shards of any kind (chronormal/workflow/shard.h). Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_ERRORS_SHARDS_H_
 #define CHRONORMAL_WORKFLOW_ERRORS_SHARDS_H_
 
@@ -11,7 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Sorts what was found in segments by these. Errors: kUsage where not each segment, of so many, is there once.
+/// Sorts the results of segments by the number of the segment. Errors: kUsage unless each of so many segments is there
+/// once.
 template <class Found>
 [[nodiscard]] Status put_in_order(std::size_t segments, std::vector<Found>& found) {
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.segment < b.segment; });

@@ -1,3 +1,4 @@
+// Looks at every segment of a motion for whatever may cause wrong normals.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
@@ -118,8 +119,8 @@ void inspect_vertices(const Segment& segment, SegmentInspection& result) {
   }
 }
 
-// Two vectors with a larger share than this of their squared lengths in the square of their product, which is positive,
-// turn by less than the angle for certain.
+// Two vectors with a positive dot product certainly differ by less than the angle where the square of this product is a
+// larger share than this of the product of their squared lengths.
 double square_of_cosine_above(double angle) {
   const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
   return cosine * cosine * (1 + 1e-12);

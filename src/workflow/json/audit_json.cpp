@@ -1,3 +1,4 @@
+// Writes the result of an audit as JSON.
 #include "workflow/json/audit_json.h"
 
 #include "chronormal/normals/weighting.h"

@@ -1,3 +1,4 @@
+// Writes the result of a bake as JSON.
 #include <array>
 
 #include "chronormal/normals/weighting.h"

@@ -1,3 +1,4 @@
+// Writes the result of a comparison as JSON.
 #include "chronormal/analysis/quality.h"
 #include "chronormal/workflow/json.h"
 #include "workflow/json/object.h"

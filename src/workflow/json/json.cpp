@@ -1,3 +1,4 @@
+// Writes the parts that the JSON of several commands has in common.
 #include "core/text.h"
 #include "workflow/json/object.h"
 

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;  // fields stay in the order of the documen
 /// The text, indented, with the end of its last line. Names in files need not be UTF-8; what is not becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& json);
 
-/// Says of which path the right normals are, and how far it bends.
+/// Writes the path whose normals are right, and how far it bends.
 void put_path(Json& json, PathKind path, double bend);
 
 template <class T>

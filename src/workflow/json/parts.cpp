@@ -1,5 +1,5 @@
-// Parts as JSON: numbers stand in lists, in the order of the structs that they are of. Sums keep their bits, since the
-// shortest text of a double reads back as it was.
+// Writes and reads parts as JSON: numbers stand in lists, in the order of the members of their structs. Sums keep their
+// bits, since the shortest text of a double reads back as the same double.
 #include "chronormal/workflow/parts.h"
 
 #include <algorithm>
@@ -19,9 +19,9 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kVersion = 1;
-constexpr double kMostCount = 9007199254740992;  // whole numbers that a double has all of
+constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
 
-// Reads numbers of a list one after the other.
+// Reads the numbers of a list one after the other.
 class Numbers {
  public:
   explicit Numbers(JsonView list) : list_(std::move(list)) {}
@@ -71,7 +71,7 @@ SchemeTally read_tally(Numbers numbers) {
   return tally;
 }
 
-// The fine bins are few that are not empty: each with its number.
+// Few of the fine bins are not empty; each of these is written with its number.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,           error.sum,         error.sum_of_squares, error.worst, error.worst_at.vertex,
                error.worst_at.segment, error.worst_at.at, error.no_normal,      error.unlit, error.unlit_at.vertex,

@@ -1,3 +1,4 @@
+// Gathers the data of a report, and puts them into its container.
 #include "chronormal/workflow/report.h"
 
 #include <algorithm>

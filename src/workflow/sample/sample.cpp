@@ -1,3 +1,4 @@
+// Computes the normals of a motion at one moment after the other.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -44,8 +45,8 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
-// Holds what a moment of a segment is computed from: its ends, and on a curved path their neighbours, of which the first and
-// the last segment have two on one side.
+// Holds the keyframes from which a moment of a segment is computed: its ends, and on a curved path their neighbours, of
+// which the first and the last segment have two on one side.
 Status hold_around(MotionStream& stream, std::size_t segment, PathKind path) {
   if (path == PathKind::kLinear) return stream.hold_segment(segment);
   const std::size_t end = stream.motion().keyframes.size() - 1;

@@ -1,3 +1,4 @@
+// Names the files of samples, and writes poses into them as they are computed.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
   if (!moments.times.empty()) {
-    // What a segment is prepared for does not depend on where a shard begins in it.
+    // The moments for which a segment is prepared do not depend on where in it a shard begins.
     std::size_t first = i;
     while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
     return sampler.at_time(moments.times[i], in_a_row[first]);
@@ -108,9 +109,9 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // where npz_ finds it
+  std::unique_ptr<OutputFile> file_;  // on the heap, where npz_ finds it
   std::optional<NpzOutput> npz_;
-  std::size_t normals_ = 0, positions_ = 0;  // in it
+  std::size_t normals_ = 0, positions_ = 0;  // numbers of arrays in npz_
   std::string storage_;
 };
 
@@ -182,7 +183,7 @@ Result<std::vector<std::string>> sample_files(const SampleOutput& output, Elemen
     return Error{ErrorCode::kUsage, output.path,
                  "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
   }
-  // Of the files of a shard, those of the others may be there.
+  // Where there are shards, the files of the other shards may be there.
   const IndexRange own = names.size() == count ? output.shard.of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();

@@ -162,14 +162,14 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Whether a point has the same winding number, another than at t, right before t and right after: as it is at the moment in
-// which it touches an edge.
+// Whether a point has the same winding number right before t and right after, but another one at t, as it is at the
+// moment in which it touches an edge.
 bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   constexpr double kBeside = 0x1p-44;
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Holds the winding numbers at both ends and at a time between, and what crossings say of them, against the oracle.
+// Compares the winding numbers at both ends and at a time between, and what crossings say of them, with the oracle.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -317,7 +317,7 @@ TEST(Containment, the_surface_may_pass_points_that_rest) {
 }
 
 TEST(Containment, a_touch_changes_the_winding_number_for_a_moment_only) {
-  // At t = 15/32, and only then, the point is on the edge (5, 6), from where it crosses nothing.
+  // At t = 15/32, and only then, the point is on the edge (5, 6), where it crosses nothing.
   Scene scene(kMeshes[2],
               {{3, 2, 1}, {-1, -6, -5}, {-5, -4, -2}, {8, -7, -4}, {4, 5, 3}, {-2, 6, -7}, {7, -8, -6}, {-3, -1, 5}},
               {{6, 0, -8}, {8, 0, 0}, {7, 1, -6}, {3, -2, -6}, {2, 4, 8}, {0, -6, 6}, {8, 1, -4}, {-1, 5, -8}});

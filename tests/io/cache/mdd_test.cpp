@@ -1,3 +1,4 @@
+// MDD files come back as they were written, and bad ones are refused with their place.
 #include "io/cache/mdd.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// NumPy files come back as they were written, and bad ones are refused with their place.
 #include "io/cache/npz.h"
 
 #include <gtest/gtest.h>

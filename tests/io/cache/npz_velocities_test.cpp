@@ -1,4 +1,5 @@
-// The array `velocities` of .npz: it comes back as it was written, and what is no velocity for each vertex is refused.
+// The array `velocities` of .npz comes back as it was written, and is refused where it has not one velocity for each
+// vertex.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Inputs whose keyframes stay in files: what they give is held against the same input read whole.
+// Inputs whose keyframes stay in files give the same results as the same inputs when they are read whole.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ using test::TemporaryFolder;
 
 constexpr std::uint32_t kSide = 8;
 
-// A sheet that waves, with a seam: two columns of vertices lie at one place, and come apart in the last keyframe.
+// A sheet that waves, with a seam: two columns of vertices lie at the same places, and part in the last keyframe.
 Motion wave(std::size_t keyframes) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -74,7 +74,8 @@ InputOptions streamed(InputOptions options) {
   return options;
 }
 
-// A stream that keeps nothing, of an input that would be small enough to stay: keyframes are read by its own reader.
+// A stream that keeps nothing, made from an input that is small enough to stay in memory; it reads keyframes with a
+// reader of its own.
 MotionStream strict(MotionStream& stream, std::size_t& most_held) {
   Motion outline = stream.motion();
   for (auto& keyframe : outline.keyframes) keyframe.positions = {};
@@ -163,7 +164,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
       EXPECT_EQ(test::read_whole(folder / ("s" + one)), test::read_whole(folder / ("w" + one))) << one;
     }
   }
-  EXPECT_LE(most_held, 4U);  // curved paths need so many
+  EXPECT_LE(most_held, 4U);  // curved paths need four keyframes
   for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_%d.ply"}) {
     ASSERT_TRUE(write_motion(stream, folder / (std::string("s") + name), false, Expansion::unlimited()).ok());
     ASSERT_TRUE(write_motion(whole, folder / (std::string("w") + name), false).ok());

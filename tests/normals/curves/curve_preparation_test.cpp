@@ -1,4 +1,4 @@
-// Curves that are prepared a little at a time are those that are prepared in one go, to the last bit.
+// Curves that are prepared in slices are those that are prepared in one go, to the last bit.
 
 #include "chronormal/normals/curve_preparation.h"
 
@@ -34,7 +34,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// In order; in no order, with more than a megabyte of positions; of flagged elements; and nothing at all.
+// Motions in order, in no order with more than a megabyte of positions, with flagged elements, and with no elements at
+// all.
 std::vector<Motion> motions() {
   const Motion smooth = fixtures::smooth_morph(160), large = fixtures::smooth_morph(220);
   return {smooth, test::with_faces_in_order(large, test::shuffled_order(large.topology.face_count(), 7)),
@@ -58,7 +59,7 @@ TEST(CurvePreparation, slices_of_any_size_have_the_bits_of_one_go) {
         expect_same(of_faces.take(), faces);
         expect_same(of_vertices.take(), vertices);
       }
-      // What was not asked for is done at the end.
+      // take() does the work that was not asked for before.
       CurvePreparation begun(segment, groups, options);
       (void)begun.prepare(0.3);
       expect_same(begun.take(), vertices);

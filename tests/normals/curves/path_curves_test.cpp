@@ -1,5 +1,5 @@
-// PathCurves: float32 of degree 6 against the positions of the curves, where it hands elements to double, and the same bits
-// on every instruction set.
+// PathCurves: normals of degree 6 in float32 against the positions of the curves, the elements that it evaluates in
+// double, and the same bits on every instruction set.
 
 #include "chronormal/normals/path_curves.h"
 
@@ -37,7 +37,7 @@ struct Bending {
                                         p[2] + random.uniform(-size, size)});
     }
   }
-  // The mesh at t, by the cubics of the textbook in long double.
+  // The positions at t, by the cubics of the textbook in long double.
   [[nodiscard]] reference::Mesh at(double time) const {
     const reference::Real t = time, s = 1 - t;
     const reference::Real weights[4] = {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
@@ -120,7 +120,7 @@ TEST(PathCurves, many_random_elements_keep_their_angle_at_every_t) {
   fixtures::Random random(23);
   std::vector<Controls> normals(3000);
   for (Controls& n : normals) {
-    // From narrow cones to any directions, of lengths that differ by up to 2^60.
+    // Directions lie in narrow cones or anywhere, and lengths differ by factors of up to 2^60.
     const double spread = std::pow(2.0, random.uniform(-8, 4)), lengths = random.uniform(0, 30);
     for (Vec3d& c : n)
       c = std::exp2(random.uniform(-lengths, lengths)) *
@@ -157,7 +157,7 @@ TEST(PathCurves, elements_without_a_normal_are_zero_and_counted) {
 }
 
 TEST(PathCurves, are_the_same_bits_on_every_instruction_set_and_number_of_threads_and_in_every_layout) {
-  // More than two pieces, the last of which ends within a block.
+  // There are more than two pieces, the last of which ends within a block.
   const Bending mesh(60, 0.02);
   const std::vector<Controls> normals = all_path_normals(mesh.segment);
   ASSERT_GT(normals.size(), 2U * 8192);

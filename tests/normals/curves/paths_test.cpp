@@ -323,7 +323,7 @@ TEST(PathKind, is_found_by_its_name) {
   EXPECT_EQ(make_path("hermit").error().code, ErrorCode::kUsage);
 }
 
-// Where all vertices are at local t of a segment, in the order of positions.
+// The positions of all vertices at local t of a segment, in the order of Keyframe::positions.
 std::vector<double> places(const Motion& motion, std::size_t s, PathKind kind, double t) {
   std::vector<double> result;
   for (const Vec3d& p : positions_at(path_segment(motion, s, kind), t))

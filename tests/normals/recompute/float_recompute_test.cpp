@@ -1,4 +1,4 @@
-// Normals in float32 anew at every t: against double arithmetic, and all ways to the same result against each other.
+// FloatRecompute against double arithmetic, and all ways to the same result against each other.
 
 #include "chronormal/normals/float_recompute.h"
 
@@ -43,8 +43,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// A sum of normals in double, by the shoelace formula about a point of the face, and what float32 may turn it by: every
-// position is off by a few roundings of its size, over the edges around the face.
+// A sum of normals in double, by the shoelace formula about a point of the face, and the angle by which float32 may
+// turn it: every position is off by a few roundings of its size, relative to the edges around the face.
 struct Expected {
   Vec3d n;
   double error = 0;
@@ -101,7 +101,7 @@ void check_groups(const Motion& motion, const NormalGroups& groups, const std::s
   }
 }
 
-// Polygons of 3, 4 and 5 corners.
+// A mesh of polygons with 3, 4 and 5 corners.
 Motion polygons() {
   Motion mixed = fixtures::smooth_morph(7);
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -114,7 +114,7 @@ Motion polygons() {
   return mixed;
 }
 
-// A fan of so many triangles around vertex 0, faces in no order, one of them missing where it is open.
+// A fan of so many triangles around vertex 0, with faces in no order; an open fan lacks one of them.
 Motion fan(std::size_t faces, bool is_open) {
   std::vector<fixtures::Point> from = {{0, 0, 0.3}}, to = {{0, 0, -0.1}};
   std::vector<std::uint32_t> corners;
@@ -131,7 +131,7 @@ Motion fan(std::size_t faces, bool is_open) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Any faces over few vertices: paths that do not join, and more than one way to go on.
+// Random faces over few vertices, which give paths that do not join, and paths with more than one continuation.
 Motion tangle(std::size_t vertex_count, std::size_t face_count) {
   fixtures::Random random(3);
   std::vector<fixtures::Point> from, to;
@@ -180,7 +180,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
   ASSERT_EQ(welded.size(), smooth.topology.vertex_count());
   check_groups(torn, welded, "seams");
 
-  // Points of vertices that lie anywhere.
+  // These points consist of vertices at different places.
   const Motion tangled = tangle(60, 200);
   Points points{std::vector<std::uint32_t>(60), 20};
   for (std::uint32_t v = 0; v < 60; ++v) points.point_of_vertex[v] = v / 3;
@@ -190,7 +190,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
 TEST(FloatRecompute, a_closed_ring_of_six_has_seven_points_and_a_centre) {
   const Motion motion = fan(6, false);
   const FloatRecompute recompute(motion.topology, vertices_of(motion));
-  // One slice of 7 elements; 7 positions. Paths that did not join would have 12 points.
+  // There is one slice of 7 elements, with 7 positions. Paths that did not join would have 12 points.
   EXPECT_EQ(recompute.bytes(), 16 * (1 + 7) * sizeof(std::uint32_t) + 2 * sizeof(std::size_t) + 7 * 16);
 }
 
@@ -219,7 +219,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
     const bool is_touched = std::find(face.begin(), face.end(), 30U) != face.end();
     EXPECT_EQ(beside[f], is_touched ? Vec3f{} : of_faces[f]) << f;
   }
-  // Squares that float32 cannot hold.
+  // The squares of these lengths are beyond the range of float32.
   for (const float size : {1e-13F, 1e11F}) {
     Motion scaled = fixtures::smooth_morph(3);
     for (auto& keyframe : scaled.keyframes) {
@@ -262,7 +262,7 @@ TEST(FloatRecompute, every_layout_and_number_of_elements_has_the_same_bits_and_n
   for (std::size_t count = 1; count <= 40; ++count) {
     Motion motion = fixtures::smooth_morph(8);
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
-    // Arrays that end with the last vertex.
+    // These arrays end with the last vertex.
     const std::size_t vertices = 1 + *std::max_element(corners.begin(), corners.end());
     motion.topology = fixtures::make_triangles(vertices, {corners.begin(), corners.end()});
     std::array<std::unique_ptr<float[]>, 2> positions;
@@ -332,7 +332,7 @@ TEST(FloatRecompute, every_instruction_set_and_number_of_threads_has_the_same_bi
 }
 
 TEST(FloatRecompute, results_past_the_caches_have_the_same_bits) {
-  // Only large ones go there (kStreamFrom): ask the kernel.
+  // Only large results are written past the caches (kStreamFrom), so the test calls the kernel itself.
   const Motion motion = fixtures::smooth_morph(10);
   const Segment segment = motion.segment(0);
   const std::size_t n = motion.topology.face_count();

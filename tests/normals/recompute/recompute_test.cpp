@@ -320,7 +320,7 @@ MovingTriangles triangles_of(const Motion& motion) {
 }
 
 TEST(Recompute, thin_triangles_are_left_to_nobody) {
-  // Heights of 0.05 to 1e-6 of the sides: all of them are beyond edges in float32.
+  // Heights are 0.05 to 1e-6 of the sides: edges in float32 are not precise enough for any of these triangles.
   for (const double needle : {0.05, 1e-3, 1e-6}) {
     const Motion motion = fixtures::soup({.face_count = 203, .seed = 43, .needle = needle});
     std::vector<float> result(3 * 203);

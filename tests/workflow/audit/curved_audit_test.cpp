@@ -1,4 +1,4 @@
-// Audits of sequences whose vertices move on curves, against figures that are computed here from positions.
+// Audits of sequences whose vertices move on curves have the figures that are computed here from positions.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-// Audits block by block have the very numbers of those vertex by vertex, which an audit falls back to where it keeps every
-// single error.
+// Audits block by block have the same numbers as audits vertex by vertex, which are those that keep every single error.
 #include "workflow/audit/measure_blocks.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Baked sequences on curved paths, as a reader shows them that knows nothing of how they were made: positions are those of
-// the curves, and normals are within what the bake states.
+// Baked sequences on curved paths, as a reader shows them that does not know how they were made: positions are those of
+// the curves, and normals are within the error that the bake states.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,8 @@ Baked baked(const Motion& motion, PathKind path, double tolerance) {
   return result;
 }
 
-// How far vertices are from the curve at most, and normals, in degrees, at instants within segments.
+// The largest distance of vertices from the curve, and the largest error of normals in degrees, at instants within
+// segments.
 struct Worst {
   double distance = 0, angle = 0;
 };
@@ -86,7 +87,7 @@ TEST(BakeCurved, velocities_of_the_file_are_targets_of_their_own) {
   for (Motion::Keyframe& key : motion.keyframes)
     for (std::size_t c = 0; c < key.positions.size(); ++c)
       key.velocities.push_back(0.5F * key.positions[(c + 2) % key.positions.size()]);
-  motion.keyframes[2].velocities.clear();  // Catmull-Rom stands in
+  motion.keyframes[2].velocities.clear();  // the velocities of Catmull-Rom are used here
   const Baked bake = baked(motion, PathKind::kHermite, 0.5);
   EXPECT_EQ(bake.report.targets, 5U + 5U);
   const Worst worst = worst_of(motion, ShownGlb(bake.glb), true, 40);
@@ -97,7 +98,7 @@ TEST(BakeCurved, velocities_of_the_file_are_targets_of_their_own) {
 TEST(BakeCurved, an_element_without_area_at_the_first_key_is_right_later) {
   Motion motion = test::curved_motion(kTimes, 1, 8, 4);
   std::vector<float>& first = motion.keyframes[0].positions;
-  for (std::size_t c = 0; c < first.size(); ++c) first[c] = c % 3 == 0 ? 1.0F : 0.0F;  // all in one point
+  for (std::size_t c = 0; c < first.size(); ++c) first[c] = c % 3 == 0 ? 1.0F : 0.0F;  // all vertices are at one point
   const Baked bake = baked(motion, PathKind::kCatmullRom, 0.5);
   const ShownGlb glb(bake.glb);
   for (const std::size_t k : {1U, 3U, 5U}) {

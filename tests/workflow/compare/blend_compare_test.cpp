@@ -1,3 +1,4 @@
+// Comparisons of the deltas of blend shapes have the errors that are computed here.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>

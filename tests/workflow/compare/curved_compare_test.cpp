@@ -1,4 +1,5 @@
-// Comparisons on curved paths: every scheme against figures that are computed here from positions, and the exact curve.
+// Comparisons on curved paths: every scheme has the figures that are computed here from positions, and the exact curve
+// has none but rounding.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ Comparison compared(const Motion& motion, PathKind path, ElementKind kind) {
   return result.ok() ? std::move(result).value() : Comparison();
 }
 
-// The mean error of nlerp, radians, and of normals that are exact on straight ways.
+// The mean errors, in radians, of nlerp and of normals that are exact on straight paths.
 struct Means {
   double linear = 0, straight = 0;
 };
@@ -65,7 +66,7 @@ TEST(CurvedCompare, holds_every_scheme_against_the_normals_of_the_curve) {
   for (Motion::Keyframe& key : motion.keyframes)
     for (std::size_t c = 0; c < key.positions.size(); ++c)
       key.velocities.push_back(key.positions[(c + 5) % key.positions.size()]);
-  motion.keyframes[1].velocities.clear();  // Catmull-Rom stands in
+  motion.keyframes[1].velocities.clear();  // the velocities of Catmull-Rom are used here
   for (const bool given : {false, true}) {
     for (const bool of_vertices : {false, true}) {
       const Comparison comparison = compared(motion, given ? PathKind::kHermite : PathKind::kCatmullRom,

@@ -1,3 +1,4 @@
+// Parts of comparisons and audits are merged into the text of one run, and parts that do not fit are refused.
 #include "chronormal/workflow/parts.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
 
 TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   const Motion motion = bending();
-  StoredNormals normals;  // of every keyframe: up, which is wrong from the beginning
+  StoredNormals normals;  // the normals of every keyframe point up, which is wrong from the first one on
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     normals.of_keyframes.emplace_back();
     for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)

@@ -1,3 +1,4 @@
+// Files of samples: their names, their bytes, and what is refused before the first one is written.
 #include "chronormal/workflow/sample.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A triangle keeps, of its first corner a and of the others b and c, what does not depend on t: with the first corner
-// at the start of the segment as origin,
+// A triangle with the first corner a and the others b and c keeps what does not depend on t. With the first corner at
+// the start of the segment as origin, its corners are
 //
 //     a(t) = t a1        b(t) = (1 - t) b0 + t b1        c(t) = (1 - t) c0 + t c1
 //
@@ -25,7 +25,7 @@ namespace {
 // Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
 // at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
-// As in reference_normals.cpp.
+// The same constant as in reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
 
 }  // namespace

@@ -15,8 +15,8 @@
 
 namespace chronormal::inline internal {
 
-/// The reference normals of some triangles of a segment. Positions are gathered once, so that each t costs a pass over
-/// memory that lies side by side.
+/// The reference normals of some triangles of a segment. Positions are gathered once, so that each t costs one pass
+/// over contiguous memory.
 class ReferenceTriangles {
  public:
   /// All faces of the segment must be triangles. Nothing of it is kept.
@@ -31,7 +31,7 @@ class ReferenceTriangles {
   std::vector<double> edges_;  // in groups of lanes, 20 values of each triangle
 };
 
-/// What stands for an angle where there is none.
+/// Values that stand for an angle where there is none.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
 /// Writes the angle between each exact normal, of any length, and the normal shown; kNoExactNormal where the first is

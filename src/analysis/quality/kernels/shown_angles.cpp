@@ -1,3 +1,5 @@
+// Computes the normals of moving triangles and the angles of an audit in lanes. Operations come in the order of the scalar
+// forms, so that the bits are the same.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -60,7 +62,7 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// A vector without its length: v / scale, which has a component of 1, and the length of that; zero for the zero vector.
+// A vector as v / scale, whose largest component is 1, and the length of v / scale; all are zero for the zero vector.
 struct Scaled {
   Real3 vector;
   Real scale, length;
@@ -70,7 +72,7 @@ struct Scaled {
     vector = {v.x / divisor, v.y / divisor, v.z / divisor};
     length = sqrt(dot(vector, vector));
   }
-  // As unit() and length() of core/vec3.h.
+  // The operations are those of unit() and length() in core/vec3.h.
   [[nodiscard]] HWY_INLINE Real3 unit() const {
     return (Real(1.0) / select(length == Real(0.0), Real(1.0), length)) * vector;
   }
@@ -105,7 +107,7 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
                Real::load(right.w.data() + i), rounding, t)
         .store(degrees.data() + i);
   }
-  // One at a time, in all lanes.
+  // One element at a time, in all lanes.
   const auto all3 = [](const PlanesOf4& planes, std::size_t k) HWY_ATTR {
     return Real3{Real(planes.x[k]), Real(planes.y[k]), Real(planes.z[k])};
   };

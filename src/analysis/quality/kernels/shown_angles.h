@@ -1,5 +1,5 @@
-/// What an audit computes of every vertex at every sample, in lanes of double: normals of moving triangles, and the angles
-/// between right normals and those that a host shows which interpolates stored ones.
+/// Computes for every vertex and sample of an audit, in lanes of double, the normals of moving triangles, and the
+/// angles between right normals and those that a host shows which interpolates stored ones.
 ///
 /// Both give the bits of their scalar forms: twice_vector_area() of positions interpolated in double, and
 /// angle_between() of what unit() and lerp() of core/vec3.h make.
@@ -17,8 +17,8 @@
 
 namespace chronormal::inline internal {
 
-/// Some triangles between two keyframes. Positions are gathered once, so that each t costs a pass over memory that lies
-/// side by side. Can be used again and again; its memory stays.
+/// Some triangles between two keyframes. Positions are gathered once, so that each t costs one pass over contiguous
+/// memory. An object can be reused for other triangles, and keeps its memory.
 class TrianglesInMotion {
  public:
   /// corners: three vertices for each triangle
@@ -36,7 +36,7 @@ class TrianglesInMotion {
   std::vector<float> positions_;  // in groups of lanes, 18 values of each triangle
 };
 
-/// Vectors in planes of memory, and a fourth number for each.
+/// Vectors as planes, with a fourth number w for each.
 struct PlanesOf4 {
   std::vector<double> x, y, z, w;
 
@@ -45,13 +45,13 @@ struct PlanesOf4 {
   }
 };
 
-/// What stands for an error where there is none.
+/// Values that stand for an error where there is none.
 inline constexpr double kNotLit = -1, kNotJudged = -2;
 
-/// What is shown of some elements between two samples, and what is right there.
+/// The shown and the right normals of some elements at a sample between two keyframes.
 struct ShownElements {
   const PlanesOf4& from;   ///< stored normals, of any length; w is the least length of a right normal
-  const PlanesOf4& to;     ///< w means nothing
+  const PlanesOf4& to;     ///< w is not used
   const PlanesOf4& right;  ///< right normals, of any length; w is the size of the terms that they are sums of
   double rounding = 0;     ///< the share of that size which is nothing but rounding
 };

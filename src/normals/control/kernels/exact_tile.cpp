@@ -1,3 +1,4 @@
+// Computes the control normals of sixteen triangles in lanes of double.
 #include "normals/control/kernels/exact_tile.h"
 
 #include <algorithm>

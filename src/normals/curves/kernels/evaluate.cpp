@@ -1,3 +1,4 @@
+// Unpacks blocks of curves, evaluates them in lanes, and writes unit normals in the layout that the caller wants.
 #include "normals/curves/kernels/evaluate.h"
 
 #include <algorithm>
@@ -196,7 +197,7 @@ struct Quadratic11 {
 template <bool kPastCaches>
 struct Accesses {
   static constexpr bool kStream = kPastCaches;
-  std::size_t ahead;  // bytes that a kernel asks for blocks ahead of itself
+  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks
 };
 
 template <bool kPastCaches>
@@ -379,8 +380,8 @@ OctahedralResult behind(const OctahedralResult& result, std::size_t count) {
 }
 Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) { return {result.bits + count, result.access}; }
 
-// Calls evaluate(span, result) with the distance at which to ask for blocks: of all, or first of some parts, which try
-// the distances that there are.
+// Calls evaluate(span, result) with the distance at which to prefetch blocks: once for all of them, or first for some
+// pieces with which the distances are tried.
 template <class Result, class Evaluate>
 void at_distance(BlockSpan span, Result result, const Evaluate& evaluate) {
   using Clock = std::chrono::steady_clock;

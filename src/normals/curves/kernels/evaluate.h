@@ -20,7 +20,8 @@ struct BlockSpan {
 /// Where all fits that a pass reads and writes; small: 8 MiB.
 enum class WorkingSet { kSmall, kSharedCache, kMemory };
 
-/// Bytes that a kernel asks for blocks ahead of itself where all is near; else PrefetchRule decides (prefetch.h).
+/// How many bytes ahead a kernel prefetches blocks where all of them are in a near cache; elsewhere PrefetchRule
+/// decides (prefetch.h).
 inline constexpr std::size_t kNearAhead = 2048;
 
 /// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`

@@ -1,4 +1,4 @@
-/// The kernel of PathCurves: seven control normals in float32 to unit normals.
+/// The kernel of PathCurves, which turns seven control normals in float32 into unit normals.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_PATH_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_PATH_H_
 
@@ -15,7 +15,7 @@ inline constexpr std::size_t kPathBlock = kPathControls * 3 * kTile;
 
 using PathWeights = std::array<float, kPathControls>;
 
-/// Writes the unit normals of whole blocks. They must be aligned to 64 bytes; no n(t) may be shorter than 2^-60.
+/// Writes the unit normals of whole blocks. Blocks must be aligned to 64 bytes, and no n(t) may be shorter than 2^-60.
 void evaluate_path_blocks(const float* blocks, std::size_t block_count, const PathWeights& weights,
                           PackedResult result) noexcept;
 void evaluate_path_blocks(const float* blocks, std::size_t block_count, const PathWeights& weights,

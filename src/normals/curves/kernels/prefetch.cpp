@@ -1,3 +1,4 @@
+// Takes the times of trials, and keeps the shortest one for each distance.
 #include "normals/curves/kernels/prefetch.h"
 
 #include <cassert>

@@ -1,3 +1,4 @@
+// Sums the control normals of faces over groups in lanes, sixteen elements at a time.
 #include "normals/groups/kernels/group_tiles.h"
 
 #include <algorithm>

@@ -34,10 +34,10 @@ struct RowWindow : FaceWindow {
 /// face, shared by all threads.
 class AllFaceRows {
  public:
-  /// Room for so many faces. Throws std::bad_alloc.
+  /// Makes room for so many faces. Throws std::bad_alloc.
   explicit AllFaceRows(std::size_t face_count);
 
-  /// Writes those of a range of faces, which begins at a multiple of 16.
+  /// Writes the rows of a range of faces, which must begin at a multiple of 16.
   void write(const Segment& segment, IndexRange faces) noexcept;
 
   [[nodiscard]] double* data() const noexcept { return rows_.data(); }

@@ -1,3 +1,4 @@
+// Evaluates triangles in lanes of float32, thin ones in lanes of double, and marks the doubtful ones.
 #include "normals/recompute/kernels/recompute_tiles.h"
 
 #include <hwy/cache_control.h>
@@ -83,11 +84,11 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 
 #endif
 
-// Edges from the first corner of the faces of a block, at both ends; and the corners that they were made of.
+// Edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
   const std::uint32_t* corners;
-  std::uint32_t padded[3 * kBlock];  // where corners points to if there are fewer faces than 16
+  std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces
   bool has_last;                     // whether one of the corners is the last vertex, behind which nothing may be read
 };
 
@@ -232,7 +233,7 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
   return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
 }
 
-// What exact edges make of kLanes faces of a block: see "thin" in recompute_tiles.h.
+// The results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
 struct FineNormals {
   Lanes3 n, unit;
   Floats square;  // of n
@@ -333,8 +334,8 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
   }
 }
 
-// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() makes them of exact edges. The next
-// block is loaded before one is worked on, so that the machine does both at once.
+// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() computes them from exact edges. The
+// next block is loaded before the current one is processed, so that the machine does both at once.
 template <std::size_t kStride, class Body>
 HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
   EdgeBlock blocks[2];

@@ -13,8 +13,8 @@
 ///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
 ///     unit        in double, and rounded to float32 at the end    2^-24
 ///
-/// which is enough where that error is at most 2^-23 |n|: where A B <= 2^50 |n|^2. The others are *doubtful*, and the
-/// caller's: it looks closer, one by one.
+/// which is enough where that error is at most 2^-23 |n|: where A B <= 2^50 |n|^2. Other faces are *doubtful*, and left
+/// to the caller, who examines them one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 

@@ -1,7 +1,7 @@
-// Writes unit normals from lanes into what a caller gave: packed, past the caches, as planes, or one by one. And lists
-// those that are not to be trusted.
+// Writes unit normals from lanes into the memory of the caller: packed, past the caches, as planes, or one by one. It
+// also lists the elements whose normals are not to be trusted.
 //
-// Included once for each instruction set, as lanes-inl.h.
+// This file is included once for each instruction set, as lanes-inl.h is.
 
 #include <hwy/highway.h>
 
@@ -37,7 +37,7 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
 
 enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
 
-// Writes kLanes vectors from the first-th on, but for those beyond the end.
+// Writes kLanes vectors from number `first` on, except those beyond the end.
 template <ResultLayout kLayout>
 HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
   if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {

@@ -1,3 +1,4 @@
+// Adds up cross products along paths in lanes of float32.
 #include "normals/recompute/kernels/rings.h"
 
 #include <hwy/cache_control.h>
@@ -18,10 +19,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// How many rows of indices ahead to fetch points.
+// The number of rows of indices ahead at which points are prefetched.
 constexpr std::size_t kRowsAhead = 12;
 
-// The points that index(0) ... index(kLanes - 1) name.
+// Loads the points with the numbers index(0) ... index(kLanes - 1).
 template <class IndexOf>
 HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 #if HWY_TARGET == HWY_SCALAR
@@ -36,7 +37,7 @@ HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 #endif
 }
 
-// The sum over a path of row_count - 1 points; index(row, lane), of which row 0 has the centres.
+// The sum over a path of row_count - 1 points. index(row, lane) is the number of a point; row 0 has the centres.
 template <class IndexOf>
 HWY_INLINE Lanes3 RingSum(const float* rows, const IndexOf& index, std::size_t row_count) {
   const auto row = [&](std::size_t r)
@@ -52,12 +53,11 @@ HWY_INLINE Lanes3 RingSum(const float* rows, const IndexOf& index, std::size_t r
   return sum;
 }
 
-// Writes the multiples of length 1 of the vectors of a range of `count` elements from `place` on; returns how many have
-// none.
+// Writes the vectors n, scaled to length 1, from `place` on; returns how many have no direction.
 template <ResultLayout kLayout>
 HWY_INLINE std::size_t WriteUnit(const Lanes3& n, std::size_t place, const VectorView<float>& result) {
   const Floats square = Dot(n, n);
-  // Also false where it is not a number.
+  // This is false for NaN, too.
   const auto in_range =
       hn::And(hn::Ge(square, hn::Set(kFloats, 0x1p-126f)), hn::Le(square, hn::Set(kFloats, 0x1.fffffep127f)));
   const Floats scale = hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square));
@@ -125,7 +125,7 @@ void InterpolatePoints(VectorView<const float> from, VectorView<const float> to,
   std::size_t v = points.first;
 #if HWY_TARGET != HWY_SCALAR
   if (from.is_packed() && to.is_packed()) {
-    // kLanes floats of packed points, of which the first three of each four become rows.
+    // Loads kLanes floats of packed points; the first three of every four become a row.
     constexpr std::size_t kRows = kLanes / 4;
     alignas(64) std::int32_t place[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)

@@ -1,3 +1,4 @@
+// Fits single deltas to targets that move the same normal.
 #include "workflow/bake/exact/fitted_lines.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Finds leading singular vectors, and fits deltas to angles by least squares.
 #include "workflow/bake/low_rank/low_rank_fit.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Computes the missing normals at the instants of a file.
 #include "workflow/bake/low_rank/missing_normals.h"
 
 #include <algorithm>

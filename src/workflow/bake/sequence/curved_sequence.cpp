@@ -1,3 +1,4 @@
+// Computes the unit normals of keys on curves, and fits the bends of segments to what their cubics lack.
 #include "workflow/bake/sequence/curved_sequence.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ constexpr double kEven = 4, kOdd = 10;  // so that the weights are about 1 at mo
 double even_weight(double t) { return kEven * t * (1 - t); }
 double odd_weight(double t) { return kOdd * t * (1 - t) * (1 - 2 * t); }
 
-// How many keys say something about a segment, and how much at t: the weights of its cubic.
+// The keys from which the cubic of a segment follows, and the weight of each as a cubic in t.
 struct SegmentShares {
   std::size_t first = 0;  // key
   std::vector<Bernstein<double, 3>> of_key;
@@ -87,7 +88,7 @@ double worst_angle(const Bernstein<Vec3d, 3>& keys, const Vec3d& even, const Vec
   return worst;
 }
 
-// What the deltas of an element in a segment are, and what is left, radians.
+// The deltas of an element in a segment, and the error that is left, in radians.
 struct ElementBend {
   Vec3d even, odd;
   double error = 0;
@@ -114,7 +115,7 @@ ElementBend bend_of_element(const Bernstein<Vec3d, 3>& keys, const Controls& n, 
   return best;
 }
 
-// Directions of all elements at the keys, and the first one of each as N.
+// Finds the directions of all elements at the keys, and takes the first one of each as N.
 void take_keys(const Motion& motion, const NormalGroups& groups, PathKind path, CurvedNormals& result) {
   const std::size_t count = groups.size(), segments = motion.segments.size();
   result.elements.resize(count);
@@ -137,7 +138,7 @@ void take_keys(const Motion& motion, const NormalGroups& groups, PathKind path, 
     SequenceElement& element = result.elements[e];
     if (element.has_none) element.normal = kAnyNormal;
     for (std::size_t k = 1; k <= segments; ++k) {
-      // Where an element has no direction at a key, it keeps that of the key before.
+      // An element without a direction at a key keeps that of the key before.
       const Vec3d& u = directions[k][e];
       result.keys[k][e] = u == Vec3d{} ? result.keys[k - 1][e] : rounded_to_float(u - element.normal);
     }

@@ -1,12 +1,15 @@
-/// The numbers of a sequence whose vertices move on curves, for hosts that add up deltas. Private to workflow.
+/// Computes the deltas and weights of a sequence whose vertices move on curves, for hosts that add up deltas. Private
+/// to workflow.
 ///
-/// A cubic through keyframes is linear in their positions: with the weights of its basis, as cubic splines, the targets of keys
-/// put every vertex where the curve has it. The same weights make of the unit normals of the keys a curve through them,
-/// and n(t), which has degree 6, is another one: up to two more targets for a segment, with the weights
+/// A cubic through keyframes is linear in their positions: with the weights of its basis, as cubic splines, the targets
+/// of keys put every vertex where the curve has it. With the same weights, the unit normals of the keys give a curve
+/// through these normals, from which n(t), which has degree 6, differs. Up to two more targets for a segment, with the
+/// weights
 ///
 ///     4 t (1 - t)    and    10 t (1 - t) (1 - 2 t)
 ///
-/// make the normals right at t = 1/2, or at 1/3 and 2/3. What is left is measured, at kCurveInstants of each segment.
+/// make the normals right at t = 1/2, or at 1/3 and 2/3. The error that is left is measured at kCurveInstants of each
+/// segment.
 ///
 /// Threads    on all cores; the same bits on any number of them
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_CURVED_SEQUENCE_H_
@@ -31,25 +34,25 @@ inline constexpr std::size_t kCurveInstants = 40;
 /// A target that bends the normals of a segment by one of the two weights above.
 struct CurveBend {
   std::size_t segment = 0;
-  bool is_odd = false;  ///< the weight that changes its sign at t = 1/2
+  bool is_odd = false;  ///< whether its weight is the one that changes its sign at t = 1/2
   std::vector<Vec3d> deltas;
 };
 
-/// What a bake of curved paths says about the normals.
+/// The normals of a bake on curved paths.
 struct CurvedNormals {
   std::vector<SequenceElement> elements;
-  std::vector<std::vector<Vec3d>> keys;  ///< what the target of each key adds to N; that of key 0 nothing
+  std::vector<std::vector<Vec3d>> keys;  ///< what the target of each key adds to N; key 0 adds nothing
   std::vector<CurveBend> bends;          ///< in the order of segments
   double largest_error = 0;              ///< radians
 };
 
-/// Looks at all segments. Bends are made where an element is off by more than the tolerance, in radians, as few as keep to
-/// it or else those that leave least. progress gets the segments that are done.
+/// Examines all segments. Bends are made where an element is off by more than the tolerance, in radians: the fewest
+/// that keep it, or else those that leave the smallest error. progress gets the number of segments that are done.
 [[nodiscard]] CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, PathKind path,
                                            double tolerance, const std::function<void(std::size_t done)>& progress);
 
-/// Which keys have velocities of their own, and so a target more: these are its positions, and its weight leaves the key
-/// with slope 1.
+/// Finds the keys that have velocities of their own, and so one more target: the velocities are its positions, and its
+/// weight has slope 1 at the key.
 [[nodiscard]] std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path);
 
 /// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file.

@@ -1,3 +1,4 @@
+// Extends every span of keys as far as its certificate allows.
 #include "workflow/bake/sequence/fewest_keys.h"
 
 #include <algorithm>

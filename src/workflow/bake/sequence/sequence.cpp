@@ -229,7 +229,7 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   return times;
 }
 
-// Adds the targets of curved paths to the file, and puts it together. Notes in the report what came of it.
+// Adds the targets of curved paths to the file, makes its bytes, and notes the results in the report.
 Result<std::string> write_curved(const Motion& motion, const SequenceNormals& normals, const CurvedNormals& curved,
                                  PathKind path, const std::vector<float>& times, SequenceFile& file,
                                  SequenceBake& report) {

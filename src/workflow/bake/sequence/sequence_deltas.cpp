@@ -1,3 +1,4 @@
+// Computes base normals and deltas of a sequence.
 #include "workflow/bake/sequence/sequence_deltas.h"
 
 #include <algorithm>

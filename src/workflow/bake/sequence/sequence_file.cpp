@@ -1,3 +1,4 @@
+// Puts a sequence into a GLB file: targets, tracks of weights, and marks in extras.
 #include "workflow/bake/sequence/sequence_file.h"
 
 #include <algorithm>

@@ -49,8 +49,8 @@ struct SequenceVertices {
   [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
 };
 
-/// The keys of an animation, and what they give the weights, key by key: of a cubic spline in-tangents, weights and
-/// out-tangents.
+/// The keys of an animation, and the values of its weights key by key; for a cubic spline these are in-tangents,
+/// weights and out-tangents.
 struct SequenceTrack {
   std::vector<float> times, values;
 };
@@ -68,7 +68,7 @@ class SequenceFile {
   /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
   /// key 0 itself.
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for the bend of a segment, the first or a further one.
+  /// Adds a target for the bend of a segment; there may be several.
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
   /// Adds a target that moves vertices, (V, 3), and turns no normal.
   void add_velocities(std::size_t key, std::span<const float> velocities);

@@ -1,3 +1,4 @@
+// Fits extra targets to the poses of a rig.
 #include "workflow/bake/undriven/quadratic_fit.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Angles and reference normals in lanes, on every instruction set, held bit by bit against their scalar forms, and the
-// angles against those of long double.
+// Angles and reference normals in lanes have the bits of their scalar forms on every instruction set, and angles are
+// those of long double.
 #include "analysis/quality/kernels/reference_angles.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Pairs {
 
 Vec3d to_vector(const fixtures::Point& p) { return {p[0], p[1], p[2]}; }
 
-// Angles from none to half a turn, lengths from 1e-60 to 1e60, and what has no direction.
+// Makes pairs with angles from none to half a turn and lengths from 1e-60 to 1e60, and vectors without a direction.
 Pairs hard_pairs() {
   fixtures::Random random(24);
   Pairs pairs;

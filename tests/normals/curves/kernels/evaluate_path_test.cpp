@@ -1,4 +1,5 @@
-// The kernel of degree 6 against plain C++, bit for bit: on every instruction set, packed and as planes, past the caches or not.
+// The kernel of degree 6 has the bits of plain C++ on every instruction set, for packed results and planes, past the
+// caches or not.
 
 #include "normals/curves/kernels/evaluate_path.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::size_t kBlocks = 37;
 
-// One element, in the order of additions that the kernel promises.
+// Evaluates one element, in the order of additions that the kernel promises.
 float sum_of(const float* c, const PathWeights& w) {
   const auto term = [&](std::size_t k) { return w[k] * c[3 * k * kTile]; };
   const float first = (term(0) + term(1)) + (term(2) + term(3)), last = (term(4) + term(5)) + term(6);

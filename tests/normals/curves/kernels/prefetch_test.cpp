@@ -1,4 +1,4 @@
-// How far ahead evaluations ask for curves: the distance of the shortest trial, which is looked for only for a while.
+// Evaluations prefetch curves at the distance of the shortest trial, and there are only so many trials.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -23,7 +23,7 @@ TEST(PrefetchRule, the_shortest_of_all_trials_decides) {
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[0]);  // before any trial
     std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
     while (const std::optional<std::size_t> trial = rule.next()) {
-      // All are slow at times, the fastest one mostly.
+      // Every distance is slow at times, and the fastest one most of the time.
       const bool is_quiet = ++trials[*trial] == 3;
       rule.take(*trial, is_quiet ? (*trial == fastest ? 0.1f : 0.12f) : (*trial == fastest ? 5.0f : 2.0f));
     }
