@@ -1,10 +1,11 @@
 /// Points and a closed mesh that deforms: which are inside, and when and where each goes through the surface.
 ///
-/// In a segment the vertices move on straight lines, and so does a point. It is in the plane of the face (a, b, c) where
-/// (p(t) - a(t)) . n(t) is zero, a cubic in t; where it is between the edges too, it crosses. What is *inside* is told by
-/// the winding number w, how many times the surface goes round the point: inside where w is not 0. A crossing changes w
-/// by one: by +1 where the point goes from the front of a face, to which the normal points, to its back (inward), and by
-/// -1 the other way. So between any two times, neither of which is a moment as described under *Moments* below,
+/// In a segment the vertices move on straight lines, and so does a point. It is in the plane of the face (a, b, c)
+/// where (p(t) - a(t)) . n(t) is zero, a cubic in t; where it is between the edges too, it crosses. What is *inside* is
+/// told by the winding number w, how many times the surface goes round the point: inside where w is not 0. A crossing
+/// changes w by one: by +1 where the point goes from the front of a face, to which the normal points, to its back
+/// (inward), and by -1 the other way. So between any two times, neither of which is a moment as described under
+/// *Moments* below,
 ///
 ///     w(later) - w(earlier) = inward crossings - outward crossings
 ///
@@ -15,12 +16,12 @@
 ///            leaves it on the surface along +y, then +z. So of two closed meshes that share a face, a point on it is
 ///            inside exactly one; of a cube from (0, 0, 0) to (1, 1, 1), x = 0 is inside and x = 1 is outside. The step
 ///            is the same at all times: a point that rests on a face that rests does not cross it.
-/// Closed     Every edge must be passed as often one way as the other by the faces that have it: then w is a whole number
-///            everywhere. Surfaces may go through themselves, and have several pieces. Edges are between points of the
-///            surface (normals/normal_groups.h), so that seams of a file do not open it. A face of more than three
-///            corners is the fan of triangles around its first one.
-/// Moments    What happens within a moment of 2^-47 of a segment is reported by its sum where it cannot be told apart: a
-///            point that touches an edge from outside has no crossing, and one that goes through it has one. At the
+/// Closed     Every edge must be passed as often one way as the other by the faces that have it: then w is a whole
+///            number everywhere. Surfaces may go through themselves, and have several pieces. Edges are between points
+///            of the surface (normals/normal_groups.h), so that seams of a file do not open it. A face of more than
+///            three corners is the fan of triangles around its first one.
+/// Moments    What happens within a moment of 2^-47 of a segment is reported by its sum where it cannot be told apart:
+///            a point that touches an edge from outside has no crossing, and one that goes through it has one. At the
 ///            very moment of touching, the tie may be decided either way, so that w may differ from its value right
 ///            before and right after.
 /// Shapes     P = points, as (P, 3) float32.

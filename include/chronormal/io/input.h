@@ -83,8 +83,8 @@ struct InputOptions {
 /// The glTF files that inputs stand for, where each is an input of its own: names, patterns, and folders, of which all
 /// glTF files in them and in the folders in them count, but for names that begin with a dot and links to folders. A
 /// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. Empty where no input
-/// stands for a glTF file. Nothing is opened, so that a name may be one of no file. Errors: kUsage for glTF files beside
-/// other inputs, and beside meshes in one folder.
+/// stands for a glTF file. Nothing is opened, so that a name may be one of no file. Errors: kUsage for glTF files
+/// beside other inputs, and beside meshes in one folder.
 [[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
 
 /// Normals that files store beside a motion, (corners, 3) each, of any length.
@@ -127,8 +127,8 @@ class Input {
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
-  /// The times of the keyframes, each once and ascending; of an animation of a document those of the keys of its weights,
-  /// without the cuts of cubic splines. Errors: those of motion().
+  /// The times of the keyframes, each once and ascending; of an animation of a document those of the keys of its
+  /// weights, without the cuts of cubic splines. Errors: those of motion().
   [[nodiscard]] Result<std::vector<double>> key_times();
 
   /// The normals that the input stores, as far as the options keep them; of a document those of its base, in the space

@@ -38,8 +38,8 @@ class Expansion;  // io/expansion.h
 /// The same of a file in pieces, which come one after the other: what lies elsewhere already needs no copy.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
-/// Removes all temporary files that write_output() is writing now, in any thread: for a handler of a signal that ends the
-/// process, which must end it then. Safe to call from there.
+/// Removes all temporary files that write_output() is writing now, in any thread: for a handler of a signal that ends
+/// the process, which must end it then. Safe to call from there.
 void remove_temporaries() noexcept;
 
 /// The names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from 0; it
@@ -58,9 +58,9 @@ void remove_temporaries() noexcept;
 /// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
 /// expansion is that of the file that the motion came from, if any: a file for each keyframe repeats all faces.
 /// A stream is written as its keyframes are read; errors of the stream are returned, too.
-/// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form, and a motion that the format
-/// does not hold: targets in a point cache, faces of different numbers of corners in .npz. Else those of
-/// write_output(); where a file exists and force is not given, nothing is written.
+/// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form,
+/// and a motion that the format does not hold: targets in a point cache, faces of different numbers of corners in .npz.
+/// Else those of write_output(); where a file exists and force is not given, nothing is written.
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force);
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force,
                                   const Expansion& expansion);

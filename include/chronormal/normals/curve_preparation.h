@@ -8,8 +8,8 @@
 /// Cost       the same in sum; a call does the share that it is asked for, rounded up to 512 elements. For a mesh whose
 ///            vertices lie in no order, positions are first copied side by side, and for its groups the control normals
 ///            of all faces are computed; these steps count as a tenth and as two fifths of the work.
-/// Ownership  the positions and the topology of the segment, and the groups, must outlive the preparation, and positions
-///            must not change before it is done.
+/// Ownership  the positions and the topology of the segment, and the groups, must outlive the preparation, and
+///            positions must not change before it is done.
 /// Threads    one call at a time, which may be on a thread of its own, beside others that evaluate other curves.
 #ifndef CHRONORMAL_NORMALS_CURVE_PREPARATION_H_
 #define CHRONORMAL_NORMALS_CURVE_PREPARATION_H_

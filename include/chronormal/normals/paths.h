@@ -75,9 +75,9 @@ enum class PathKind {
 /// where no keyframe has velocities.
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
-/// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two neighbours
-/// (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the nearest four: of as
-/// many as there are, so that between two keys the motion is straight.
+/// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two
+/// neighbours (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the
+/// nearest four: of as many as there are, so that between two keys the motion is straight.
 /// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);

@@ -152,8 +152,8 @@ struct HostAudit {
   /// How far a vertex is from where the specification has it, at most: a share of the diagonal of the box around the
   /// base of its mesh.
   double displaced = 0;
-  /// Targets of a mesh beyond those that the host takes: it shows nothing then (Host::beyond). The errors above are as if
-  /// it left these out.
+  /// Targets of a mesh beyond those that the host takes: it shows nothing then (Host::beyond). The errors above are as
+  /// if it left these out.
   std::size_t beyond = 0;
 
   /// Whether the host shows the file, and every pair as MotionError::is_within() has it.
@@ -196,8 +196,8 @@ struct Audit {
 [[nodiscard]] bool is_worse(const MotionError& after, const MotionError& before) noexcept;
 
 /// Audits the targets of all meshes, each alone, and all weight tracks. Extra targets of a bake are no subjects: with
-/// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A file in
-/// which nothing moves has no subjects.
+/// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A
+/// file in which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
 /// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to
 /// keep that take more than kMostErrorBytes.

@@ -1,20 +1,20 @@
 /// Writes right normals into ordinary glTF files.
 ///
-///     smallest   the default: of all these forms and more, the one of fewest bytes whose worst error along the animations
-///                is within a tolerance in every host that is named: what the file has, deltas of its targets alone, extra
-///                targets that products of weights drive, or extra targets of low rank that only the animations of the
-///                file drive (docs/theory.md, section 17); nowhere worse than before
-///     harmless   unit normals at weight 1 for each target, and extra morph targets of unit normals for what that leaves
-///                wrong on the way and where targets meet, as far as it is beyond a tolerance: nearly right in every host
-///                that is named, and in none of them worse than before (docs/theory.md, section 16)
-///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights: exact
-///                at every instant in every host that adds up targets
+///     smallest   the default: of all these forms and more, the one of fewest bytes whose worst error along the
+///                animations is within a tolerance in every host that is named: what the file has, deltas of its
+///                targets alone, extra targets that products of weights drive, or extra targets of low rank that only
+///                the animations of the file drive (docs/theory.md, section 17); nowhere worse than before
+///     harmless   unit normals at weight 1 for each target, and extra morph targets of unit normals for what that
+///                leaves wrong on the way and where targets meet, as far as it is beyond a tolerance: nearly right in
+///                every host that is named, and in none of them worse than before (docs/theory.md, section 16)
+///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights:
+///                exact at every instant in every host that adds up targets
 ///     endpoint   the best single delta per target (analysis/fits/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
 ///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
 ///
-///     keys       of sequences: nothing but unit normals at keys, as few keys as hosts need that draw straight lines between them,
-///                certified at every instant (docs/uses.md)
+///     keys       of sequences: nothing but unit normals at keys, as few keys as hosts need that draw straight lines
+///                between them, certified at every instant (docs/uses.md)
 ///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_H_
@@ -71,8 +71,8 @@ struct BakeOptions {
   bool animations_only = false;
   /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
-  /// Of smallest: a program poses the meshes that no animation drives, and drives their extra targets as the file says, so that
-  /// they may get some. Without it they get none.
+  /// Of smallest: a program poses the meshes that no animation drives, and drives their extra targets as the file says,
+  /// so that they may get some. Without it they get none.
   bool is_posed = false;
   /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
@@ -109,9 +109,9 @@ struct BakeChoice {
   /// "as it is", "own deltas", "pruned", "pairs", "quadratics", "low rank" or "harmless"
   std::string_view form;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas, and those by which tracks grow
-  /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights, or
-  /// where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing was
-  /// fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights,
+  /// or where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing
+  /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
   ShownErrors played;
   /// What each named host shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
   /// "quadratics" that bake tried on all vertices alike.
@@ -170,9 +170,9 @@ struct GltfBake {
 /// Fits       by weightings other than area, n(w) is no polynomial: exact stands for the quadratic form that is right
 ///            where one target has the weight 0, 1/2 or 1, and where two have the weight 1.
 ///
-/// Errors: of GltfDocument; kUsage of keys; kInvalidInput where nothing moves, more than most_bytes would be added (with what it would
-/// take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base normals to replace are
-/// compressed by Draco, or of exact an extension drives a weight alone.
+/// Errors: of GltfDocument; kUsage of keys; kInvalidInput where nothing moves, more than most_bytes would be added
+/// (with what it would take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base
+/// normals to replace are compressed by Draco, or of exact an extension drives a weight alone.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {
@@ -195,14 +195,14 @@ struct SequenceBake {
 };
 
 /// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
-/// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals in
-/// all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard edges
-/// (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
+/// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals
+/// in all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard
+/// edges (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
 /// glb gets the bytes of the file.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
-/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area or a
-/// tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights; those
-/// of check_path(). Precondition: the motion is valid and a sequence (segments k -> k + 1)
+/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area
+/// or a tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights;
+/// those of check_path(). Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 }  // namespace chronormal

@@ -3,9 +3,9 @@
 ///
 /// A host that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
 /// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
-/// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the exact
-/// normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended positions
-/// in double.
+/// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the
+/// exact normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended
+/// positions in double.
 ///
 /// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or those of an animation. Least
 ///            squares are over as many other random weights of the same kind, or 16 for each target where that is

@@ -156,7 +156,8 @@ struct Inspected {
   [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
 };
 
-/// Inspects an input of any kind, opened with allow_mesh; animation is that of its options. progress is as for inspect().
+/// Inspects an input of any kind, opened with allow_mesh; animation is that of its options. progress is as for
+/// inspect().
 /// Errors: those of Input::motion() and GltfDocument.
 [[nodiscard]] Result<Inspected> inspect_input(
     Input input, const std::string& animation,

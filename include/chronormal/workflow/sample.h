@@ -6,11 +6,11 @@
 ///                be negative or more than 1, which extrapolates
 ///     neither    of a mesh that stands still: one keyframe and no segment
 ///
-/// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are: at
-/// times by curves of the segment or from its positions, whichever costs less for as many times as are asked for there
-/// (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that holds for
-/// positions that are rounded to 48 bits, and not to float32. Other weightings, which are no polynomials, are computed
-/// anew in double.
+/// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are:
+/// at times by curves of the segment or from its positions, whichever costs less for as many times as are asked for
+/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that
+/// holds for positions that are rounded to 48 bits, and not to float32. Other weightings, which are no polynomials, are
+/// computed anew in double.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those
 ///            that show the same element have the same bits.
@@ -76,8 +76,8 @@ struct Pose {
 class NormalSampler {
  public:
   /// The motion must be valid or stand still, and outlive the sampler.
-  /// Errors: of make_groups(); kUsage for faces with another weighting than area, for the length kArea with one, and for
-  /// curved paths of a motion that is no sequence.
+  /// Errors: of make_groups(); kUsage for faces with another weighting than area, for the length kArea with one, and
+  /// for curved paths of a motion that is no sequence.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
   /// The same for a stream: a pose at a time reads the two keyframes around it (four on curved paths), and a pose of
   /// weights reads all keyframes. Errors: also those of the stream, here and for each pose.
