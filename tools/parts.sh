@@ -43,7 +43,7 @@ run_ctest() {
 
 # expect_skipped PRESET NAME: no test of run_ctest was skipped but those on real meshes where CHRONORMAL_DATA is not set,
 # and a few that ask for a file system or a terminal of a kind, so that nothing that is missing drops a test unseen.
-real_mesh_tests=47
+real_mesh_tests=48
 expect_skipped() {
   local log=build/$1/$2.log expected=$real_mesh_tests skipped
   [ -z "${CHRONORMAL_DATA-}" ] || expected=0

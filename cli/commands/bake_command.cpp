@@ -148,8 +148,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const O
     audited.samples = kSamplesToCompare;
     first = audit_before(audited);
   }
-  for (const Result<Audit>* audit : {&first, &second})
-    if (!*audit && audit->error().code == ErrorCode::kFailed) return audit->error();
+  if (!first && first.error().code == ErrorCode::kFailed) return first.error();
+  if (!second) return second.error();  // what was written must be read again
   if (first && second && !first.value().subjects.empty())
     result = BeforeAndAfter{std::move(first).value(), std::move(second).value()};
   return result;
@@ -272,7 +272,10 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
   const Result<int> reported =
       report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   if (!reported) return reported.error();
-  const bool is_beyond_tolerance = options.tolerance && baked.value().keys && baked.value().keys->beyond > 0;
+  const SequenceBake& result = baked.value();
+  const bool is_stated = result.is_curved || encoding == BakeEncoding::kEndpoint;
+  const bool is_beyond_tolerance = options.tolerance && ((result.keys && result.keys->beyond > 0) ||
+                                                         (is_stated && result.largest_error > *options.tolerance));
   return is_beyond_tolerance ? kExitBeyond : kExitDone;
 }
 

@@ -168,6 +168,7 @@ struct Audit {
   bool stored = true;
   PathKind path = PathKind::kLinear;  ///< of a sequence
   double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
+  std::array<double, 2> span = {};    ///< of a sequence: the times of its first and its last keyframe
   std::vector<AuditSubject> subjects;
   std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
   MotionError error;      ///< of all subjects

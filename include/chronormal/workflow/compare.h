@@ -18,6 +18,7 @@
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -125,6 +126,7 @@ struct Comparison {
   PathKind path = PathKind::kLinear;           ///< whose exact normals all rows are compared with
   double bend = 0;                             ///< of a curved path: bend_of(), to hold against kTooSparse
   std::optional<std::size_t> cheapest = {};    ///< of the schemes: within the tolerance for certain; nothing: none is
+  std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
   std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
 };
 

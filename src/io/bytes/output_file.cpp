@@ -114,6 +114,7 @@ struct internal::OutputFile::State {
   bool replaces = false;    // whether target exists already, as:
   struct stat old {};
   std::unique_ptr<TemporaryFile> file = {};
+  bool is_sealed = false;
   std::string gathered = {};  // what a stream or a device gets when it is finished
 
   [[nodiscard]] int descriptor() const noexcept {
@@ -121,14 +122,15 @@ struct internal::OutputFile::State {
   }
   [[nodiscard]] Error error() const { return failure(stream && path == "-" ? "<stdout>" : path, errno); }
 
-  // Flushes the new file to disk, and gives it its name. Returns false, with errno, on failure.
-  [[nodiscard]] bool replace_target() {
+  // Flushes the new file to disk, and closes it. Returns false, with errno, on failure.
+  [[nodiscard]] bool seal() {
+    if (std::exchange(is_sealed, true)) return true;
     if (replaces) {
       if (::fchown(file->descriptor(), old.st_uid, old.st_gid) != 0) errno = 0;  // only the owner or root may do that
       if (::fchmod(file->descriptor(), old.st_mode & 07777) != 0) return false;
     }
     if (::fsync(file->descriptor()) != 0 && errno != EINVAL && errno != EROFS) return false;
-    return file->close() && file->rename_to(target, force);
+    return file->close();
   }
 };
 
@@ -183,6 +185,11 @@ Status OutputFile::put(std::uint64_t at, std::string_view bytes) {
   return Success{};
 }
 
+Status OutputFile::seal() {
+  if (state_->file != nullptr && !state_->seal()) return failure(state_->path, errno);
+  return Success{};
+}
+
 Status OutputFile::finish() {
   State& state = *state_;
   if (state.file == nullptr) {
@@ -191,7 +198,7 @@ Status OutputFile::finish() {
     if (!closed) return state.error();
     return Success{};
   }
-  if (!state.replace_target()) {
+  if (!state.seal() || !state.file->rename_to(state.target, state.force)) {
     const int system_error = errno;
     if (system_error == EEXIST && !state.force) return exists_already(state.path);
     return failure(state.path, system_error);

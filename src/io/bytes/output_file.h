@@ -41,6 +41,10 @@ class OutputFile {
   /// held in memory until then. A file must be written either by append() or by this function alone.
   [[nodiscard]] Status put(std::uint64_t at, std::string_view bytes);
 
+  /// Ends the file, and keeps no descriptor open: finish() gives it its name later. So many files can come into being
+  /// together, where each is read by nobody before all of them are whole. Nothing may be appended any more.
+  [[nodiscard]] Status seal();
+
   /// Ends the file and gives it its name.
   [[nodiscard]] Status finish();
 

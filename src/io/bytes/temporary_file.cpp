@@ -17,7 +17,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostFiles = 64;  // a thread writes one at a time
+constexpr std::size_t kMostFiles = std::size_t{1} << 16U;  // the frames of a sequence come into being together
 
 std::array<std::atomic<char*>, kMostFiles> names{};
 std::array<std::atomic<char*>, kMostFiles>

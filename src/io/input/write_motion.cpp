@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
+#include "io/bytes/output_file.h"
 #include "io/gltf/glb/glb.h"
 #include "io/gltf/glb/glb_targets.h"
 #include "io/input/formats.h"
@@ -62,6 +64,8 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
+  // No file gets its name before all keyframes were read: they may come from files of these names.
+  std::vector<OutputFile> files;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status;
     const std::vector<float>& coordinates = motion.keyframes[k].positions;
@@ -71,7 +75,14 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
     // Keyframes take about as many bytes each: the first tells before anything is written.
     const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
     if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;
-    if (Status status = write_output(names.value()[k], bytes, force); !status) return status;
+    Result<OutputFile> file = OutputFile::create(names.value()[k], force);
+    if (!file) return file.error();
+    if (Status status = file.value().append(bytes); !status) return status;
+    if (Status status = file.value().seal(); !status) return status;
+    files.push_back(std::move(file).value());
+  }
+  for (OutputFile& file : files) {
+    if (Status status = file.finish(); !status) return status;
   }
   return Success{};
 }

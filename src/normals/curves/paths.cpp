@@ -43,7 +43,7 @@ std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> key
   std::vector<double> times;
   for (const Motion::Keyframe* key : keys) times.push_back(key->time);
   const VelocityShares velocity = velocity_shares(times, i);
-  std::vector<float> result(keys[0]->positions.size());
+  std::vector<float> result(keys[i]->positions.size());
   for (std::size_t c = 0; c < result.size(); ++c) {
     double sum = 0;
     for (std::size_t k = 0; k < velocity.share.size(); ++k)

@@ -30,7 +30,8 @@ bool are_of_one(const Audit& a, const Audit& b) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
            one.samples == other.samples && one.vertices == other.vertices;
   };
-  return a.rule == b.rule && a.stored == b.stored && a.still == b.still && a.offsets.size() == b.offsets.size() &&
+  return a.rule == b.rule && a.stored == b.stored && a.still == b.still && a.span == b.span &&
+         a.offsets.size() == b.offsets.size() &&
          std::equal(a.subjects.begin(), a.subjects.end(), b.subjects.begin(), b.subjects.end(), same_subject);
 }
 

@@ -245,6 +245,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
   if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
+  result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   const bool is_straight = options.path == PathKind::kLinear;
   if (options.shard && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
     return Error{ErrorCode::kUsage, "",

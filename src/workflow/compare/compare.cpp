@@ -402,6 +402,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         {},
                         motion.kind};
   comparison.path = options.path;
+  comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   if (curved) comparison.bend = bend_of(motion);
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;

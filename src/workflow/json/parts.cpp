@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "chronormal/schemes/scheme.h"
@@ -157,6 +158,14 @@ std::optional<double> read_tolerance(const JsonView& part) {
   return list ? std::optional(Numbers(*list).real()) : std::nullopt;
 }
 
+std::array<double, 2> read_span(const JsonView& part) {
+  const std::optional<JsonView> list = part.array("span");
+  if (!list) return {};
+  Numbers numbers(*list);
+  const double first = numbers.real();
+  return {first, numbers.real()};
+}
+
 // Calls each(view) for the items of a list that may be missing.
 template <class Each>
 void each_item(const JsonView& object, const char* key, const Each& each) {
@@ -165,7 +174,7 @@ void each_item(const JsonView& object, const char* key, const Each& each) {
   for (std::size_t i = 0; list && i < list->size(); ++i) each(list->item(i));
 }
 
-constexpr std::size_t kMost = std::size_t{1} << 48;
+constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() >> 1U;
 
 NamedComparison read_comparison(const JsonView& part) {
   NamedComparison named;
@@ -179,6 +188,8 @@ NamedComparison read_comparison(const JsonView& part) {
   c.segments = part.required_count("segment_count", kMost);
   c.samples = part.required_count("samples", kMost);
   c.tolerance = read_tolerance(part);
+  c.span = read_span(part);
+  if (c.segments == 0) part.complain("segment_count", "there are no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
   each_item(part, "schemes", [&](const JsonView& name) {
@@ -201,6 +212,7 @@ NamedComparison read_comparison(const JsonView& part) {
     c.compared.push_back(std::move(found));
   });
   if (c.schemes.empty()) part.complain("there are no schemes");
+  if (c.tolerance && !is_certified) part.complain("tolerance_degrees", "there is a tolerance without certificates");
   return named;
 }
 
@@ -215,6 +227,7 @@ NamedAudit read_audit(const JsonView& part) {
   named.name = part.required_text("input");
   named.tolerance = read_tolerance(part);
   Audit& audit = named.audit;
+  audit.span = read_span(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
   audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
   audit.stored = part.flag("stored");
@@ -239,9 +252,16 @@ NamedAudit read_audit(const JsonView& part) {
   return named;
 }
 
+Error of_other_inputs(const std::string& one, const std::string& other) {
+  return Error{ErrorCode::kUsage, "", "these are shards of different inputs: " + one + " and " + other};
+}
+
 Result<MergedParts> merge_comparisons(std::vector<NamedComparison> named) {
   std::vector<Comparison> shards;
-  for (NamedComparison& one : named) shards.push_back(std::move(one.comparison));
+  for (NamedComparison& one : named) {
+    if (one.name != named.front().name) return of_other_inputs(named.front().name, one.name);
+    shards.push_back(std::move(one.comparison));
+  }
   Result<Comparison> all = merge(std::move(shards));
   if (!all) return all.error();
   const bool is_within = !all.value().tolerance || all.value().cheapest;
@@ -252,6 +272,7 @@ Result<MergedParts> merge_audits(std::vector<NamedAudit> named) {
   const std::optional<double> tolerance = named.front().tolerance;
   std::vector<Audit> shards;
   for (NamedAudit& one : named) {
+    if (one.name != named.front().name) return of_other_inputs(named.front().name, one.name);
     if (one.tolerance != tolerance) return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
     shards.push_back(std::move(one.audit));
   }
@@ -272,6 +293,7 @@ std::string compare_part(const NamedComparison& shard) {
   json["faces"] = c.faces;
   json["elements"] = c.elements;
   json["segment_count"] = c.segments;
+  json["span"] = c.span;
   json["samples"] = c.samples;
   json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
   json["certified"] = c.schemes.front().certified.has_value();
@@ -290,6 +312,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
   json["weighting"] = static_cast<int>(shard.weighting.value_or(Weighting::kArea));
   json["stored"] = shard.stored;
   json["still"] = shard.still;
+  json["span"] = shard.span;
   for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(offset_json(offset));
   json["subjects"] = shard.subjects.size();
   for (const AuditSubject& subject : shard.subjects) {

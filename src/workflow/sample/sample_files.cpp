@@ -229,6 +229,7 @@ Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& o
   }
 
   SampleSummary summary;
+  std::vector<OutputFile> meshes;  // without names until all are there: they may have those of keyframes
   for (std::size_t i = share.first; i < share.end(); ++i) {
     const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
     if (!pose) return pose.error();
@@ -239,9 +240,16 @@ Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& o
       if (Status status = arrays->append(normals, pose.value()); !status) return status.error();
     } else {
       const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
-      if (Status status = write_output(names.value()[i], bytes, output.force); !status) return status.error();
+      Result<OutputFile> file = OutputFile::create(names.value()[i], output.force);
+      if (!file) return file.error();
+      if (Status status = file.value().append(bytes); !status) return status.error();
+      if (Status status = file.value().seal(); !status) return status.error();
+      meshes.push_back(std::move(file).value());
     }
     if (progress) progress(i + 1 - share.first, share.count);
+  }
+  for (OutputFile& mesh : meshes) {
+    if (Status status = mesh.finish(); !status) return status.error();
   }
   if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;

@@ -201,6 +201,62 @@ TEST(InputStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_not
   EXPECT_EQ(folder.entry_count(), before);
 }
 
+TEST(InputStream, curved_paths_need_nothing_but_the_keyframes_around_a_time) {
+  const TemporaryFolder folder;
+  const Motion whole = wave(9);
+  SampleOptions options;
+  options.path = PathKind::kCatmullRom;
+  for (const double time : {3.25, 5.0, 7.5, 8.0}) {
+    MotionStream read(whole);
+    std::size_t most_held = 0;
+    MotionStream stream = strict(read, most_held);
+    const Moments moments{{time}, {}};
+    ASSERT_TRUE(write_samples(stream, options, moments, {folder / "s.npy", SampleFormat::kNpy, true}).ok());
+    ASSERT_TRUE(write_samples(whole, options, moments, {folder / "w.npy", SampleFormat::kNpy, true}).ok());
+    EXPECT_EQ(test::read_whole(folder / "s.npy"), test::read_whole(folder / "w.npy")) << time;
+  }
+}
+
+TEST(InputStream, keyframes_may_be_written_over_the_files_that_they_come_from) {
+  const Moments moments{{0, 0.25, 0.5, 1.5, 3.5}, {}};
+  for (const bool sampled : {false, true}) {
+    const TemporaryFolder folder;
+    (void)write_all(folder, wave(5));
+    std::vector<std::string> backwards;
+    for (int k = 4; k >= 0; --k) backwards.push_back(folder / ("walk_0" + std::to_string(k) + ".ply"));
+    for (const char* const name : {"other_%02d.ply", "walk_%02d.ply"}) {
+      Result<Input> input = open_input(streamed(test::files(backwards)));
+      ASSERT_TRUE(input.ok()) << input.error().text();
+      MotionStream& stream = *input.value().stream().value();
+      if (sampled)
+        ASSERT_TRUE(write_samples(stream, {}, moments, {folder / name, SampleFormat::kPly, true}).ok());
+      else
+        ASSERT_TRUE(write_motion(stream, folder / name, true, Expansion::unlimited()).ok());
+    }
+    for (int k = 0; k < 5; ++k) {
+      const std::string end = "_0" + std::to_string(k) + ".ply";
+      EXPECT_EQ(test::read_whole(folder / ("walk" + end)), test::read_whole(folder / ("other" + end))) << sampled << k;
+    }
+  }
+}
+
+TEST(InputStream, a_keyframe_that_is_wrong_leaves_none_of_the_files_behind) {
+  const TemporaryFolder folder;
+  (void)write_all(folder, wave(5));
+  folder.write("walk_03.ply", "ply\nformat ascii 1.0\nelement vertex 1\n");
+  const std::size_t before = folder.entry_count();
+  for (const bool sampled : {false, true}) {
+    Result<Input> input = open_input(streamed(test::files({folder / "walk_*.ply"})));
+    ASSERT_TRUE(input.ok()) << input.error().text();
+    MotionStream& stream = *input.value().stream().value();
+    const bool is_written =
+        sampled ? write_samples(stream, {}, {{0, 1, 3}, {}}, {folder / "new_%d.obj", SampleFormat::kObj}).ok()
+                : write_motion(stream, folder / "new_%d.obj", false, Expansion::unlimited()).ok();
+    EXPECT_FALSE(is_written);
+    EXPECT_EQ(folder.entry_count(), before) << sampled;
+  }
+}
+
 TEST(InputStream, errors_in_keyframes_are_those_of_reading_whole) {
   const TemporaryFolder folder;
   const auto inputs = write_all(folder, wave(5));

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "tests/support/curved_motion.h"
 #include "tests/support/shown_glb.h"
@@ -72,6 +74,10 @@ TEST(BakeCurved, positions_are_those_of_the_curve_and_normals_within_what_is_sta
     EXPECT_NEAR(worst.angle, bake.report.largest_error, 1e-3) << "what is stated is what is shown";
     EXPECT_EQ(bake.report.targets, 5U);
     EXPECT_EQ(glb.targets(), bake.report.targets + bake.report.extra_targets);
+    const Result<GltfDocument> document = GltfDocument::read(bake.glb, "baked");
+    ASSERT_TRUE(document.ok()) << document.error().text();
+    const Result<Audit> audited = audit(document.value(), {});
+    EXPECT_TRUE(audited.ok()) << audited.error().text();
     if (tolerance == 90)
       EXPECT_EQ(bake.report.extra_targets, 0U);
     else

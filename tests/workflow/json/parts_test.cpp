@@ -139,6 +139,39 @@ TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merged({three[0], audits[1]}), "there are parts of comparisons and of audits: merge either");
 }
 
+TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
+  const Motion motion = bending();
+  Motion later = motion;
+  for (Motion::Keyframe& keyframe : later.keyframes) keyframe.time += 1;
+  const std::vector<Part> two = compare_parts(motion, {}, 2), audits = audit_parts(motion, {}, {}, 2);
+  EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}), "these are shards of two different comparisons");
+  EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}), "these are shards of two different audits");
+  for (const auto& [first, second] : {std::pair(two[0], two[1]), std::pair(audits[0], audits[1])}) {
+    Part other = second;
+    const std::size_t name = other.text.find("\"walk\"");
+    ASSERT_NE(name, std::string::npos);
+    other.text.replace(name, 6, "\"run\"");
+    EXPECT_EQ(merged({first, other}), "these are shards of different inputs: run and walk");
+  }
+}
+
+TEST(MergeParts, refuses_parts_that_no_shard_writes) {
+  std::string text = compare_parts(bending(), {}, 1)[0].text;
+  const std::size_t count = text.find("\"segment_count\":");
+  ASSERT_NE(count, std::string::npos);
+  text.replace(count, text.find(',', count) - count, "\"segment_count\":0");
+  EXPECT_NE(merged({{"a", text}}).find("there are no segments"), std::string::npos);
+  CompareOptions options;
+  options.certify = true;
+  options.tolerance = 90;
+  options.schemes = {"linear"};
+  text = compare_parts(bending(), options, 1)[0].text;
+  const std::size_t certified = text.find("\"certified\":true");
+  ASSERT_NE(certified, std::string::npos);
+  text.replace(certified, 16, "\"certified\":false");
+  EXPECT_NE(merged({{"a", text}}).find("a tolerance without certificates"), std::string::npos);
+}
+
 TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   const Motion motion = bending();
   for (const std::string& text : {compare_parts(motion, {}, 1)[0].text, audit_parts(motion, {}, {}, 2)[0].text}) {

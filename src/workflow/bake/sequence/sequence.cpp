@@ -244,7 +244,8 @@ Result<std::string> write_curved(const Motion& motion, const SequenceNormals& no
     if (Status status = file.check_size(); !status) return status.error();
   }
   for (const CurveBend& bend : curved.bends) {
-    mark.extras.emplace_back().target = normals.keys() - 1 + with_velocities.size() + mark.extras.size() - 1;
+    GltfExtraTarget& extra = mark.extras.emplace_back();
+    extra.target = normals.keys() - 1 + with_velocities.size() + mark.extras.size() - 1;
     file.add_bend(bend.segment, bend.deltas);
     if (Status status = file.check_size(); !status) return status.error();
   }
