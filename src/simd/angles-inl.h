@@ -26,6 +26,7 @@ struct Real {
   Doubles v;
 
   Real() = default;
+  // Both constructors convert implicitly on purpose: a formula with lanes and numbers reads as it does with double.
   HWY_INLINE Real(Doubles of_v) : v(of_v) {}                      // NOLINT(google-explicit-constructor)
   HWY_INLINE Real(double value) : v(hn::Set(kDoubles, value)) {}  // NOLINT(google-explicit-constructor)
   static HWY_INLINE Real load(const double* from) { return hn::LoadU(kDoubles, from); }

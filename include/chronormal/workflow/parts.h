@@ -33,7 +33,8 @@ struct Part {
   std::string text;
 };
 
-/// What one run would have printed with --json, without times, and whether it was within its tolerance.
+/// A merge gives the text that one run would have printed with --json, without times, and says whether that run was
+/// within its tolerance.
 struct MergedParts {
   std::string json;
   bool is_within = true;

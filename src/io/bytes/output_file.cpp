@@ -147,7 +147,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   state->force = force;
   state->stream = stream_descriptor(path);
   if (state->stream) {
-    // What was printed before comes first.
+    // The bytes that the program printed before are still in a buffer, and must come first.
     (void)std::fflush(*state->stream == STDERR_FILENO ? stderr : stdout);
     return OutputFile(std::move(state));
   }

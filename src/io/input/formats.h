@@ -45,7 +45,8 @@ struct Format {
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
-  /// The same, but leaves positions in the file that can be read one by one; nullptr where there are none.
+  /// This function reads the same motion, but leaves the positions of keyframes in the file. It is nullptr for a format
+  /// whose keyframes cannot be read one by one.
   Result<Motion> (*read_outline)(std::string_view bytes, const std::string& name, double frames_per_second,
                                  std::size_t max_expansion, std::optional<CacheLayout>& layout) = nullptr;
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,

@@ -84,7 +84,7 @@ struct Bracket {
   Real at_low, at_middle, at_high;
 
   HWY_INLINE RealMask holds() const { return !((at_low < at_middle) | (at_high < at_middle)); }
-  // What a convex function with these values can still lose.
+  // Returns by how much a convex function that has these three values can still fall below the middle one.
   HWY_INLINE Real gain() const {
     const Real left = middle - low, right = high - middle;
     return larger_of((at_low - at_middle) * right / left, (at_high - at_middle) * left / right);
