@@ -1,6 +1,6 @@
 /// Exact normals between two steps of a vtkPolyData.
 ///
-/// Both steps have the same cells, and every point moves on a straight line between them. The normal of a cell is the
+/// Both steps have the same cells, and every point moves on a straight line between them, or on a curve through more steps. The normal of a cell is the
 /// vector area of its polygon, or of the triangles of its strip; that of a point is the sum over the faces that use it,
 /// with area weights as in vtkTriangleMeshPointNormals. Vertices, lines, and points without faces have (0, 0, 0).
 ///
@@ -16,6 +16,7 @@
 #include <vtkSmartPointer.h>
 
 #include "chronormal/core/result.h"
+#include "point_curves.h"
 
 namespace chronormal::vtk {
 
@@ -32,6 +33,9 @@ struct MeshNormals {
 /// except for the lists of the faces of each element.
 /// Precondition: check_motion() found no error.
 [[nodiscard]] MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells);
+/// The same where the points of the mesh move on curves; all of it in double.
+[[nodiscard]] MeshNormals normals_on_curves(vtkPolyData* mesh, const PointCurves& curves, double t, bool points,
+                                            bool cells);
 
 }  // namespace chronormal::vtk
 

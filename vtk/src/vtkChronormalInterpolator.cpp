@@ -18,22 +18,27 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 #include "ghost_cells.h"
+#include "point_curves.h"
 #include "poly_data_normals.h"
 
 vtkStandardNewMacro(vtkChronormalInterpolator);
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+using chronormal::vtk::NearSteps;
+using chronormal::vtk::PointCurves;
+using chronormal::vtk::steps_near;
 
 // The request of one execution.
 struct vtkChronormalInterpolator::Request {
-  double start = 0;   // the time of the earlier step
-  double end = 0;     // that of the later one
-  double t = 0;       // from the earlier step, 0, to the later one, 1
-  int ghosts = -1;    // how many levels of ghost cells to keep, or -1 where a whole is asked for
-  std::string place;  // where the data are in composite data, for messages
+  std::vector<double> times;  // of the steps
+  std::size_t from = 0;       // the earlier of the two steps around the time
+  double t = 0;               // from that step, 0, to the next one, 1
+  int ghosts = -1;            // how many levels of ghost cells to keep, or -1 where a whole is asked for
+  std::string place;          // where the data are in composite data, for messages
 };
 
 namespace {
@@ -84,6 +89,17 @@ void set_normals(vtkDataSetAttributes* output, vtkDataSetAttributes* before, vtk
   output->SetNormals(normals);
 }
 
+// All steps as one kind of data; nothing where they are not all of the class of the first.
+template <class Data>
+std::optional<std::vector<Data*>> all_as(const auto& steps) {
+  std::vector<Data*> result;
+  for (vtkDataObject* const step : steps) {
+    result.push_back(Data::SafeDownCast(step));
+    if (result.back() == nullptr || step->IsA(steps.front()->GetClassName()) == 0) return std::nullopt;
+  }
+  return result;
+}
+
 double time_of(vtkDataObject* step) {
   return step->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())
              ? step->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP())
@@ -96,6 +112,7 @@ void vtkChronormalInterpolator::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ComputePointNormals: " << (this->ComputePointNormals ? "on" : "off") << '\n';
   os << indent << "ComputeCellNormals: " << (this->ComputeCellNormals ? "on" : "off") << '\n';
+  os << indent << "Path: " << (this->Path == LINEAR ? "linear" : "Catmull-Rom") << '\n';
 }
 
 vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
@@ -131,6 +148,17 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
   // normals, their limits from within the segment, so both steps are needed.
   vtkInformation* const in = inputs[0]->GetInformationObject(0);
   const int count = in->Length(Pipeline::TIME_STEPS());
+  this->NumberOfCacheEntries = this->Path == LINEAR ? 2 : 4;
+  if (count >= 2 && this->Path == CATMULL_ROM && in->Length(UPDATE_TIME_STEPS()) > 0) {
+    // The later of the steps that were asked for is the end of the segment; a time at or before the first step is in
+    // the first segment.
+    double* const times = in->Get(Pipeline::TIME_STEPS());
+    const double last = in->Get(UPDATE_TIME_STEPS())[in->Length(UPDATE_TIME_STEPS()) - 1];
+    const auto end = static_cast<std::size_t>(std::lower_bound(times + 1, times + count - 1, last) - times);
+    const NearSteps near = steps_near(end - 1, static_cast<std::size_t>(count));
+    in->Set(UPDATE_TIME_STEPS(), times + near.first, static_cast<int>(near.count));
+    return 1;
+  }
   if (count >= 2 && in->Length(UPDATE_TIME_STEPS()) == 1) {
     const double* const times = in->Get(Pipeline::TIME_STEPS());
     const bool at_start = in->Get(UPDATE_TIME_STEPS())[0] == times[0];
@@ -148,103 +176,128 @@ int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSma
     vtkErrorMacro("There is no data to interpolate.");
     return 0;
   }
-  vtkDataObject* const from = inputs.front();
-  vtkDataObject* const to = inputs.back();
   Request request;
-  request.start = time_of(from);
-  request.end = time_of(to);
-  const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : request.start;
-  if (request.end > request.start)
-    request.t = std::clamp((time - request.start) / (request.end - request.start), 0.0, 1.0);
+  Steps<vtkDataObject> steps;
+  for (vtkDataObject* const step : inputs) {
+    steps.push_back(step);
+    request.times.push_back(time_of(step));
+  }
+  const std::vector<double>& times = request.times;
+  const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
+  if (steps.size() == 1) {  // nothing moves
+    steps.push_back(steps.front());
+    request.times.push_back(times.front());
+  }
+  while (request.from + 2 < times.size() && time > times[request.from + 1]) ++request.from;
+  const double start = times[request.from], end = times[request.from + 1];
+  if (end > start) request.t = std::clamp((time - start) / (end - start), 0.0, 1.0);
   if (out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
     request.ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  const vtkSmartPointer<vtkDataObject> result = this->Interpolate(from, to, request);
+  const vtkSmartPointer<vtkDataObject> result = this->Interpolate(steps, request);
   output->Initialize();
   if (result == nullptr) return 0;
   output->ShallowCopy(result);
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
 
-  vtkNew<vtkDoubleArray> steps;
-  steps->SetName("OriginalTimeSteps");
-  for (vtkDataObject* const step : inputs) steps->InsertNextValue(time_of(step));
-  output->GetFieldData()->AddArray(steps);
+  vtkNew<vtkDoubleArray> original;
+  original->SetName("OriginalTimeSteps");
+  for (vtkDataObject* const step : inputs) original->InsertNextValue(time_of(step));
+  output->GetFieldData()->AddArray(original);
   return 1;
 }
 
-vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::Interpolate(vtkDataObject* from, vtkDataObject* to,
+vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::Interpolate(const Steps<vtkDataObject>& steps,
                                                                       const Request& request) {
-  if (auto* const blocks = vtkCompositeDataSet::SafeDownCast(from)) {
-    if (auto* const later = vtkCompositeDataSet::SafeDownCast(to))
-      return this->InterpolateBlocks(blocks, later, request);
-  } else if (auto* const data = vtkDataSet::SafeDownCast(from)) {
-    if (auto* const later = vtkDataSet::SafeDownCast(to); later != nullptr && later->IsA(data->GetClassName()))
-      return this->InterpolateMesh(data, later, request);
-  }
-  vtkErrorMacro(<< request.place << "A " << from->GetClassName() << " and a " << to->GetClassName()
-                << " cannot be interpolated.");
+  if (const auto blocks = all_as<vtkCompositeDataSet>(steps)) return this->InterpolateBlocks(*blocks, request);
+  if (const auto data = all_as<vtkDataSet>(steps)) return this->InterpolateMesh(*data, request);
+  vtkErrorMacro(<< request.place << "A " << steps[request.from]->GetClassName() << " and a "
+                << steps[request.from + 1]->GetClassName() << " cannot be interpolated.");
   return nullptr;
 }
 
-vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::InterpolateBlocks(vtkCompositeDataSet* from,
-                                                                            vtkCompositeDataSet* to,
+vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::InterpolateBlocks(const Steps<vtkCompositeDataSet>& steps,
                                                                             const Request& request) {
-  const auto blocks = [](vtkCompositeDataSet* data) {
-    const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(data->NewIterator());
-    iterator->SkipEmptyNodesOff();
-    iterator->InitTraversal();
-    return iterator;
-  };
-  const auto result = vtkSmartPointer<vtkCompositeDataSet>::Take(from->NewInstance());
-  result->CopyStructure(from);
-  const auto earlier = blocks(from), later = blocks(to);
-  for (; !earlier->IsDoneWithTraversal() && !later->IsDoneWithTraversal();
-       earlier->GoToNextItem(), later->GoToNextItem()) {
+  std::vector<vtkSmartPointer<vtkCompositeDataIterator>> blocks;
+  for (vtkCompositeDataSet* const step : steps) {
+    blocks.push_back(vtkSmartPointer<vtkCompositeDataIterator>::Take(step->NewIterator()));
+    blocks.back()->SkipEmptyNodesOff();
+    blocks.back()->InitTraversal();
+  }
+  const auto result = vtkSmartPointer<vtkCompositeDataSet>::Take(steps[request.from]->NewInstance());
+  result->CopyStructure(steps[request.from]);
+  const auto is_done = [](vtkCompositeDataIterator* block) { return block->IsDoneWithTraversal() != 0; };
+  while (std::none_of(blocks.begin(), blocks.end(), is_done)) {
+    const unsigned int index = blocks.front()->GetCurrentFlatIndex();
     Request of_block = request;
-    of_block.place = "block " + std::to_string(earlier->GetCurrentFlatIndex()) + ": ";
-    vtkDataObject* const before = earlier->GetCurrentDataObject();
-    vtkDataObject* const after = later->GetCurrentDataObject();
-    if (before == nullptr && after == nullptr) continue;
-    if (before == nullptr || after == nullptr || earlier->GetCurrentFlatIndex() != later->GetCurrentFlatIndex()) {
+    of_block.place = "block " + std::to_string(index) + ": ";
+    Steps<vtkDataObject> data;
+    bool is_same = true;
+    for (vtkCompositeDataIterator* const block : blocks) {
+      data.push_back(block->GetCurrentDataObject());
+      is_same = is_same && block->GetCurrentFlatIndex() == index && (data.back() == nullptr) == (data[0] == nullptr);
+    }
+    if (!is_same) {
       vtkErrorMacro(<< of_block.place << "It is in one of the two steps only.");
       return nullptr;
     }
-    const vtkSmartPointer<vtkDataObject> block = this->Interpolate(before, after, of_block);
-    if (block == nullptr) return nullptr;
-    result->SetDataSet(earlier, block);
+    if (data[0] != nullptr) {
+      const vtkSmartPointer<vtkDataObject> block = this->Interpolate(data, of_block);
+      if (block == nullptr) return nullptr;
+      result->SetDataSet(blocks[request.from], block);
+    }
+    for (vtkCompositeDataIterator* const block : blocks) block->GoToNextItem();
   }
-  if (!earlier->IsDoneWithTraversal() || !later->IsDoneWithTraversal()) {
+  if (!std::all_of(blocks.begin(), blocks.end(), is_done)) {
     vtkErrorMacro("The two steps have other numbers of blocks.");
     return nullptr;
   }
   return result;
 }
 
-vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(vtkDataSet* from, vtkDataSet* to,
+vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(const Steps<vtkDataSet>& steps,
                                                                        const Request& request) {
+  vtkDataSet* const from = steps[request.from];
+  vtkDataSet* const to = steps[request.from + 1];
   auto* const mesh = vtkPolyData::SafeDownCast(from);
-  auto* const later = vtkPolyData::SafeDownCast(to);
-  if (mesh == nullptr && (has_normals(from) || has_normals(to))) {
+  if (mesh == nullptr && std::any_of(steps.begin(), steps.end(), has_normals)) {
     vtkErrorMacro(<< request.place << "The normals of a " << from->GetClassName()
                   << " are those of its surface: extract it first, by vtkDataSetSurfaceFilter.");
     return nullptr;
   }
-  if (mesh != nullptr) {
-    if (const chronormal::Status motion = chronormal::vtk::check_motion(mesh, later); !motion) {
-      vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
-                    << request.start << " and " << request.end << '.');
-      return nullptr;
-    }
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (k == request.from) continue;
+    chronormal::Status motion = chronormal::Success{};
+    if (mesh != nullptr)
+      motion = chronormal::vtk::check_motion(mesh, vtkPolyData::SafeDownCast(steps[k]));
+    else if (this->Path == CATMULL_ROM && steps[k]->GetNumberOfPoints() != from->GetNumberOfPoints())
+      motion = chronormal::invalid_input("", "the two steps have other numbers of points");
+    if (motion) continue;
+    vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
+                  << request.times[std::min(k, request.from)] << " and " << request.times[std::max(k, request.from)]
+                  << '.');
+    return nullptr;
   }
 
   const auto output =
       vtkSmartPointer<vtkDataSet>::Take(this->Superclass::InterpolateDataSet(amounts(from), amounts(to), request.t));
   keep_names(from, output);
+  const auto curved = this->Path == CATMULL_ROM ? all_as<vtkPointSet>(steps) : std::nullopt;
+  PointCurves curves;
+  if (curved) {
+    curves = chronormal::vtk::curves_through(*curved, request.times, request.from);
+    vtkPoints* const points = curved->front()->GetPoints();
+    if (points != nullptr)
+      vtkPointSet::SafeDownCast(output)->SetPoints(
+          chronormal::vtk::points_at(curves, request.t, points->GetDataType()));
+  }
   if (mesh == nullptr) return output;
 
   const bool points = this->ComputePointNormals || mesh->GetPointData()->GetNormals() != nullptr;
   const bool cells = this->ComputeCellNormals || mesh->GetCellData()->GetNormals() != nullptr;
-  const auto normals = chronormal::vtk::normals_between(mesh, later, request.t, points, cells);
+  const auto normals =
+      curved ? chronormal::vtk::normals_on_curves(mesh, curves, request.t, points, cells)
+             : chronormal::vtk::normals_between(mesh, vtkPolyData::SafeDownCast(to), request.t, points, cells);
   if (points) set_normals(output->GetPointData(), mesh->GetPointData(), normals.of_points);
   if (cells) set_normals(output->GetCellData(), mesh->GetCellData(), normals.of_cells);
   if (request.ghosts >= 0) chronormal::vtk::keep_ghost_levels(vtkPolyData::SafeDownCast(output), request.ghosts);

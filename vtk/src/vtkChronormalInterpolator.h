@@ -8,6 +8,9 @@
 ///            cell; both are of length 1, or (0, 0, 0) where there is no face. Normals that the input has are replaced;
 ///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
 ///            double where the points are.
+/// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four steps:
+///            SetPathToCatmullRom(). On curves the positions of points and the normals are those of the curve; all other
+///            arrays are interpolated as before.
 /// Time       Any time: outside the range of the input it is that of the nearer end.
 /// Arrays     Ids, ghost flags and texts are those of the earlier step, since they are names and not amounts.
 /// Pieces     Where a piece is asked for, the filter asks its input for one more ghost level, so that the normals along
@@ -18,6 +21,7 @@
 #define vtkChronormalInterpolator_h
 
 #include <array>
+#include <vector>
 
 #include "vtkChronormalModule.h"
 #include "vtkTemporalInterpolator.h"
@@ -43,6 +47,13 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkGetMacro(ComputeCellNormals, bool);
   vtkBooleanMacro(ComputeCellNormals, bool);
 
+  /// How points move between steps; straight by default.
+  enum { LINEAR = 0, CATMULL_ROM = 1 };
+  vtkSetClampMacro(Path, int, LINEAR, CATMULL_ROM);
+  vtkGetMacro(Path, int);
+  void SetPathToLinear() { this->SetPath(LINEAR); }
+  void SetPathToCatmullRom() { this->SetPath(CATMULL_ROM); }
+
  protected:
   vtkChronormalInterpolator() = default;
   ~vtkChronormalInterpolator() override = default;
@@ -55,14 +66,16 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
 
  private:
   struct Request;
+  template <class Data>
+  using Steps = std::vector<Data*>;
 
-  vtkSmartPointer<vtkDataObject> Interpolate(vtkDataObject* from, vtkDataObject* to, const Request& request);
-  vtkSmartPointer<vtkDataObject> InterpolateBlocks(vtkCompositeDataSet* from, vtkCompositeDataSet* to,
-                                                   const Request& request);
-  vtkSmartPointer<vtkDataSet> InterpolateMesh(vtkDataSet* from, vtkDataSet* to, const Request& request);
+  vtkSmartPointer<vtkDataObject> Interpolate(const Steps<vtkDataObject>& steps, const Request& request);
+  vtkSmartPointer<vtkDataObject> InterpolateBlocks(const Steps<vtkCompositeDataSet>& steps, const Request& request);
+  vtkSmartPointer<vtkDataSet> InterpolateMesh(const Steps<vtkDataSet>& steps, const Request& request);
 
   bool ComputePointNormals = true;
   bool ComputeCellNormals = false;
+  int Path = LINEAR;
   std::array<int, 3> KeptPiece = {0, 1, 0};  // the number of the last piece, of how many, and its ghost levels
 };
 

@@ -41,6 +41,22 @@ def between(time, side=SIDE):
     return (1 - t) * positions(TIMES[k - 1], side).astype(float) + t * positions(TIMES[k], side).astype(float)
 
 
+def on_curve(time, times, side=SIDE, shape=positions):
+    """Positions at a time on the cubics through the steps, whose slope at a step is that of the polynomial through it and its
+    neighbours, and at both ends of the one through the nearest four steps, in double."""
+    def slope(k):
+        nearest = slice(0, 4) if k == 0 else slice(max(k - 3, 0), k + 1) if k == len(times) - 1 else slice(k - 1, k + 2)
+        steps = np.array([shape(t, side).reshape(-1).astype(float) for t in times[nearest]])
+        return np.polyfit(np.array(times[nearest]) - times[k], steps, len(steps) - 1)[-2].reshape(-1, 3)
+
+    time = min(max(time, times[0]), times[-1])
+    k = min(int(np.searchsorted(times, time, side="right")), len(times) - 1) - 1
+    h = times[k + 1] - times[k]
+    t = (time - times[k]) / h
+    return ((2 * t**3 - 3 * t**2 + 1) * shape(times[k], side).astype(float) + h * (t**3 - 2 * t**2 + t) * slope(k)
+            + (3 * t**2 - 2 * t**3) * shape(times[k + 1], side).astype(float) + h * (t**3 - t**2) * slope(k + 1))
+
+
 def areas(points, faces):
     """Vector areas of polygons, by Newell's method."""
     corners = points[faces] - points[faces[:, :1]]

@@ -13,8 +13,8 @@ from vtkmodules.vtkFiltersHybrid import vtkTemporalInterpolator
 from vtkmodules.vtkFiltersParallel import vtkExtractPolyDataPiece
 
 from chronormal_vtk.vtkChronormal import vtkChronormalInterpolator
-from meshes import (TIMES, Steps, areas, between, cells, degrees, mesh, named, normals, numbers, point_normals, positions, quads,
-                    triangles)
+from meshes import (TIMES, Steps, areas, between, cells, degrees, mesh, named, normals, numbers, on_curve, point_normals,
+                    positions, quads, triangles)
 
 ANY_TIME = (-3.0, 0.0, 0.1, 0.5, 0.99, 1.0, 1.3, 2.2, 2.5, 7.0)
 
@@ -120,6 +120,95 @@ class RightTest(unittest.TestCase):
         found = normals(at(connected(vtkChronormalInterpolator, shuffled), 0.3))
         whole = normals(at(connected(vtkChronormalInterpolator, source), 0.3))
         np.testing.assert_array_equal(found, whole[order])
+
+
+class PathTest(unittest.TestCase):
+    TIMES = (0.0, 0.4, 1.0, 1.3, 2.0, 2.5)
+
+    def curved(self, times=TIMES, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData"):
+        source = Steps(make, kind, times=times)
+        ours = connected(vtkChronormalInterpolator, source)
+        ours.SetPathToCatmullRom()
+        ours.ComputeCellNormalsOn()
+        return source, ours
+
+    def test_points_and_normals_are_those_of_the_curve_through_the_steps(self):
+        for times in (self.TIMES, self.TIMES[:4], self.TIMES[:3], self.TIMES[:2]):
+            _, ours = self.curved(times)
+            for time in (-1.0, 0.0, 0.1, 0.4, 0.7, 1.1, 1.3, 1.9, 2.4, 2.5, 9.0):
+                data, truth = at(ours, time), on_curve(time, times)
+                self.assertLess(np.abs(places(data) - truth).max(), 1e-6)
+                self.assertLess(degrees(normals(data), point_normals(truth, triangles())).max(), 1e-5)
+                self.assertLess(degrees(cell_normals(data), areas(truth, triangles())).max(), 1e-5)
+        self.assertGreater(np.abs(on_curve(0.7, self.TIMES) - on_curve(0.7, self.TIMES[1:3])).max(), 0.01)
+
+    def test_points_in_double_stay_in_double(self):
+        _, ours = self.curved(make=lambda time: mesh(positions(time).astype(float), triangles()))
+        data = at(ours, 0.8)
+        self.assertEqual((data.GetPoints().GetDataType(), data.GetPointData().GetNormals().GetDataType()), 2 * (VTK_DOUBLE,))
+        self.assertLess(np.abs(places(data) - on_curve(0.8, self.TIMES)).max(), 1e-14)
+
+    def test_other_arrays_are_those_of_the_stock_filter(self):
+        source, ours = self.curved()
+        stock = at(connected(vtkTemporalInterpolator, source), 0.8)
+        for name in ("amount", "number"):
+            np.testing.assert_array_equal(*(vtk_to_numpy(d.GetPointData().GetArray(name)) for d in (at(ours, 0.8), stock)))
+
+    def test_four_steps_are_asked_of_the_input_and_kept(self):
+        source, ours = self.curved()
+        for asked, times in (([0.0, 0.4, 1.0, 1.3], (0.1, 0.3)), ([0.4, 1.0, 1.3, 2.0], (1.1, 1.2)),
+                             ([1.0, 1.3, 2.0, 2.5], (1.5, 2.4))):
+            source.asked.clear()
+            for time in times:
+                at(ours, time)
+            self.assertEqual(source.asked, asked)
+        ours.SetPathToLinear()
+        data = at(ours, 1.5)
+        truth = (1 - 2 / 7) * positions(1.3).astype(float) + 2 / 7 * positions(2.0)
+        self.assertLess(degrees(normals(data), point_normals(truth, triangles())).max(), 1e-5)
+
+    def test_blocks_and_grids_move_on_curves_too(self):
+        def make(time):
+            blocks = vtkMultiBlockDataSet()
+            grid = vtkUnstructuredGrid()
+            grid.SetPoints(mesh(positions(time), triangles()).GetPoints())
+            for k, block in enumerate((mesh(positions(time), quads()), grid)):
+                blocks.SetBlock(k, block)
+            return blocks
+
+        _, ours = self.curved(make=make, kind="vtkMultiBlockDataSet")
+        data, truth = at(ours, 0.6), on_curve(0.6, self.TIMES)
+        self.assertLess(degrees(normals(data.GetBlock(0)), point_normals(truth, quads())).max(), 1e-5)
+        for block in (0, 1):
+            self.assertLess(np.abs(places(data.GetBlock(block)) - truth).max(), 1e-6)
+
+    def test_bits_depend_neither_on_the_order_of_points_and_cells_nor_on_pieces(self):
+        random = np.random.default_rng(8)
+        in_double = lambda time: positions(time).astype(float)
+        order, of_cells = random.permutation(400), random.permutation(len(triangles()))
+        _, shuffled = self.curved(make=lambda time: mesh(in_double(time)[order], np.argsort(order)[triangles()[of_cells]]))
+        _, plain = self.curved(make=lambda time: mesh(in_double(time), triangles()))
+        np.testing.assert_array_equal(normals(at(shuffled, 0.7)), normals(at(plain, 0.7))[order])
+
+        source, source_of_whole = Steps(times=self.TIMES), Steps(times=self.TIMES)
+        pieces = connected(vtkExtractPolyDataPiece, source)
+        ours, reference = connected(vtkChronormalInterpolator, pieces), connected(vtkChronormalInterpolator, source_of_whole)
+        for interpolator in (ours, reference):
+            interpolator.SetPathToCatmullRom()
+        whole = normals(at(reference, 0.7))
+        for piece in range(3):
+            data = at(ours, 0.7, piece, 3, 0)
+            np.testing.assert_array_equal(normals(data), whole[numbers(data)])
+
+    def test_a_step_beside_the_two_that_has_other_cells_is_an_error(self):
+        def make(time):
+            return mesh(positions(time), triangles()[::-1] if time == 1.3 else triangles())
+
+        _, ours = self.curved(make=make)
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        self.assertEqual(at(ours, 0.7).GetNumberOfPoints(), 0)
+        ours.SetPathToLinear()
+        self.assertEqual(at(ours, 0.7).GetNumberOfPoints(), 400)
 
 
 class ArraysTest(unittest.TestCase):
