@@ -136,6 +136,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   std::vector<NamedComparison> comparisons;
   for (InputOptions& wanted : inputs) {
     wanted.stream = true;
+    wanted.velocities = options.path.needs_velocities();
     Result<Input> input = open_input(wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());
@@ -215,9 +216,6 @@ Result<int> run(const Options& options) {
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
                   "it is about normals at random access: leave out --access sequential");
-  if (path.value() != PathKind::kLinear && (options.certify || options.tolerance))
-    return misuse(options.certify ? "--certify" : "--tolerance",
-                  "certificates are of straight paths: leave out --path, or compare at samples");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
 
   const Result<std::optional<Shard>> shard = options.shard.read();

@@ -121,7 +121,7 @@ struct Comparison {
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
   MotionKind motion = MotionKind::kSequence;   ///< what the segments are
-  std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme, in their order
+  std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme that was asked for
   std::optional<double> tolerance = {};        ///< degrees, where it was given
   PathKind path = PathKind::kLinear;           ///< whose exact normals all rows are compared with
   double bend = 0;                             ///< of a curved path: bend_of(), to hold against kTooSparse
@@ -133,8 +133,8 @@ struct Comparison {
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access or of curved paths, and errors to keep that take more than
-///            kMostErrorBytes; those of check_path().
+///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes;
+///            those of check_path().
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

@@ -30,24 +30,34 @@ constexpr auto kShares = [] {
   return shares;
 }();
 
-constexpr std::size_t kDegree = 5;
-
 // At least asin(x), and pi / 2 from x = 1 on.
 double arc_sine_bound(double x) {
   if (!(x < 1)) return kHalfTurn / 2;
   return x <= 0.5 ? x * (1 + 0.25 * x * x) : x * (kHalfTurn / 2);
 }
 
+// p(1/2).
+template <class T>
+T in_the_middle(const Bernstein<T, 2>& p) {
+  return 0.25 * (p[0] + p[2]) + 0.5 * p[1];
+}
+template <class T>
+T in_the_middle(const Bernstein<T, 6>& p) {
+  return (1.0 / 64) * ((p[0] + p[6]) + 6.0 * (p[1] + p[5]) + 15.0 * (p[2] + p[4]) + 20.0 * p[3]);
+}
+
 }  // namespace
 
-double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept {
+template <std::size_t N>
+double largest_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept {
+  constexpr std::size_t kDegree = 3 + N;
   const auto& [p, radius, middle, middle_radius, angle] = curve;
   const auto& [n, error] = normal;
   Bernstein<Vec3d, kDegree> cross_products{};
   Bernstein<double, kDegree> dot_products{};
   for (std::size_t i = 0; i < p.size(); ++i) {
     for (std::size_t j = 0; j < n.size(); ++j) {
-      const Vec3d shared = kShares<3, 2>[i][j] * p[i];
+      const Vec3d shared = kShares<3, N>[i][j] * p[i];
       cross_products[i + j] = cross_products[i + j] + cross(shared, n[j]);
       dot_products[i + j] += dot(shared, n[j]);
     }
@@ -99,14 +109,33 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   return std::min(kHalfTurn, between * (1 + kRounding) + turned * (1 + kRounding));
 }
 
-MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept {
-  const Vec3d n = 0.25 * (normal.n[0] + normal.n[2]) + 0.5 * normal.n[1];
-  const double error = 0.25 * (normal.error[0] + normal.error[2]) + 0.5 * normal.error[1];
+template <std::size_t N>
+MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept {
+  const Vec3d n = in_the_middle(normal.n);
+  const double error = in_the_middle(normal.error);
   const double p_length = std::sqrt(dot(curve.middle, curve.middle)), n_length = std::sqrt(dot(n, n));
   if (!(p_length - curve.middle_radius > kShortest) || !(n_length > error)) return {0, kHalfTurn};
   const double uncertainty = arc_sine_bound(curve.middle_radius / p_length + kRounding) +
                              arc_sine_bound(error / n_length + kRounding) + curve.angle;
   return {angle_between(curve.middle, n), std::min(kHalfTurn, uncertainty)};
 }
+
+double largest_turn(const NormalPiece<6>& normal) noexcept {
+  Bernstein<double, 12> square{};
+  double largest = 0;
+  for (std::size_t i = 0; i < normal.n.size(); ++i) {
+    largest = std::max(largest, dot(normal.n[i], normal.n[i]));
+    for (std::size_t j = 0; j < normal.n.size(); ++j)
+      square[i + j] += kShares<6, 6>[i][j] * dot(normal.n[i], normal.n[j]);
+  }
+  const double smallest = *std::min_element(square.begin(), square.end()) - kRounding * largest;
+  const double error = *std::max_element(normal.error.begin(), normal.error.end());
+  return smallest > error * error ? arc_sine_bound(error / std::sqrt(smallest) * (1 + kRounding)) : kHalfTurn;
+}
+
+template double largest_angle(const CurvePiece&, const NormalPiece<2>&) noexcept;
+template double largest_angle(const CurvePiece&, const NormalPiece<6>&) noexcept;
+template MiddleAngle middle_angle(const CurvePiece&, const NormalPiece<2>&) noexcept;
+template MiddleAngle middle_angle(const CurvePiece&, const NormalPiece<6>&) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -6,11 +6,13 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "analysis/certificates/angle_bound.h"
 #include "analysis/certificates/line_bound.h"
 #include "analysis/certificates/scheme_curves.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/path_curves.h"
 #include "core/blocks.h"
 #include "schemes/fitted_curves.h"
 
@@ -24,12 +26,20 @@ constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_con
 constexpr std::size_t kBlockSize = 1024;
 
 // n(t) over [0, 1] at a size of about 1, and what it may be off by.
-struct Normal {
-  Bernstein<Vec3d, 2> n;
-  Bernstein<double, 2> error;
+template <std::size_t N>
+struct NormalOf {
+  Bernstein<Vec3d, N> n;
+  Bernstein<double, N> error;
 
-  [[nodiscard]] NormalPiece over(double a, double b) const { return {restrict_to(n, a, b), restrict_to(error, a, b)}; }
+  [[nodiscard]] NormalPiece<N> over(double a, double b) const {
+    return {restrict_to(n, a, b), restrict_to(error, a, b)};
+  }
 };
+using Normal = NormalOf<2>;
+using PathNormal = NormalOf<6>;
+
+constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
+constexpr double kCutting = 0x1p-46;           // what cutting a polynomial in double adds, of its largest coefficient
 
 // A quadratic that is zero at an end for sure has the direction of one of lower degree, which is not: n(t) / t, and
 // likewise at t = 1. Nothing where n is zero throughout.
@@ -38,9 +48,8 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   if (largest == 0) return std::nullopt;
   const double scale = 1 / largest;
   const Vec3d n0 = scale * c.n0, m = scale * c.m, n1 = scale * c.n1;
-  // This is for three components, and covers what cutting in double adds.
   const auto error_of = [&](std::size_t k, const Vec3d& v) {
-    return 1.7320509 * scale * errors[k] + 0x1p-46 * max_abs(v);
+    return kLongestOfThree * scale * errors[k] + kCutting * max_abs(v);
   };
   const Bernstein<double, 2> error = {error_of(0, n0), error_of(1, m), error_of(2, n1)};
   const auto is_zero = [&](std::size_t k, const Vec3d& v) { return v == Vec3d{} && errors[k] == 0; };
@@ -57,6 +66,41 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   return Normal{{n0, m, n1}, error};
 }
 
+// p(t) / t of a polynomial that is zero at t = 0, as one of the degree that it had.
+template <class T>
+Bernstein<T, 6> divided_by_time(const Bernstein<T, 6>& p) {
+  const auto quotient = [&](std::size_t k) { return 6.0 / static_cast<double>(k + 1) * p[k + 1]; };  // of degree 5
+  Bernstein<T, 6> result;
+  result[0] = quotient(0);
+  result[6] = quotient(5);
+  for (std::size_t k = 1; k < 6; ++k) {
+    const double share = static_cast<double>(k) / 6;
+    result[k] = share * quotient(k - 1) + (1 - share) * quotient(k);
+  }
+  return result;
+}
+
+// The same of degree 6.
+std::optional<PathNormal> without_zero_ends(const PolynomialNormals<3>& c, const PathErrors& errors) {
+  double largest = 0;
+  for (const Vec3d& v : c) largest = std::max(largest, max_abs(v));
+  if (largest == 0) return std::nullopt;
+  const double scale = 1 / largest;
+  PathNormal normal;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    normal.n[k] = scale * c[k];
+    normal.error[k] = kLongestOfThree * scale * errors[k];
+  }
+  for (int end = 0; end < 2; ++end) {
+    while (normal.n[0] == Vec3d{} && normal.error[0] == 0)
+      normal = {divided_by_time(normal.n), divided_by_time(normal.error)};
+    std::reverse(normal.n.begin(), normal.n.end());
+    std::reverse(normal.error.begin(), normal.error.end());
+  }
+  for (std::size_t k = 0; k < c.size(); ++k) normal.error[k] += kCutting * max_abs(normal.n[k]);
+  return normal;
+}
+
 // The piece of which the bound is the largest comes first.
 struct Piece {
   double a, b;
@@ -66,15 +110,15 @@ struct Piece {
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };
 
-template <class Curve>
-ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough,
+template <class Curve, std::size_t N>
+ErrorBounds bounds_of(const Curve& curve, const NormalOf<N>& normal, const CertifyOptions& options, double enough,
                       bool only_whether = false) {
   std::array<Piece, kMostPieces> pieces;
   std::size_t count = 0;
   ErrorBounds result;
   const auto add = [&](double a, double b) {
     const CurvePiece shown = curve.over(a, b);
-    const NormalPiece exact = normal.over(a, b);
+    const NormalPiece<N> exact = normal.over(a, b);
     const MiddleAngle middle = middle_angle(shown, exact);
     if (const double lower = middle.angle - middle.uncertainty; lower > result.lower) {
       result.lower = lower;
@@ -102,15 +146,17 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
 }
 
 // An arc that is run in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x), which is again a
-// quadratic but for a factor: r^2 (1-x)^2 n0 + 2 r (1-r) x (1-x) m + (1-r)^2 x^2 n1.
+// polynomial of degree N but for a factor: control normal k has the weight r^(N-k) (1-r)^k.
 struct Warp {
   double share;
 
-  [[nodiscard]] Normal normal(Normal in_time) const {
-    const double weights[] = {share * share, share * (1 - share), (1 - share) * (1 - share)};
-    for (std::size_t k = 0; k < 3; ++k) {
-      in_time.n[k] = weights[k] * in_time.n[k];
-      in_time.error[k] *= weights[k];
+  template <std::size_t N>
+  [[nodiscard]] NormalOf<N> normal(NormalOf<N> in_time) const {
+    for (std::size_t k = 0; k <= N; ++k) {
+      double weight = 1;
+      for (std::size_t i = 0; i < N; ++i) weight *= i < N - k ? share : 1 - share;
+      in_time.n[k] = weight * in_time.n[k];
+      in_time.error[k] *= weight;
     }
     return in_time;
   }
@@ -118,6 +164,25 @@ struct Warp {
 };
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
+
+// The bounds of what PathCurves computes of a normal: the piece on which it may turn most is halved until it turns less
+// than rounding in float32 does.
+ErrorBounds computed_bounds(const PathNormal& normal) {
+  constexpr double kLittle = 0x1p-30;  // radians
+  std::array<Piece, kMostPieces> pieces;
+  pieces[0] = {0, 1, largest_turn(normal.over(0, 1)), 0};
+  for (std::size_t count = 1;;) {
+    const Piece worst = pieces[0];
+    if (worst.upper <= kLittle || count >= kMostPieces || worst.b - worst.a <= kNarrowest)
+      return {0, std::min(std::numbers::pi, worst.upper + kPathAngle), 0, worst.a, worst.b};
+    std::pop_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count--));
+    const double middle = worst.a + (worst.b - worst.a) / 2;
+    for (const auto& [a, b] : {std::pair{worst.a, middle}, std::pair{middle, worst.b}}) {
+      pieces[count++] = {a, b, largest_turn(normal.over(a, b)), 0};
+      std::push_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+  }
+}
 
 // All elements of a block share these.
 class Certifier {
@@ -137,23 +202,19 @@ class Certifier {
     const std::optional<Normal> normal = without_zero_ends(normals, errors);
     if (!normal) return {0, 0, 0, 0, 1};
     if (fitted_ == nullptr) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options, enough);
+    return of_fitted(i, *normal, options, enough);
+  }
 
-    const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
-    switch (fitted_->formula) {
-      case Formula::kRational:
-        return bounds_of(CubicCurve(c), *normal, options, enough);
-      case Formula::kGreatArc:
-      case Formula::kCircleArc:
-        return bounds_of(ArcCurve(fitted_->formula, c), *normal, options, enough);
-      case Formula::kTimedCircleArc:
-        return of_warped_arc(c, *normal, options, enough);
-      case Formula::kDeCasteljau:
-        return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), *normal, options, enough);
-      default:
-        if (!basis_) return kUnknown;
-        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), *normal, options, enough);
-        return bounds_of(LagrangeCurve(*basis_, c), *normal, options, enough);
-    }
+  // The same against the normal of a curved path.
+  [[nodiscard]] ErrorBounds bounds_on_path(std::size_t i, const ControlNormals& normals, const ControlErrors& errors,
+                                           const PolynomialNormals<3>& truth, const PathErrors& truth_errors,
+                                           const CertifyOptions& options, double enough) const {
+    const std::optional<PathNormal> exact = without_zero_ends(truth, truth_errors);
+    if (!exact) return {0, 0, 0, 0, 1};
+    if (fitted_ != nullptr) return of_fitted(i, *exact, options, enough);
+    const std::optional<Normal> straight = without_zero_ends(normals, errors);
+    if (!straight) return kUnknown;
+    return bounds_of(CubicCurve(straight->n, kExactTolerance, straight->error), *exact, options, enough);
   }
 
  private:
@@ -162,7 +223,29 @@ class Certifier {
     return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
   }
 
-  static ErrorBounds of_warped_arc(ElementCoefficients c, const Normal& normal, const CertifyOptions& options,
+  template <std::size_t N>
+  [[nodiscard]] ErrorBounds of_fitted(std::size_t i, const NormalOf<N>& normal, const CertifyOptions& options,
+                                      double enough) const {
+    const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
+    switch (fitted_->formula) {
+      case Formula::kRational:
+        return bounds_of(CubicCurve(c), normal, options, enough);
+      case Formula::kGreatArc:
+      case Formula::kCircleArc:
+        return bounds_of(ArcCurve(fitted_->formula, c), normal, options, enough);
+      case Formula::kTimedCircleArc:
+        return of_warped_arc(c, normal, options, enough);
+      case Formula::kDeCasteljau:
+        return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), normal, options, enough);
+      default:
+        if (!basis_) return kUnknown;
+        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), normal, options, enough);
+        return bounds_of(LagrangeCurve(*basis_, c), normal, options, enough);
+    }
+  }
+
+  template <std::size_t N>
+  static ErrorBounds of_warped_arc(ElementCoefficients c, const NormalOf<N>& normal, const CertifyOptions& options,
                                    double enough) {
     const Warp warp{static_cast<double>(c[10])};
     if (!(warp.share > 0 && warp.share < 1)) return kUnknown;
@@ -176,20 +259,50 @@ class Certifier {
   std::optional<LagrangeBasis> basis_;
 };
 
+ControlErrors promised_errors(const ControlNormals& c) {
+  return {kPromisedShare * max_abs(c.n0), kPromisedShare * max_abs(c.m), kPromisedShare * max_abs(c.n1)};
+}
+
+// Bounds the errors of all elements by a function of the index, the errors of its control normals and of how large a
+// bound is enough.
+template <class Bounds>
+void certify_each(const ElementBlock& block, std::span<const ControlErrors> errors, const CertifyOptions& options,
+                  std::span<ErrorBounds> result, const Bounds& bounds) {
+  assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
+  assert(errors.empty() || errors.size() == result.size());
+  double enough = options.enough;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = bounds(i, errors.empty() ? promised_errors(block.normals[i]) : errors[i], enough);
+    if (options.only_worst) enough = std::max(enough, result[i].lower);
+  }
+}
+
 }  // namespace
 
 void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result,
              const CertifyOptions& options, std::span<const ControlErrors> errors) {
-  assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
-  assert(errors.empty() || errors.size() == result.size());
   const Certifier certifier(scheme);
-  double enough = options.enough;
+  certify_each(block, errors, options, result, [&](std::size_t i, const ControlErrors& of_normals, double enough) {
+    return certifier.bounds(i, block.normals[i], of_normals, options, enough);
+  });
+}
+
+void certify(const Scheme& scheme, const ElementBlock& block, const PathTruth& truth, std::span<ErrorBounds> result,
+             const CertifyOptions& options, std::span<const ControlErrors> errors) {
+  assert(truth.normals.size() == result.size() && truth.errors.size() == result.size());
+  const Certifier certifier(scheme);
+  certify_each(block, errors, options, result, [&](std::size_t i, const ControlErrors& of_normals, double enough) {
+    return certifier.bounds_on_path(i, block.normals[i], of_normals, truth.normals[i], truth.errors[i], options,
+                                    enough);
+  });
+}
+
+void certify_path_curves(const PathTruth& truth, std::span<ErrorBounds> result) {
+  assert(truth.normals.size() == result.size() && truth.errors.size() == result.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const ControlNormals& c = block.normals[i];
-    const ControlErrors promised = {kPromisedShare * max_abs(c.n0), kPromisedShare * max_abs(c.m),
-                                    kPromisedShare * max_abs(c.n1)};
-    result[i] = certifier.bounds(i, c, errors.empty() ? promised : errors[i], options, enough);
-    if (options.only_worst) enough = std::max(enough, result[i].lower);
+    result[i] = {0, 0, 0, 0, 1};
+    if (const std::optional<PathNormal> normal = without_zero_ends(truth.normals[i], truth.errors[i]))
+      result[i] = computed_bounds(*normal);
   }
 }
 
@@ -197,34 +310,51 @@ inline namespace internal {
 
 double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
                   double enough) noexcept {
-  const ControlErrors errors = {kPromisedShare * max_abs(normals.n0), kPromisedShare * max_abs(normals.m),
-                                kPromisedShare * max_abs(normals.n1)};
-  const std::optional<Normal> normal = without_zero_ends(normals, errors);
+  const std::optional<Normal> normal = without_zero_ends(normals, promised_errors(normals));
   if (!normal) return 0;
-  const NormalPiece piece = normal->over(a, b);
-  return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), {piece.n, piece.error}, {}, enough, true).upper;
+  const NormalPiece<2> piece = normal->over(a, b);
+  return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), Normal{piece.n, piece.error}, {}, enough, true)
+      .upper;
 }
 
 }  // namespace internal
 
-Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
-                                         Threads threads) {
+namespace {
+
+// Bounds the errors of a scheme on all faces of a segment, block by block: bounds(scheme, block, result).
+template <class Bounds>
+Result<std::vector<ErrorBounds>> certify_blocks(std::string_view name, const Segment& segment, Threads threads,
+                                                const Bounds& bounds) {
   if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   std::vector<ErrorBounds> result(segment.topology->face_count());
-  const auto block = [&](IndexRange faces) {
+  blocks_on(threads, result.size(), kBlockSize, [&](IndexRange faces) {
     std::vector<ControlNormals> normals(faces.count);
     face_control_normals(segment, faces, normals);
     const std::unique_ptr<Scheme> scheme = make_scheme(name).value();
-    scheme->prepare({&segment, faces, normals});
-    certify(*scheme, {&segment, faces, normals}, std::span(result).subspan(faces.first, faces.count), options);
-  };
-  if (threads == Threads::kAll) {
-    parallel_blocks(result.size(), kBlockSize, block);
-  } else {
-    for (std::size_t i = 0; i < block_count(result.size(), kBlockSize); ++i)
-      block({i * kBlockSize, std::min(kBlockSize, result.size() - i * kBlockSize)});
-  }
+    const ElementBlock block{&segment, faces, normals};
+    scheme->prepare(block);
+    bounds(*scheme, block, std::span(result).subspan(faces.first, faces.count));
+  });
   return result;
+}
+
+}  // namespace
+
+Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
+                                         Threads threads) {
+  return certify_blocks(name, segment, threads,
+                        [&](const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result) {
+                          certify(scheme, block, result, options);
+                        });
+}
+
+Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment,
+                                         const PolynomialSegment<3>& path, const CertifyOptions& options,
+                                         Threads threads) {
+  return certify_blocks(name, segment, threads,
+                        [&](const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result) {
+                          certify(scheme, block, path_truth(path, block.elements), result, options);
+                        });
 }
 
 }  // namespace chronormal

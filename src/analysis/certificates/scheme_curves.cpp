@@ -138,7 +138,8 @@ CubicCurve::CubicCurve(ElementCoefficients c) noexcept : angle_(kScaling) {
   radius_ = {rounding * length_of(n0), rounding * length_of(m), rounding * length_of(n1)};
 }
 
-CubicCurve::CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept : p_(elevated(n)), angle_(angle) {}
+CubicCurve::CubicCurve(const Bernstein<Vec3d, 2>& n, double angle, const Bernstein<double, 2>& error) noexcept
+    : p_(elevated(n)), radius_(error), angle_(angle) {}
 
 CurvePiece CubicCurve::over(double a, double b) const noexcept {
   const Bernstein<double, 2> radius = restrict_to(radius_, a, b);

@@ -56,8 +56,8 @@ class CubicCurve {
   explicit CubicCurve(ElementCoefficients c) noexcept;
   /// A line between two vectors, in balls of these radii around its ends.
   CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
-  /// A quadratic that is shown to within an angle.
-  CubicCurve(const Bernstein<Vec3d, 2>& n, double angle) noexcept;
+  /// A quadratic that is shown to within an angle, and may itself be off by an error.
+  CubicCurve(const Bernstein<Vec3d, 2>& n, double angle, const Bernstein<double, 2>& error = {}) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
 

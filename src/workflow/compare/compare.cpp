@@ -84,7 +84,13 @@ class Elements {
   }
 
   // Compares everything with the exact normals of curved paths. The object must not be moved from now on.
-  void follow(const Motion& motion, PathKind path) { curved_.emplace(motion, path, groups_ ? &*groups_ : nullptr); }
+  void follow(const Motion& motion, PathKind path, bool certified) {
+    curved_.emplace(motion, path, groups_ ? &*groups_ : nullptr, certified);
+  }
+  // The normals of curved paths, for certificates; nothing where vertices move straight.
+  [[nodiscard]] std::optional<PathTruth> path_truth(const Segment& segment, IndexRange range) const {
+    return curved_ ? std::optional(curved_->truth(segment.index, range)) : std::nullopt;
+  }
   [[nodiscard]] std::unique_ptr<Scheme> make(const std::string& name) const {
     return curved_ && name == kExactCurve ? curved_->scheme() : make_scheme(name).value();
   }
@@ -179,12 +185,18 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   return table;
 }
 
-// Bounds the largest error of a scheme that is prepared on a block.
-CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, std::span<const ControlErrors> errors) {
+// Bounds the largest error of a scheme that is prepared on a block, on curved paths against their truth.
+CertifiedError certified_error(const std::string& name, const Scheme& scheme, const ElementBlock& block,
+                               std::span<const ControlErrors> errors, const std::optional<PathTruth>& truth) {
   CertifyOptions options;
   options.only_worst = true;
   std::vector<ErrorBounds> bounds(block.elements.count);
-  certify(scheme, block, bounds, options, errors);
+  if (!truth)
+    certify(scheme, block, bounds, options, errors);
+  else if (name == kExactCurve)
+    certify_path_curves(*truth, bounds);
+  else
+    certify(scheme, block, *truth, bounds, options, errors);
   CertifiedError all;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const auto& [lower, upper, at, from, to] = bounds[i];
@@ -222,8 +234,10 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   }
   if (options.certify || options.tolerance) {
     const std::vector<ControlErrors> errors = all.control_errors(segment, range);
+    const std::optional<PathTruth> truth = all.path_truth(segment, range);
+    const ElementBlock block{&segment, range, control_normals, all.are_faces()};
     for (std::size_t s = 0; s < names.size(); ++s)
-      tallies[s].certified = certified_error(*schemes[s], {&segment, range, control_normals, all.are_faces()}, errors);
+      tallies[s].certified = certified_error(names[s], *schemes[s], block, errors, truth);
   }
 
   const std::optional<ReferenceTriangles> triangles = all.triangles(segment, range);
@@ -292,8 +306,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   if (certified && options.access == Access::kSequential)
     return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
   const bool curved = options.path != PathKind::kLinear;
-  if (certified && curved)
-    return Error{ErrorCode::kUsage, "", "certificates are of straight paths: of curved ones there are samples"};
   if (const Status status = check_path(motion, options.path); !status) return status.error();
 
   // Linear is the measure of the others, so it takes part even where it is not a row.
@@ -329,15 +341,16 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   }
   if (curved) {
     if (const Status status = stream.hold_all(); !status) return status.error();
-    all->follow(motion, options.path);
+    all->follow(motion, options.path, certified);
     rows.back().operations = all->make(rows.back().scheme)->operations();
   }
-  std::vector<std::vector<float>> each;  // of every row, the errors of all elements at all samples
+  // The errors of all elements at all samples, of every row but the last on curves, which has none.
+  std::vector<std::vector<float>> each;
   if (options.keep_errors) {
-    const std::size_t samples = motion.segments.size() * options.samples;
+    const std::size_t samples = motion.segments.size() * options.samples, kept = rows.size() - (curved ? 1 : 0);
     ErrorTable room{names[0], kind, motion.topology, {}};
-    if (const Status status = reserve_rows(room, samples * rows.size()); !status) return status.error();
-    each.assign(rows.size(), std::vector<float>(samples * all->count()));
+    if (const Status status = reserve_rows(room, samples * kept); !status) return status.error();
+    each.assign(kept, std::vector<float>(samples * all->count()));
   }
   if (options.shard && (options.keep_errors || options.keep_samples || curved))
     return Error{ErrorCode::kUsage, "", "a shard keeps sums, of straight paths: the rest is of a whole motion"};
@@ -413,8 +426,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     row.evaluate_ns = median(times[s].evaluate_ns);
     if (s >= each.size()) continue;
     if (const Status status = stream.hold(0, 0); !status) return status.error();
-    comparison.errors.push_back(
-        table_of(motion, *all, options, comparison.schemes.size() > 1 ? row.scheme : "", each[s]));
+    comparison.errors.push_back(table_of(motion, *all, options, each.size() > 1 ? row.scheme : "", each[s]));
     each[s] = {};
   }
   conclude(totals, share.count, certified, comparison);

@@ -1,16 +1,20 @@
 // Holds the cubics of some segments, and makes a scheme of PathCurves.
 #include "workflow/compare/curved_segments.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <utility>
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/path_curves.h"
+#include "core/blocks.h"
 #include "core/rounding.h"
 
 namespace chronormal::inline internal {
 namespace {
+
+constexpr std::size_t kBlock = 4096;
 
 // A scheme that shows the exact normals of the curve; it ignores the control normals of straight motion of a block.
 class CurveScheme final : public Scheme {
@@ -38,6 +42,15 @@ class CurveScheme final : public Scheme {
   PathCurves curves_;
 };
 
+std::vector<PathErrors> all_errors(const PolynomialSegment<3>& curve) {
+  std::vector<PathErrors> errors(curve.topology->face_count());
+  parallel_blocks(errors.size(), kBlock, [&](IndexRange faces) {
+    const PathTruth truth = path_truth(curve, faces);
+    std::copy(truth.errors.begin(), truth.errors.end(), errors.begin() + static_cast<std::ptrdiff_t>(faces.first));
+  });
+  return errors;
+}
+
 }  // namespace
 
 void CurvedSegments::enter(std::size_t first, std::size_t last) {
@@ -46,7 +59,10 @@ void CurvedSegments::enter(std::size_t first, std::size_t last) {
     if (segments_.contains(s)) continue;
     Entered entered{path_segment(*motion_, s, path_), {}};
     const auto start = std::chrono::steady_clock::now();
-    if (groups_ != nullptr) entered.of_faces = all_path_normals(entered.curve);
+    if (groups_ != nullptr) {
+      entered.of_faces.normals = all_path_normals(entered.curve);
+      if (certified_) entered.of_faces.errors = all_errors(entered.curve);
+    }
     shared_ns_ = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count() *
                  static_cast<double>(thread_count());
     segments_.emplace(s, std::move(entered));
@@ -74,8 +90,13 @@ std::vector<PolynomialNormals<3>> CurvedSegments::control_normals(std::size_t se
   if (groups_ == nullptr)
     polynomial_face_normals(entered.curve, range, std::span(result));
   else
-    polynomial_group_normals<3>(*groups_, entered.of_faces, range, result);
+    polynomial_group_normals<3>(*groups_, entered.of_faces.normals, range, result);
   return result;
+}
+
+PathTruth CurvedSegments::truth(std::size_t segment, IndexRange range) const {
+  const Entered& entered = segments_.find(segment)->second;
+  return groups_ == nullptr ? path_truth(entered.curve, range) : path_truth(*groups_, entered.of_faces, range);
 }
 
 std::unique_ptr<Scheme> CurvedSegments::scheme() const { return std::make_unique<CurveScheme>(*this); }

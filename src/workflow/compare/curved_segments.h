@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "chronormal/analysis/certify.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/paths.h"
@@ -22,9 +23,10 @@ inline constexpr std::string_view kExactCurve = "exact";
 
 class CurvedSegments {
  public:
-  /// groups is nullptr for faces. The motion and the groups must outlive the object.
-  CurvedSegments(const Motion& motion, PathKind path, const NormalGroups* groups)
-      : motion_(&motion), path_(path), groups_(groups) {}
+  /// groups is nullptr for faces; certified says whether truth() will be asked for. The motion and the groups must outlive
+  /// the object.
+  CurvedSegments(const Motion& motion, PathKind path, const NormalGroups* groups, bool certified)
+      : motion_(&motion), path_(path), groups_(groups), certified_(certified) {}
 
   /// Prepares for segments first to last, and forgets those before.
   void enter(std::size_t first, std::size_t last);
@@ -35,18 +37,21 @@ class CurvedSegments {
   void exact_normals(std::size_t segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept;
   /// The control normals of degree 6 of a range of elements.
   [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(std::size_t segment, IndexRange range) const;
+  /// The same with their errors, for certificates.
+  [[nodiscard]] PathTruth truth(std::size_t segment, IndexRange range) const;
   /// PathCurves as a scheme, on blocks of segments that were entered. This object must outlive the scheme.
   [[nodiscard]] std::unique_ptr<Scheme> scheme() const;
 
  private:
   struct Entered {
     PolynomialSegment<3> curve;
-    std::vector<PolynomialNormals<3>> of_faces;  // for groups
+    PathTruth of_faces;  // for groups; errors where certificates are asked for
   };
 
   const Motion* motion_;
   PathKind path_;
   const NormalGroups* groups_;
+  bool certified_;
   std::map<std::size_t, Entered> segments_;
   double shared_ns_ = 0;
 };

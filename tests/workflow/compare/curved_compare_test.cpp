@@ -97,10 +97,6 @@ TEST(CurvedCompare, tells_how_far_the_path_bends) {
 TEST(CurvedCompare, refuses_what_has_no_meaning_on_curves) {
   const Motion motion = test::curved_motion(kTimes, 1.5, 6, 4);
   CompareOptions options;
-  options.path = PathKind::kCatmullRom;
-  options.certify = true;
-  EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage);
-  options.certify = false;
   options.path = PathKind::kHermite;
   EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage) << "no velocities";
   Motion targets = motion;
