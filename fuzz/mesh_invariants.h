@@ -36,7 +36,7 @@ inline void check_mesh_invariants(Result<MeshFrame> result, std::size_t byte_cou
 
   Motion motion;
   motion.topology = std::move(frame.topology);
-  motion.keyframes.push_back({frame.positions, 0, "first"});
+  motion.keyframes.push_back({frame.positions, 0, "first", std::move(frame.velocities)});
   motion.keyframes.push_back({std::move(frame.positions), 1, "second"});
   motion.connect_as_sequence();
   require(validate(motion).ok(), "a mesh that was read is valid");

@@ -6,5 +6,6 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   chronormal::fuzz::check_mesh_invariants(chronormal::read_ply(bytes, "fuzz.ply"), size);
+  chronormal::fuzz::check_mesh_invariants(chronormal::read_moving_ply(bytes, "fuzz.ply"), size);
   return 0;
 }

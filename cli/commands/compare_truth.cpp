@@ -17,7 +17,9 @@ Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
                                                       Progress& progress) {
   const Result<ElementOptions> wanted = elements.options();
   if (!wanted) return wanted.error();
-  Result<Input> opened = open_input(input, progress);
+  InputOptions kept = input;
+  kept.velocities = true;
+  Result<Input> opened = open_input(kept, progress);
   if (!opened) return opened.error();
   const Result<const Motion*> motion = opened.value().motion();
   if (!motion) return motion.error();

@@ -38,6 +38,7 @@ Result<int> run(const Options& options) {
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   wanted.stream = true;
+  wanted.velocities = options.common.output.ends_with(".npz");  // the only format that they are written to
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();

@@ -152,6 +152,7 @@ Result<int> run(const Options& options) {
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   wanted.stream = true;
+  wanted.velocities = options.path.needs_velocities();
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();

@@ -83,6 +83,8 @@ struct PathArgument {
   [[nodiscard]] std::vector<Option> table(const std::string& what);
   /// Errors: kUsage for a path that does not exist.
   [[nodiscard]] Result<PathKind> read() const;
+  /// Whether the input has to have velocities.
+  [[nodiscard]] bool needs_velocities() const { return name == path_name(PathKind::kHermite); }
 };
 /// Checks that an input has such paths (normals/paths.h). Errors: kUsage where it does not; those of reading it.
 [[nodiscard]] Status check_path(Input& input, PathKind path);

@@ -57,6 +57,9 @@ struct InputOptions {
   std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
   bool allow_mesh = false;                        ///< a mesh that does not move is an input, too
   KeepShading shading = KeepShading::kNone;
+  /// The velocities that mesh files of a sequence store are kept, and then all of them are read at once. Formats that
+  /// hold a whole motion always keep theirs.
+  bool velocities = false;
   /// Where the bytes of files come from; empty: the file system. With a resolver, files are names and not patterns or
   /// folders, and a glTF file's buffers are asked for by their paths below its folder.
   FileResolver resolve = {};

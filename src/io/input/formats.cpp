@@ -73,6 +73,7 @@ constexpr std::array<Format, 11> kFormats = {{
      .extensions = kPly,
      .recognises = is_ply,
      .read_mesh = read_ply,
+     .read_moving_mesh = read_moving_ply,
      .write_mesh = write_binary_ply},
     {.name = "gltf", .holds = Holds::kGltf, .extensions = kGltf, .recognises = is_gltf},
     {.name = "npz",
@@ -140,13 +141,15 @@ std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view l
 }
 
 Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name, const std::string& place,
-                            bool shaded) {
+                            WantedOfMesh wanted) {
   const Format* const format = find_format(file_name, bytes);
   if (format == nullptr || format->holds != Holds::kMesh)
     return invalid_input(place, std::string(format == nullptr ? "neither the name nor the content tells the format"
                                                               : "this is no mesh, by its name or its content") +
                                     "; a mesh is " + extensions_of({Holds::kMesh}, " or "));
-  return (shaded && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes, place);
+  if (wanted.velocities && format->read_moving_mesh != nullptr) return format->read_moving_mesh(bytes, place);
+  return (wanted.shading && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes,
+                                                                                                                place);
 }
 
 }  // namespace chronormal::inline internal

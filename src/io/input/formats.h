@@ -43,6 +43,8 @@ struct Format {
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   /// The same with smoothing groups and normals; nullptr where the format is read without them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  /// The same with velocities; nullptr where the format has none.
+  Result<MeshFrame> (*read_moving_mesh)(std::string_view bytes, const std::string& name) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
   /// This function reads the same motion, but leaves the positions of keyframes in the file. It is nullptr for a format
@@ -74,11 +76,17 @@ struct Format {
 /// ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last after `last`.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 
-/// Reads a mesh in the format that it has, with its shading where that is wanted and the format has any; place is for
-/// messages, and begins that of every error. Errors: kInvalidInput where the format is none of a mesh; the message
+/// What is wanted of a mesh file beside positions and faces, where its format has it. No format has both.
+struct WantedOfMesh {
+  bool shading = false;
+  bool velocities = false;
+};
+
+/// Reads a mesh in the format that it has, with what is wanted and the format has; place is for messages, and begins
+/// that of every error. Errors: kInvalidInput where the format is none of a mesh; the message
 /// lists what can be read; those of the reader.
 [[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
-                                          const std::string& place, bool shaded = false);
+                                          const std::string& place, WantedOfMesh wanted = {});
 
 }  // namespace chronormal::inline internal
 

@@ -111,7 +111,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   // The normals of all keyframes count as far as every one so far had some.
   const bool wanted =
       k == 0 ? options.shading != KeepShading::kNone : options.shading == KeepShading::kAll && normals.size() == k;
-  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, wanted);
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, {wanted, options.velocities});
   if (!mesh || !wanted) return mesh;
   if (k == 0) {
     const Format* const format = find_format(file_name_of(path), bytes);

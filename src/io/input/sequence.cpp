@@ -65,6 +65,7 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
 // A frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
+  std::vector<float> velocities = {};
   std::uint64_t bytes = 0;  // the size of its file, where it was not counted otherwise
 };
 
@@ -74,21 +75,21 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
                      const ObjFaces* faces, ReadMotion* shaded, const Topology& topology,
                      const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
-  if (!file) return {file.error()};
+  if (!file) return {file.error(), {}};
   const std::string_view bytes = file.value().bytes();
   const std::uint64_t counted = shaded != nullptr ? 0 : bytes.size();
   if (faces != nullptr) {
     const Format* const format = find_format(file_name_of(path), bytes);
     if (format != nullptr && format->read_mesh == read_obj)
       if (std::optional<std::vector<float>> positions = faces->positions_of(bytes))
-        return {std::move(*positions), counted};
+        return {std::move(*positions), {}, counted};
   }
   Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
-                                             : read_mesh(bytes, file_name_of(path), place);
-  if (!mesh) return {mesh.error()};
+                                             : read_mesh(bytes, file_name_of(path), place, {false, options.velocities});
+  if (!mesh) return {mesh.error(), {}};
   if (const Status same = check_same_topology(topology, first_name, mesh.value().topology, place); !same)
-    return {same.error()};
-  return {std::move(mesh.value().positions), counted};
+    return {same.error(), {}};
+  return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
 }
 
 // The faces of a file whose text can be compared with that of other files; nothing for other formats than OBJ.
@@ -141,10 +142,10 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.keyframes.reserve(total);
   const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
   const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
-  const auto keep = [&](std::vector<float> positions) {
+  const auto keep = [&](std::vector<float> positions, std::vector<float> velocities) {
     const std::size_t i = motion.keyframes.size();
     const double time = static_cast<double>(frames.value()[i]) / options.frames_per_second;
-    motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i))});
+    motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i)), std::move(velocities)});
     if (options.progress) options.progress(i + 1, total);
   };
 
@@ -153,7 +154,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), file_of(0), place(0), read);
   if (!first) return first.error();
   motion.topology = std::move(first.value().topology);
-  keep(std::move(first.value().positions));
+  keep(std::move(first.value().positions), std::move(first.value().velocities));
 
   // Reads the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
   // may not be safe to call from several threads, and where the normals of a frame depend on whether the one before had
@@ -172,7 +173,12 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
     for (ReadFrame& frame : next) {
       if (!frame.positions) return frame.positions.error();
       read.bytes_read += frame.bytes;
-      keep(std::move(frame.positions).value());
+      const bool has_velocities = !motion.keyframes[0].velocities.empty();
+      if (frame.velocities.empty() == has_velocities)
+        return invalid_input(place(motion.keyframes.size()),
+                             has_velocities ? "the file has no velocities, but " + place(0) + " has"
+                                            : "the file has velocities, but " + place(0) + " has none");
+      keep(std::move(frame.positions).value(), std::move(frame.velocities));
     }
   }
   motion.connect_as_sequence();
@@ -199,6 +205,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), first_path, place, read);
   if (!first) return first.error();
   if (options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty()) return read_sequence(files, options);
+  if (!first.value().velocities.empty()) return read_sequence(files, options);
   read.bytes_read = *bytes;
   outline.topology = std::move(first.value().topology);
   std::vector<float>& positions = outline.keyframes[0].positions;
@@ -221,6 +228,9 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
         read_frame(options, files[k], frame_place(k, motion.keyframes[keyframe].name),
                    kept->faces ? &*kept->faces : nullptr, nullptr, motion.topology, frame_name(frames[0]));
     if (!frame.positions) return frame.positions.error();
+    if (!frame.velocities.empty())
+      return invalid_input(frame_place(k, motion.keyframes[keyframe].name),
+                           "the file has velocities, but " + frame_name(frames[0]) + " has none");
     const std::vector<float>& found = frame.positions.value();
     Status status = validate_positions(motion, keyframe, found);
     if (status) std::copy(found.begin(), found.end(), result.begin());

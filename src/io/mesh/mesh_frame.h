@@ -14,6 +14,9 @@ struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
 
+  /// (V, 3): the velocity of each vertex, in length units per second, where that is asked for and the file has them.
+  std::vector<float> velocities = {};
+
   // How the file says that its mesh is to be shaded, where that is asked for.
   /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none. Empty
   /// where the file has no groups.

@@ -125,7 +125,7 @@ Result<MeshFrame> ObjReader::read() {
   Result<Topology> topology = faces_.build(vertex_count());
   if (!topology) return error_in_line(last_line, topology.error().text());
   positions_.shrink_to_fit();
-  return MeshFrame{std::move(topology).value(), std::move(positions_), {}, {}};
+  return MeshFrame{std::move(topology).value(), std::move(positions_)};
 }
 
 // The current line, and those that continue it.

@@ -197,8 +197,8 @@ class BinarySource {
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(std::string_view bytes, const std::string& name, const Header& header)
-      : name_(name), header_(header), source_(bytes, header) {}
+  BodyReader(std::string_view bytes, const std::string& name, const Header& header, bool has_velocities)
+      : name_(name), header_(header), source_(bytes, header), has_velocities_(has_velocities) {}
 
   Result<MeshFrame> read() {
     for (std::size_t e = 0; e < header_.elements.size(); ++e) {
@@ -206,7 +206,7 @@ class BodyReader {
     }
     Result<Topology> topology = faces_.build(vertex_count());
     if (!topology) return invalid_input(name_ + ", " + source_.place(), topology.error().text());
-    return MeshFrame{std::move(topology).value(), std::move(positions_)};
+    return MeshFrame{std::move(topology).value(), std::move(positions_), std::move(velocities_)};
   }
 
  private:
@@ -239,14 +239,17 @@ class BodyReader {
   }
 
   [[nodiscard]] bool read_row(std::size_t e) {
-    std::array<float, 3> position{};
+    std::array<float, 6> vertex{};  // the position and the velocity
     if (!source_.begin_row()) return false;
     for (const Property& property : header_.elements[e].properties) {
       switch (property.role) {
         case Role::kX:
         case Role::kY:
         case Role::kZ:
-          if (!source_.coordinate(property.type, position[static_cast<std::size_t>(property.role)])) return false;
+        case Role::kVelocityX:
+        case Role::kVelocityY:
+        case Role::kVelocityZ:
+          if (!source_.coordinate(property.type, vertex[static_cast<std::size_t>(property.role)])) return false;
           break;
         case Role::kIndices:
           if (!read_face(property)) return false;
@@ -257,7 +260,9 @@ class BodyReader {
       }
     }
     if (!source_.end_row()) return false;
-    if (e == header_.vertex_element) positions_.insert(positions_.end(), position.begin(), position.end());
+    if (e != header_.vertex_element) return true;
+    positions_.insert(positions_.end(), vertex.begin(), vertex.begin() + 3);
+    if (has_velocities_) velocities_.insert(velocities_.end(), vertex.begin() + 3, vertex.end());
     return true;
   }
 
@@ -303,9 +308,17 @@ class BodyReader {
   const Header& header_;
   Source source_;
   std::string message_;  // of an error that is not the source's
-  std::vector<float> positions_;
+  bool has_velocities_;
+  std::vector<float> positions_, velocities_;
   PolygonBuilder faces_;
 };
+
+Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, const Header& header,
+                            bool has_velocities) {
+  if (header.encoding == PlyEncoding::kAscii)
+    return BodyReader<AsciiSource>(bytes, name, header, has_velocities).read();
+  return BodyReader<BinarySource>(bytes, name, header, has_velocities).read();
+}
 
 // The numbers of a file, one after the other, in one of the encodings.
 class RowWriter {
@@ -343,9 +356,15 @@ class RowWriter {
 Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
   const Result<Header> header = ply::read_header(bytes, name);
   if (!header) return header.error();
-  if (header.value().encoding == PlyEncoding::kAscii)
-    return BodyReader<AsciiSource>(bytes, name, header.value()).read();
-  return BodyReader<BinarySource>(bytes, name, header.value()).read();
+  return read_body(bytes, name, header.value(), false);
+}
+
+Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name) {
+  Result<Header> header = ply::read_header(bytes, name);
+  if (!header) return header.error();
+  const Result<bool> has_velocities = ply::assign_velocities(header.value(), name);
+  if (!has_velocities) return has_velocities.error();
+  return read_body(bytes, name, header.value(), has_velocities.value());
 }
 
 std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {

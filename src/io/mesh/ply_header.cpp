@@ -219,4 +219,29 @@ Status HeaderReader::check_elements() {
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
 
+Result<bool> assign_velocities(Header& header, const std::string& name) {
+  // Particle and simulation codes write the first names; exporters of attributes add the axis to the name "velocity".
+  constexpr std::array<std::array<std::string_view, 3>, 2> kNames = {
+      {{"vx", "vy", "vz"}, {"velocity_x", "velocity_y", "velocity_z"}}};
+  std::vector<Property>& properties = header.elements[header.vertex_element].properties;
+  for (const auto& names : kNames) {
+    std::array<Property*, 3> found{};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (Property& property : properties)
+        if (property.name == names[c]) found[c] = &property;
+    if (std::none_of(found.begin(), found.end(), [](const Property* property) { return property != nullptr; }))
+      continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (found[c] == nullptr)
+        return invalid_input(name + ", header",
+                             "the vertices have a part of a velocity, but no property " + std::string(names[c]));
+      if (found[c]->is_list)
+        return invalid_input(name + ", header", "the velocity " + std::string(names[c]) + " is a list");
+      found[c]->role = static_cast<Role>(static_cast<std::size_t>(Role::kVelocityX) + c);
+    }
+    return true;
+  }
+  return false;
+}
+
 }  // namespace chronormal::inline internal::ply

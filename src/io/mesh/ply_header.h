@@ -24,7 +24,7 @@ enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, k
 }
 
 /// What a property is to us.
-enum class Role { kX, kY, kZ, kIndices, kOther };
+enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOther };
 
 struct Property {
   std::string_view name;
@@ -54,6 +54,10 @@ struct Header {
 /// with the list vertex_indices of an integer type, both with a count above 0. Views point into bytes.
 /// Errors: as read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
+
+/// Gives the velocities of vertices their roles, where there are any; returns whether there are. Errors: as
+/// read_moving_ply(), with the place "NAME, header".
+[[nodiscard]] Result<bool> assign_velocities(Header& header, const std::string& name);
 
 }  // namespace chronormal::inline internal::ply
 

@@ -148,6 +148,44 @@ TEST(ReadSequence, obj_and_ply_of_one_topology_make_a_motion) {
   EXPECT_TRUE(read({ply, text}).ok());
 }
 
+// One triangle as high as its number, with velocities.
+std::string moving_ply(int height, const std::string& names = "v") {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  for (const char* const axis : {"x", "y", "z"}) text += "property float " + names + axis + "\n";
+  text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const char* const place : {"0 0 ", "1 0 ", "0 1 "})
+    text += place + std::to_string(height) + " 1 2 " + std::to_string(height) + "\n";
+  return text + "3 0 1 2\n";
+}
+
+TEST(ReadSequence, velocities_are_kept_where_they_are_asked_for_and_every_frame_has_them) {
+  const TemporaryFolder folder;
+  Names files;
+  for (int k = 0; k < 3; ++k) files.push_back(folder.write(std::to_string(k) + ".ply", moving_ply(k)));
+  const std::string other = folder.write("9.ply", moving_ply(9, "w"));
+  EXPECT_TRUE(read(files).value().keyframes[2].velocities.empty());
+  const auto open = [](const Names& names, bool stream) -> Result<std::vector<float>> {
+    InputOptions options = test::files(names);
+    options.velocities = true;
+    options.stream = stream;
+    options.kept_bytes = 0;
+    Result<Input> input = open_input(options);
+    if (!input) return input.error();
+    const Result<MotionStream*> motion = input.value().stream();
+    if (!motion) return motion.error();
+    if (const Status held = motion.value()->hold_all(); !held) return held.error();
+    return motion.value()->motion().keyframes.back().velocities;
+  };
+  for (const bool stream : {false, true}) {
+    EXPECT_EQ(open(files, stream).value(), (std::vector<float>{1, 2, 2, 1, 2, 2, 1, 2, 2}));
+    EXPECT_EQ(error_of(open({files[0], files[1], other}, stream)).text(),
+              "frame 2 (9.ply): the file has no velocities, but frame 0 (0.ply) has");
+    const Error late = error_of(open({other, files[1]}, stream));
+    EXPECT_EQ(late.place, "frame 1 (1.ply)");
+    EXPECT_EQ(late.message.find("the file has velocities, but frame 0"), 0U) << late.message;
+  }
+}
+
 TEST(ReadSequence, fewer_than_two_frames_is_an_error_that_counts_them) {
   const TemporaryFolder folder;
   const Error one = error_of(read({folder.write("a.obj", obj(0))}));

@@ -66,6 +66,57 @@ TEST(ReadPly, passes_over_what_is_not_ours_in_any_order) {
   EXPECT_EQ(ascii.positions, (Positions{3.5F, 2, 1, 6, 5, 4, 9, 8, 7}));
 }
 
+// Three vertices whose velocities have these names, of any type, among other properties.
+std::string moving_file(const std::string& first, const std::string& second, const std::string& third,
+                        const std::string& type = "float") {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty " + type + " " + second +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty float " + first +
+         "\nproperty double " + third +
+         "\nelement face 1\nproperty list uchar int vertex_indices\nproperty float vx\nend_header\n"
+         "2 0 0 0 255 1 3.5\n5 1 0 0 255 4 6\n8 0 1 0 255 7 -9e3\n3 0 1 2 7\n";
+}
+
+TEST(ReadPly, velocities_are_read_where_they_are_asked_for) {
+  for (const std::string& bytes :
+       {moving_file("vx", "vy", "vz"), moving_file("velocity_x", "velocity_y", "velocity_z", "short")}) {
+    const Result<MeshFrame> moving = read_moving_ply(bytes, "walk.ply");
+    ASSERT_TRUE(moving.ok()) << moving.error().text();
+    EXPECT_EQ(moving.value().velocities, (Positions{1, 2, 3.5F, 4, 5, 6, 7, 8, -9e3F}));
+    EXPECT_EQ(moving.value().positions, (Positions{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_TRUE(read_good(bytes).velocities.empty());
+  }
+  for (const bool big_endian : {false, true}) {
+    EXPECT_TRUE(read_moving_ply(test::small_binary_ply(big_endian), "walk.ply").value().velocities.empty());
+    test::ByteWriter writer(replaced(moving_file("vx", "vy", "vz").substr(0, moving_file("vx", "vy", "vz").find("2 0")),
+                                     "ascii", big_endian ? "binary_big_endian" : "binary_little_endian"),
+                            big_endian);
+    for (int v = 0; v < 3; ++v) {
+      for (const float value : {2.0F, 0.0F, 1.0F, 2.0F}) writer.add(value);
+      writer.add(std::uint8_t{255}).add(1.0F).add(double{3} + v);
+    }
+    writer.add(std::uint8_t{3});
+    for (const std::int32_t vertex : {0, 1, 2}) writer.add(vertex);
+    const Result<MeshFrame> moving = read_moving_ply(writer.add(7.0F).bytes(), "walk.ply");
+    ASSERT_TRUE(moving.ok()) << moving.error().text();
+    EXPECT_EQ(moving.value().velocities, (Positions{1, 2, 3, 1, 2, 4, 1, 2, 5}));
+  }
+}
+
+TEST(ReadPly, velocity_that_is_not_whole_or_no_number_is_an_error_where_it_is_asked_for) {
+  const auto said = [](const std::string& bytes) {
+    const Result<MeshFrame> moving = read_moving_ply(bytes, "walk.ply");
+    return moving ? "no error" : moving.error().text();
+  };
+  const std::string half = moving_file("vx", "vy", "speed"),
+                    list = replaced(moving_file("vx", "vy", "vz"), "float vx", "list uchar float vx"),
+                    broken = replaced(moving_file("vx", "vy", "vz"), "3.5", "nan");
+  EXPECT_EQ(said(half), "walk.ply, header: the vertices have a part of a velocity, but no property vz");
+  EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list");
+  EXPECT_EQ(said(broken).find("walk.ply, line 15, vertex 0: "), 0U) << said(broken);
+  EXPECT_EQ(error_of(half), "no error");
+  EXPECT_EQ(error_of(broken), "no error");
+}
+
 TEST(ReadPly, every_scalar_type_serves_as_coordinate_count_and_index) {
   for (const bool big_endian : {false, true}) {
     const auto file = [&](const std::string& coordinate, const std::string& count, const std::string& index, auto put) {
