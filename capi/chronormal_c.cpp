@@ -135,6 +135,7 @@ struct chronormal_blend {
 struct chronormal_motion {
   Input input;
   const Motion* motion;
+  SampleOptions options;
   NormalSampler sampler;
 };
 
@@ -283,6 +284,7 @@ chronormal_status chronormal_motion_read(const char* const* files, size_t file_c
     if (!chosen) return fail(chosen.error());
     InputOptions reading;
     reading.files.assign(files, files + file_count);
+    reading.velocities = true;
     Result<Input> input = open_input(reading);
     if (!input) return fail(input.error());
     const Result<const Motion*> motion = input.value().motion();
@@ -292,7 +294,23 @@ chronormal_status chronormal_motion_read(const char* const* files, size_t file_c
     sampling.weighting = chosen.value().weighting;
     Result<NormalSampler> sampler = NormalSampler::make(*motion.value(), sampling);
     if (!sampler) return fail(sampler.error());
-    *result = new chronormal_motion{std::move(input).value(), motion.value(), std::move(sampler).value()};
+    *result = new chronormal_motion{std::move(input).value(), motion.value(), sampling, std::move(sampler).value()};
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path) {
+  if (motion == nullptr) return misuse("motion", "the pointer is NULL");
+  if (path == nullptr) return misuse("path", "the pointer is NULL");
+  return guarded([&] {
+    const Result<PathKind> kind = make_path(path);
+    if (!kind) return fail(Error{ErrorCode::kUsage, "path", kind.error().message});
+    SampleOptions options = motion->options;
+    options.path = kind.value();
+    Result<NormalSampler> sampler = NormalSampler::make(*motion->motion, options);
+    if (!sampler) return fail(sampler.error());
+    motion->options = options;
+    motion->sampler = std::move(sampler).value();
     return CHRONORMAL_DONE;
   });
 }

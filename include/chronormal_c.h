@@ -132,6 +132,9 @@ typedef struct chronormal_motion chronormal_motion;
 /* Files as on the command line of `chronormal sample`; of options, the tolerance does not count. */
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
+/* How vertices of a sequence move from now on, as `chronormal sample --path` has it: "linear" (at first), "catmull-rom",
+ * on curves through the keyframes, or "hermite", with the velocities of the file. Usage where it has no such paths. */
+CHRONORMAL_API chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path);
 /* How many normals there are: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_motion_size(const chronormal_motion* motion);
 /* The first and the last time, in seconds; 0 and 0 for targets. */

@@ -19,6 +19,7 @@
 #include "chronormal/normals/curve_preparation.h"  // curves of normals, prepared a little at a time
 #include "chronormal/normals/element_blend.h"      // the normals of blend shapes for every face, vertex or corner
 #include "chronormal/normals/element_curves.h"     // the normals of a segment for every face, vertex or corner
+#include "chronormal/normals/element_paths.h"      // the normals of curved paths for every face, vertex or corner
 #include "chronormal/normals/elements.h"           // faces, vertices, corners, and who shares a normal
 #include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
 #include "chronormal/normals/float_recompute.h"    // the fastest rival: in float32, without a promise

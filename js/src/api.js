@@ -88,9 +88,15 @@ function taskOf(command, input, options, more = []) {
 
 const warningsOf = (stderr) => (stderr === '' ? [] : stderr.split('\n'));
 
-/** Writes right normals into a glTF file, and says how far off they were and are. */
+// What a bake writes: the same file, or a GLB where the input is a sequence in another format.
+const bakedName = (name) => {
+  const base = name.split('/').pop();
+  return /\.(glb|gltf)$/i.test(base) ? base : `${base}.glb`;
+};
+
+/** Writes right normals into a glTF file, or makes one of a sequence, and says how far off they were and are. */
 export async function bake(input, options = {}) {
-  const name = options.name ?? nameOf(bytesOf(input)), base = name.split('/').pop();
+  const base = bakedName(options.name ?? nameOf(bytesOf(input)));
   const done = await execute(taskOf('bake', input, options, ['-o', `${OUTPUTS}/${base}`]), options);
   const { [base]: bytes, ...files } = done.files;
   return { bytes, files, report: JSON.parse(done.stdout), warnings: warningsOf(done.stderr), within: done.code === DONE };
@@ -107,5 +113,5 @@ export const audit = (input, options = {}) => report('audit', input, options);
 /** Says what is in a file, and what may cause wrong normals. */
 export const inspect = (input, options = {}) => report('inspect', input, options);
 
-/** Holds the ways to interpolate normals against each other, on a mesh of this file. */
+/** Holds the ways to interpolate normals against each other, on a mesh or a sequence of this file. */
 export const compare = (input, options = {}) => report('compare', input, options);

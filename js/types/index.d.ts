@@ -10,7 +10,7 @@ export interface Progress {
 
 /** How a call is made. Every other option is one of the program, in camel case: `maxTargets: 112` is `--max-targets 112`. */
 export interface CallOptions {
-  /** The name of the input in messages, with its extension. Default: input.glb or input.gltf. */
+  /** The name of the input, with its extension, which tells its format: walk.npz. Default: input.glb or input.gltf. */
   name?: string;
   /** The files that a .gltf names, by their URIs. */
   resources?: Record<string, Uint8Array | ArrayBuffer>;
@@ -27,6 +27,8 @@ export interface JudgeOptions extends CallOptions {
   tolerance?: number;
   weighting?: 'area' | 'uniform' | 'angle' | (string & {});
   animation?: string | number;
+  /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
+  path?: 'linear' | 'catmull-rom' | 'hermite';
   [option: string]: unknown;
 }
 
@@ -67,9 +69,15 @@ export class ChronormalError extends Error {
   code: number;
 }
 
+export interface CompareOptions extends JudgeOptions {
+  schemes?: string[];
+  samples?: number;
+  certify?: boolean;
+}
+
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView;
 
 export function bake(input: Bytes, options?: BakeOptions): Promise<Baked>;
 export function audit(input: Bytes, options?: AuditOptions): Promise<Judged>;
 export function inspect(input: Bytes, options?: CallOptions & Record<string, unknown>): Promise<Judged>;
-export function compare(input: Bytes, options?: JudgeOptions): Promise<Judged>;
+export function compare(input: Bytes, options?: CompareOptions): Promise<Judged>;

@@ -19,11 +19,11 @@ import os as _os
 
 import numpy as _np
 
-from ._chronormal import Blend, Curves, Motion, __version__
+from ._chronormal import Blend, Curves, Motion, Paths, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare", "cones",
-           "contain", "curves", "errors", "facing", "inspect", "read", "shutter"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "Paths", "audit", "bake", "blend", "certify", "collapse", "compare",
+           "cones", "contain", "curves", "errors", "facing", "inspect", "paths", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -76,7 +76,7 @@ def _polygons(faces):
     return _np.arange(0, (count + 1) * size, size, dtype=_np.uint32), corners
 
 
-def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False):
+def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, velocities=False):
     """What to open, as the extension wants it."""
     if (source is None) == (sample is None):
         raise ValueError("source: give files or bytes, or the name of a built-in sample")
@@ -89,7 +89,8 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
         files = [_os.fspath(file) for file in source]
     return {"files": files, "bytes": data, "samples": [sample] if sample is not None else [],
             "base": _os.fspath(base) if base is not None else "", "fps": float(fps),
-            "animation": str(animation) if animation is not None else "", "world": bool(world)}
+            "animation": str(animation) if animation is not None else "", "world": bool(world),
+            "velocities": bool(velocities)}
 
 
 def _names(given):
@@ -111,6 +112,21 @@ def curves(p0, p1, faces, elements="vertices", crease=None, weighting="area", to
     offsets, corners = _polygons(faces)
     return Curves(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, elements, crease, weighting, tolerance, weld,
                   threads)
+
+
+def paths(positions, faces, times=None, path="catmull-rom", velocities=None, elements="vertices", crease=None, weld=True):
+    """Prepare the unit normals of a sequence whose vertices move on curves through its keyframes; return Paths.
+
+    positions   (T, V, 3), the keyframes
+    times       (T,) seconds, ascending; None: 0, 1, 2 ...
+    path        "catmull-rom": velocities follow from the keyframes; "hermite": they are given; "linear": straight
+    velocities  (T, V, 3) per second
+    faces, elements, crease, weld  as for curves(); vertices are one where they are at one point in all keyframes
+    """
+    positions, offsets, corners, times = _keyframes(positions, faces, times)
+    if velocities is not None:
+        velocities = _vectors(velocities, "velocities")
+    return Paths(positions, offsets, corners, times, path, velocities, elements, crease, weld)
 
 
 def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
@@ -153,7 +169,7 @@ def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=
     animation  of a glTF file, by name or index; None: its morph targets
     world      vertices of a glTF file are where its nodes put them
     """
-    return Motion(_source(source, sample, base, fps, animation, world))
+    return Motion(_source(source, sample, base, fps, animation, world, velocities=True))
 
 
 def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
@@ -162,42 +178,47 @@ def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, wor
 
 
 def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, tolerance=None, weld=True, sample=None,
-          base=None, fps=1.0, animation=None):
+          base=None, fps=1.0, animation=None, path="linear"):
     """Return how wrong the normals are that a file makes hosts show: the dict of `chronormal audit --json`.
 
     rule, weighting, hosts, samples, tolerance  as the options of the program; hosts may be a list
     source, sample, base, fps, animation        as for read()
+    path  how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program
     """
-    text, _ = _chronormal.audit(_source(source, sample, base, fps, animation), rule or "", weighting or "",
-                                _names(hosts or ""), samples, tolerance, weld, False)
+    opened = _source(source, sample, base, fps, animation, velocities=path == "hermite")
+    text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(hosts or ""), samples, tolerance, weld, False, path)
     return _json.loads(text)
 
 
 def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
-            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False):
+            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False,
+            path="linear"):
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
     schemes    names; empty: the usual ones
     times      whether measured times are in it, which differ from run to run
     certify    whether to bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme that is never off by more
+    path       as for audit(); the last row is then for the exact normals of the path
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
-    text, _ = _chronormal.compare(_source(source, sample, base, fps, animation, world), list(schemes), samples,
-                                  access == "sequential", elements, crease, weld, times, False, certify, tolerance)
+    opened = _source(source, sample, base, fps, animation, world, velocities=path == "hermite")
+    text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
+                                  False, certify, tolerance, path)
     return _json.loads(text)
 
 
 def bake(source=None, *, encode=None, hosts="all", weighting=None, tolerance=None, smooth=False, recompute_base=False,
-         sample=None, fps=1.0):
+         sample=None, fps=1.0, path="linear"):
     """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
 
+    path    as for audit(); on curves positions are exact, by cubic weights, and normals are fitted
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
     """
-    glb, text = _chronormal.bake(_source(source, sample, None, fps), encode or "", _names(hosts), weighting or "",
-                                 tolerance, smooth, recompute_base)
+    opened = _source(source, sample, None, fps, velocities=path == "hermite")
+    glb, text = _chronormal.bake(opened, encode or "", _names(hosts), weighting or "", tolerance, smooth, recompute_base, path)
     return glb, _json.loads(text)
 
 
@@ -222,20 +243,21 @@ class ErrorTable:
 
 
 def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=None, weighting=None, weld=True,
-           sample=None, base=None, fps=1.0, animation=None):
+           sample=None, base=None, fps=1.0, animation=None, path="linear"):
     """Return every error, for each vertex at each sample: a list of ErrorTable, one for each mesh.
 
     scheme  None: the errors of an audit, of the stored normals; or a name, such as "linear": those of a way to
             interpolate, for any elements
+    path    as for audit()
     """
-    opened = _source(source, sample, base, fps, animation)
+    opened = _source(source, sample, base, fps, animation, velocities=path == "hermite")
     if scheme is None:
         if elements != "vertices":
             raise ValueError("elements: an audit judges vertices")
-        _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
+        _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True, path)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
-                                        weld, False, True, False, None)
+                                        weld, False, True, False, None, path)
     return [ErrorTable(**table) for table in tables]
 
 

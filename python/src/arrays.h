@@ -82,6 +82,10 @@ py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
 // Corners and offsets of a mesh, from two arrays of uint32.
 Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
 
+// The sequence of keyframes (T, V, 3) at some times.
+Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
+                 const Array<std::uint32_t>& corners, const Array<double>& times);
+
 // Where (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it fits, or a new array for None.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
@@ -116,6 +120,7 @@ inline void require_made(bool is_made) { require(is_made, "self", "it was never 
 void add_certificates(py::module_& module);
 void add_curves(py::module_& module);
 void add_files(py::module_& module);
+void add_paths(py::module_& module);
 void add_queries(py::module_& module);
 
 }  // namespace chronormal::python

@@ -25,6 +25,7 @@ InputOptions options_of(const py::dict& source) {
   options.frames_per_second = source["fps"].cast<double>();
   options.animation = source["animation"].cast<std::string>();
   options.world = source["world"].cast<bool>();
+  options.velocities = source["velocities"].cast<bool>();
   if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
     const std::string_view view = bytes.cast<std::string_view>();  // of the object, which outlives the input
     options.files = {kBytes};
@@ -46,6 +47,17 @@ Opened open(const py::dict& source, bool allow_mesh, KeepShading shading) {
     return open_input(options);
   }();
   return {value_or_raise(std::move(input)), source["bytes"]};
+}
+
+// The path of a name, which must be linear for the weights of a glTF file. (The library checks other motions.)
+PathKind path_of(const std::string& name) {
+  Result<PathKind> path = make_path(name);
+  if (!path) refuse("path", path.error().message);
+  return path.value();
+}
+void require_paths(const Input& input, PathKind path) {
+  require(path == PathKind::kLinear || input.document() == nullptr, "path",
+          "the weights of a glTF file say how its vertices move: paths are of sequences");
 }
 
 // Does what takes long without the GIL, and raises its error with it.
@@ -80,8 +92,9 @@ py::list dicts_of(std::vector<ErrorTable> tables) {
 
 py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
                        const std::string& hosts, std::optional<std::size_t> samples, std::optional<double> tolerance,
-                       bool weld, bool keep_errors) {
+                       bool weld, bool keep_errors, const std::string& path) {
   AuditOptions options;
+  options.path = path_of(path);
   if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
   if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
@@ -91,6 +104,7 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
   options.keep_errors = keep_errors;
   Opened opened = open(source, false, KeepShading::kAll);
   Input& input = opened.input;
+  require_paths(input, options.path);
   options.animation = source["animation"].cast<std::string>();
   Audit found = without_gil([&]() -> Result<Audit> {
     if (input.document() != nullptr) return audit(*input.document(), options);
@@ -105,8 +119,9 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
 
 py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
                          bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
-                         bool keep_errors, bool certified, std::optional<double> tolerance) {
+                         bool keep_errors, bool certified, std::optional<double> tolerance, const std::string& path) {
   CompareOptions options;
+  options.path = path_of(path);
   options.schemes = schemes;
   options.samples = samples;
   options.access = sequential ? Access::kSequential : Access::kRandom;
@@ -117,6 +132,7 @@ py::tuple compare_source(const py::dict& source, const std::vector<std::string>&
   options.certify = certified;
   options.tolerance = tolerance;
   Opened opened = open(source, false, KeepShading::kNone);
+  require_paths(opened.input, options.path);
   NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
     const Result<const Motion*> motion = opened.input.motion();
     if (!motion) return motion.error();
@@ -161,14 +177,16 @@ std::string bake_sequence_of(Input& input, BakeOptions options, std::string& jso
     options.expansion = input.expansion();
     return bake_sequence(*motion.value(), options, glb);
   });
-  json = bake_json(baked, options.encoding.value_or(BakeEncoding::kExact),
-                   {input.name(), kBytes, std::nullopt, std::nullopt});
+  const BakeEncoding usual = options.path == PathKind::kLinear ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
+  json = bake_json(baked, options.encoding.value_or(usual), {input.name(), kBytes, std::nullopt, std::nullopt});
   return glb;
 }
 
 py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& hosts,
-                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
+                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base,
+                      const std::string& path) {
   BakeOptions options;
+  options.path = path_of(path);
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
     require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
@@ -180,6 +198,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   options.smooth = smooth;
   options.recompute_base = recompute_base;
   Opened opened = open(source, false, KeepShading::kAll);
+  require_paths(opened.input, options.path);
   const bool is_document = opened.input.document() != nullptr;
   if (!is_document) {
     require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
@@ -210,6 +229,16 @@ class ReadMotion : public ZeroedObject {
                             {py::ssize_t(motion().keyframes.size()), py::ssize_t(motion().topology.vertex_count()), 3});
     }
     return *positions_;
+  }
+
+  [[nodiscard]] py::object velocities() const {
+    std::vector<float> all;
+    for (const Motion::Keyframe& keyframe : motion().keyframes) {
+      if (keyframe.velocities.empty()) return py::none();
+      all.insert(all.end(), keyframe.velocities.begin(), keyframe.velocities.end());
+    }
+    return array_of(std::move(all),
+                    {py::ssize_t(motion().keyframes.size()), py::ssize_t(motion().topology.vertex_count()), 3});
   }
 
   // (F, k) where all faces have as many corners, or else (offsets, corners).
@@ -251,8 +280,10 @@ class ReadMotion : public ZeroedObject {
   }
 
   py::array unit_normals(const std::optional<Array<double>>& times, const std::optional<Array<double>>& weights,
-                         const std::string& elements, double crease, const std::string& weighting, bool weld) {
+                         const std::string& elements, double crease, const std::string& weighting, bool weld,
+                         const std::string& path) {
     SampleOptions options;
+    options.path = path_of(path);
     options.elements.kind = value_or_raise(make_element_kind(elements));
     options.elements.crease_angle = crease;
     options.elements.weld = weld;
@@ -328,6 +359,8 @@ void add_files(py::module_& module) {
       .def_property_readonly(
           "faces", &ReadMotion::faces,
           "(F, k) uint32 where all faces have k corners, else (offsets, corners); curves() takes both.")
+      .def_property_readonly("velocities", &ReadMotion::velocities,
+                             "(T, V, 3) float32 per second, where every keyframe of the file has them; else None.")
       .def_property_readonly("times", &ReadMotion::times, "(T,) float64: seconds; of targets, their weight.")
       .def_property_readonly("names", &ReadMotion::names, "The name of each keyframe: a file, a target, or \"\".")
       .def_property_readonly("segments", &ReadMotion::segments,
@@ -335,11 +368,12 @@ void add_files(py::module_& module) {
       .def_property_readonly("kind", &ReadMotion::kind, "\"sequence\", \"targets\", \"animation\" or \"mesh\".")
       .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
            py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
-           py::arg("weld") = true,
+           py::arg("weld") = true, py::arg("path") = "linear",
            R"(Return the unit normals at chosen moments: (T, n, 3) float32, the bits of `chronormal sample`.
 
 times    (T,) seconds of a sequence or an animation
 weights  (T, K) of K targets
+path     of a sequence: "linear", "catmull-rom" or "hermite", with the velocities of the file
 A mesh that does not move takes neither.)")
       .def("__repr__", &ReadMotion::text);
 }

@@ -11,24 +11,6 @@ namespace {
 using Positions = Array<float>;
 using Indices = Array<std::uint32_t>;
 
-// The motion of keyframes (T, V, 3) at some times.
-Motion motion_of(const Positions& positions, const Indices& offsets, const Indices& corners,
-                 const Array<double>& times) {
-  const auto keyframes = static_cast<std::size_t>(positions.shape(0)),
-             vertices = static_cast<std::size_t>(positions.shape(1));
-  require(times.ndim() == 1 && static_cast<std::size_t>(times.size()) == keyframes, "times",
-          "there must be one for each keyframe");
-  Motion motion;
-  motion.topology = topology_of(vertices, offsets, corners);
-  for (std::size_t k = 0; k < keyframes; ++k) {
-    const float* const first = positions.data() + 3 * vertices * k;
-    motion.keyframes.push_back({{first, first + 3 * vertices}, times.data()[k], ""});
-  }
-  motion.connect_as_sequence();
-  if (const Status status = validate(motion); !status) raise(status.error());
-  return motion;
-}
-
 py::array array_of_column(QueryColumn column) {
   return std::visit(
       [&](auto& values) -> py::array {
@@ -118,6 +100,23 @@ py::dict ask_shutter(const Positions& positions, const Indices& offsets, const I
 }
 
 }  // namespace
+
+Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
+                 const Array<std::uint32_t>& corners, const Array<double>& times) {
+  const auto keyframes = static_cast<std::size_t>(positions.shape(0)),
+             vertices = static_cast<std::size_t>(positions.shape(1));
+  require(times.ndim() == 1 && static_cast<std::size_t>(times.size()) == keyframes, "times",
+          "there must be one for each keyframe");
+  Motion motion;
+  motion.topology = topology_of(vertices, offsets, corners);
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    const float* const first = positions.data() + 3 * vertices * k;
+    motion.keyframes.push_back({{first, first + 3 * vertices}, times.data()[k], ""});
+  }
+  motion.connect_as_sequence();
+  if (const Status status = validate(motion); !status) raise(status.error());
+  return motion;
+}
 
 void add_queries(py::module_& module) {
   module.def("query_collapse", &ask_collapse);

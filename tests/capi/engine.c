@@ -112,6 +112,32 @@ static int check_blend(void) {
   return 0;
 }
 
+/* A vertex goes up along a parabola, as the cubic through three keyframes does: z is t (2 - t). */
+static int check_paths(const char* folder) {
+  char names[3][512];
+  const char* files[3] = {names[0], names[1], names[2]};
+  for (int k = 0; k < 3; ++k) {
+    snprintf(names[k], sizeof names[k], "%s/arch_%d.obj", folder, k);
+    FILE* file = fopen(names[k], "w");
+    EXPECT(file != NULL);
+    fprintf(file, "v 0 0 0\nv 1 0 0\nv 0 1 %d\nf 1 2 3\n", k == 1 ? 1 : 0);
+    EXPECT(fclose(file) == 0);
+  }
+  chronormal_motion* motion = NULL;
+  EXPECT(chronormal_motion_read(files, 3, NULL, &motion) == CHRONORMAL_DONE);
+  float normals[9];
+  for (int curved = 0; curved < 2; ++curved) {
+    EXPECT(chronormal_motion_follow(motion, curved ? "catmull-rom" : "linear") == CHRONORMAL_DONE);
+    for (double time = 0; time <= 2; time += 0.25) {
+      EXPECT(chronormal_motion_unit_normals(motion, time, (chronormal_result){normals, 0}) == CHRONORMAL_DONE);
+      const double z = curved ? time * (2 - time) : 1 - fabs(time - 1), length = sqrt(1 + z * z);
+      EXPECT(fabs(normals[1] + z / length) < 2e-6 && fabs(normals[2] - 1 / length) < 2e-6);
+    }
+  }
+  chronormal_motion_destroy(motion);
+  return 0;
+}
+
 static int check_motion(const char* folder) {
   char names[2][512];
   const char* files[2] = {names[0], names[1]};
@@ -136,7 +162,13 @@ static int check_motion(const char* folder) {
     for (int c = 0; c < 3; ++c) EXPECT(fabs(normals[3 * v + c] - n[c]) < 2e-6);
   }
   EXPECT(chronormal_motion_unit_normals(motion, 7, (chronormal_result){normals, 0}) == CHRONORMAL_USAGE);
+  EXPECT(chronormal_motion_follow(motion, "round") == CHRONORMAL_USAGE);
+  EXPECT(strstr(chronormal_last_message(), "'round'") != NULL);
+  EXPECT(chronormal_motion_follow(motion, "hermite") == CHRONORMAL_USAGE); /* these files have no velocities */
+  EXPECT(chronormal_motion_follow(motion, NULL) == CHRONORMAL_USAGE);
+  EXPECT(chronormal_motion_follow(NULL, "linear") == CHRONORMAL_USAGE);
   chronormal_motion_destroy(motion);
+  if (check_paths(folder) != 0) return 1;
   files[1] = "nothing.obj";
   EXPECT(chronormal_motion_read(files, 2, NULL, &motion) == CHRONORMAL_FAILED);
   EXPECT(strstr(chronormal_last_message(), "nothing.obj") != NULL);

@@ -15,7 +15,7 @@ import { install } from './installed.mjs';
 const { folder, installed, remove, load, native, wasm } = install();
 after(remove);
 
-const { bake, audit, inspect, ChronormalError } = await load('index.node.js');
+const { bake, audit, inspect, compare, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
 // A face with two targets and an animation: what convert makes of the built-in bumps, baked nowhere yet.
@@ -56,6 +56,29 @@ test('bytes go in, and bytes and a report come out', async () => {
   const inThisThread = await bake(face, { for: ['three'], encode: 'exact', worker: false });
   assert.deepEqual(inThisThread.bytes, bytes);
   assert.equal((await audit(face, { tolerance: 1e-4 })).within, false);
+});
+
+test('a sequence on curved paths has the report and the bytes of the command line', async () => {
+  for (let frame = 0; frame < 4; ++frame) {
+    const turned = [[1, 0, 0], [2, 0.3, 0.2], [1.5, 1, 0.4], [2.4, 1.2, -0.3]].map(([x, y, z]) => {
+      const c = Math.cos(0.3 * frame), s = Math.sin(0.3 * frame);
+      return `v ${c * x + s * z} ${y + 0.1 * frame * frame * x} ${c * z - s * x}\n`;
+    });
+    writeFileSync(join(folder, `turn_${frame}.obj`), `${turned.join('')}f 1 2 3\nf 2 4 3\n`);
+  }
+  assert.equal(native(['convert', 'turn_*.obj', '-o', 'turn.npz']).status, 0);
+  const turn = new Uint8Array(readFileSync(join(folder, 'turn.npz'))), path = 'catmull-rom', name = 'turn.npz';
+  for (const [command, call, more, flags] of [['audit', audit, {}, []], ['compare', compare, { noTimes: true, schemes: ['linear', 'slerp'] },
+                                                                          ['--no-times', '--schemes', 'linear,slerp']]]) {
+    const { report } = await call(turn, { name, path, ...more });
+    assert.deepEqual(report, JSON.parse(native([command, name, '--json', '--path', path, ...flags]).stdout));
+    assert.equal((report.input ?? report).path ?? report.path, path);
+  }
+  const { bytes, report } = await bake(turn, { name, path });
+  assert.equal(native(['bake', name, '--path', path, '-o', 'turn.glb']).status, 0);
+  assert.deepEqual(Buffer.from(bytes), readFileSync(join(folder, 'turn.glb')));
+  assert.equal(report.path, path);
+  await assert.rejects(audit(turn, { name, path: 'round' }), /there is no path 'round'/);
 });
 
 test('wrong input is refused in the words of the program, and the next call works', async () => {
@@ -172,6 +195,9 @@ export async function use(input: Uint8Array, document: Document): Promise<number
   });
   await document.transform(chronormal({ for: 'all', onReport: ({ schema }) => console.log(schema) }));
   try { await audit(bytes, { host: ['three'], samples: 8 }); } catch (error) { if (error instanceof ChronormalError) return error.code; }
+  await audit(bytes, { name: 'walk.npz', path: 'catmull-rom' });
+  // @ts-expect-error: there is no such path
+  await audit(bytes, { name: 'walk.npz', path: 'round' });
   // @ts-expect-error: there is no such host
   await bake(input, { for: ['four'] });
   return within ? report.schema : bytes.length;

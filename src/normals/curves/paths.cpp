@@ -108,7 +108,8 @@ std::string_view path_name(PathKind kind) noexcept {
 Result<PathKind> make_path(std::string_view name) {
   for (const PathKind kind : {PathKind::kLinear, PathKind::kCatmullRom, PathKind::kHermite})
     if (name == path_name(kind)) return kind;
-  return Error{ErrorCode::kUsage, "", "there is no such path; there are linear, catmull-rom and hermite"};
+  return Error{ErrorCode::kUsage, "",
+               std::string("there is no path '").append(name).append("'; there are linear, catmull-rom, hermite")};
 }
 
 Status check_path(const Motion& motion, PathKind kind) {

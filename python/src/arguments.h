@@ -1,0 +1,62 @@
+// What the calls that are made for every frame have in common: times, and whose normals they are about.
+#ifndef CHRONORMAL_PYTHON_ARGUMENTS_H_
+#define CHRONORMAL_PYTHON_ARGUMENTS_H_
+
+#include <optional>
+#include <string>
+
+#include "arrays.h"
+
+namespace chronormal::python {
+
+inline std::string counted(std::size_t count, ElementKind kind) {
+  return std::to_string(count) + ' ' + std::string(count == 1 ? one_element(kind) : element_kind_name(kind));
+}
+
+// What is asked of curves and blends alike, in words of Python.
+inline ElementOptions element_options(const std::string& elements, std::optional<double> crease, bool weld) {
+  ElementOptions options;
+  options.kind = value_or_raise(make_element_kind(elements));
+  options.weld = weld;
+  if (crease) {
+    require(options.kind == ElementKind::kCorners, "crease", "hard edges are for corners: say elements=\"corners\"");
+    options.crease_angle = *crease;
+  }
+  return options;
+}
+
+// The numbers of a Python float or of an array of them; is_one says which it was.
+struct Numbers {
+  explicit Numbers(const py::object& given, const char* place) {
+    if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
+      is_one = true;
+      one = given.cast<double>();
+      return;
+    }
+    many = Array<double>::ensure(given);
+    if (!*many) {
+      PyErr_Clear();
+      refuse(place, "it must be a number, or numbers in a row");
+    }
+    if (many->ndim() == 0) {
+      is_one = true;
+      one = *many->data();
+      return;
+    }
+    if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
+  }
+
+  [[nodiscard]] std::size_t count() const { return is_one ? 1 : static_cast<std::size_t>(many->size()); }
+  [[nodiscard]] const double* data() const { return is_one ? &one : many->data(); }
+  [[nodiscard]] std::optional<std::size_t> rows() const {
+    return is_one ? std::nullopt : std::optional<std::size_t>(count());
+  }
+
+  bool is_one = false;
+  double one = 0;
+  std::optional<Array<double>> many;  // an empty array would have to be made
+};
+
+}  // namespace chronormal::python
+
+#endif  // CHRONORMAL_PYTHON_ARGUMENTS_H_
