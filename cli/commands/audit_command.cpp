@@ -45,15 +45,21 @@ std::string shell_word(const std::string& word) {
   return printable(quoted + "'");
 }
 
-std::string words_of(const InputOptions& input) {
+// The words of a command line that name the input, the keyframes of it that count, and how vertices move between them.
+std::string words_of(const InputOptions& input, PathKind path) {
   std::string words;
   constexpr std::size_t kMost = 4;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
-    if (i == kMost) return words + " ...";
     if (i > 0) words += ' ';
-    words += shell_word(input.files[i]);
+    words += i == kMost ? "..." : shell_word(input.files[i]);
+    if (i == kMost) break;
   }
   for (const std::string& sample : input.samples) words += "--sample " + sample;
+  if (input.frames_per_second != 1) words += formatted(" --fps {}", input.frames_per_second);
+  if (input.from > 0) words += formatted(" --from {}", input.from);
+  if (input.to) words += formatted(" --to {}", *input.to);
+  if (input.every != 1) words += formatted(" --every {}", input.every);
+  if (path != PathKind::kLinear) words += formatted(" --path {}", path_name(path));
   return words;
 }
 
@@ -69,6 +75,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
+  wanted.velocities = options.path.needs_velocities();
   Result<Input> opened = open_input(std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
@@ -83,7 +90,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   warn_if_sparse("audit", found.value().path, found.value().bend);
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.tolerance,
-                 can_be_baked ? words_of(options.input) : ""};
+                 can_be_baked ? words_of(options.input, how.path) : ""};
 }
 
 Result<AuditOptions> understand(const Options& options, Progress& progress) {

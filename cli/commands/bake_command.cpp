@@ -273,7 +273,7 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
       report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   if (!reported) return reported.error();
   const SequenceBake& result = baked.value();
-  const bool is_stated = result.is_curved || encoding == BakeEncoding::kEndpoint;
+  const bool is_stated = result.path != PathKind::kLinear || encoding == BakeEncoding::kEndpoint;
   const bool is_beyond_tolerance = options.tolerance && ((result.keys && result.keys->beyond > 0) ||
                                                          (is_stated && result.largest_error > *options.tolerance));
   return is_beyond_tolerance ? kExitBeyond : kExitDone;
@@ -312,6 +312,7 @@ Result<int> run(Options options) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
   }
   InputOptions wanted = options.input;
+  wanted.velocities = options.path.needs_velocities();
   if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();

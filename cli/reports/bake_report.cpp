@@ -278,7 +278,7 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
     text +=
         formatted("{}: at most {} degrees from the right normals, {}\n",
                   encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
-                  encoding == BakeEncoding::kHarmless || bake.is_curved ? "at 40 instants of each segment"
+                  encoding == BakeEncoding::kHarmless || bake.path != PathKind::kLinear ? "at 40 instants of each segment"
                                                                         : "as far as can be proven");
   return text + lines_after(report);
 }

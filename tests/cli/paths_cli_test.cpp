@@ -68,6 +68,7 @@ TEST_F(Paths, audit_and_bake_go_by_the_curve) {
   EXPECT_NE(straight["worst_degrees"], curved["worst_degrees"]);
   const Json baked = json("bake 'f*.obj' --path catmull-rom -o out.glb --json");
   EXPECT_EQ(baked["encoding"], "endpoint");
+  EXPECT_EQ(baked["path"], "catmull-rom");
   EXPECT_LT(baked["bound_degrees"], 0.5);
   EXPECT_EQ(run("audit out.glb --tolerance 0.5").exit_code, 0) << "the file moves and shows what was promised";
 }
@@ -85,6 +86,46 @@ TEST_F(Paths, all_warn_where_keyframes_are_too_far_apart) {
   }
 }
 
+TEST_F(Paths, certificates_hold_what_samples_find_and_the_curve_is_the_cheapest_where_no_other_is_near) {
+  write_turn(0.3);
+  const Json result =
+      json("compare 'f*.obj' --path catmull-rom --schemes linear,slerp --tolerance 0.001 --json --no-times");
+  ASSERT_EQ(result["schemes"].size(), 3U);
+  for (const Json& row : result["schemes"]) {
+    EXPECT_LE(row["max_degrees"], row["certified"]["upper_degrees"]) << row;
+    EXPECT_LE(row["certified"]["lower_degrees"], row["certified"]["upper_degrees"]) << row;
+  }
+  EXPECT_LT(result["schemes"][2]["certified"]["upper_degrees"], 1e-4);
+  EXPECT_EQ(result["cheapest"], "exact");
+  EXPECT_EQ(run("compare 'f*.obj' --path catmull-rom --schemes linear --certify").exit_code, 0);
+}
+
+TEST_F(Paths, errors_are_those_of_the_schemes_that_were_asked_for) {
+  write_turn(0.3);
+  for (const std::string output : {"heat.ply", "heat.npz"})
+    EXPECT_EQ(
+        run("compare 'f*.obj' --path catmull-rom --schemes slerp --elements vertices --errors " + output).exit_code, 0);
+  const ProcessResult several =
+      run("compare 'f*.obj' --path catmull-rom --schemes slerp,linear --elements vertices --force --errors heat.ply");
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_NE(several.err.find("one scheme"), std::string::npos) << several.err;
+}
+
+TEST_F(Paths, audit_advises_a_bake_of_the_same_keyframes_and_paths) {
+  write_turn(0.6);
+  const ProcessResult advised = run("audit 'f*.obj' --path catmull-rom --fps 24 --from 1 --to 4 --every 1");
+  EXPECT_NE(
+      advised.out.find("chronormal bake 'f*.obj' --fps 24 --from 1 --to 4 --path catmull-rom -o baked.glb makes a "
+                       "glTF file of catmull-rom paths"),
+      std::string::npos)
+      << advised.out;
+  EXPECT_EQ(run("bake 'f*.obj' --fps 24 --from 1 --to 4 --path catmull-rom -o baked.glb").exit_code, 0);
+  EXPECT_NE(run("audit 'f*.obj' --every 2")
+                .out.find("chronormal bake 'f*.obj' --every 2 -o baked.glb makes a glTF file "
+                          "that is right at every instant"),
+            std::string::npos);
+}
+
 TEST_F(Paths, refuse_what_has_no_such_path) {
   write_turn(0.2);
   for (const std::string command :
@@ -93,9 +134,10 @@ TEST_F(Paths, refuse_what_has_no_such_path) {
       const ProcessResult refused = run(command + " --path " + path);
       EXPECT_EQ(refused.exit_code, 2) << command << refused.out;
       EXPECT_NE(refused.err.find("--path"), std::string::npos) << refused.err;
+      EXPECT_NE(refused.err.find(path), std::string::npos) << refused.err;
     }
   }
-  for (const std::string other : {"--certify", "--tolerance 1", "--truth 2", "--blend 3"})
+  for (const std::string other : {"--certify --access sequential", "--truth 2", "--blend 3"})
     EXPECT_EQ(run("compare 'f*.obj' --path catmull-rom " + other).exit_code, 2) << other;
   EXPECT_EQ(run("bake 'f*.obj' -o out.glb --path catmull-rom --encode exact").exit_code, 2);
   EXPECT_EQ(run("bake 'f*.obj' -o out.glb").exit_code, 0);

@@ -177,11 +177,11 @@ struct GltfBake {
 
 struct SequenceBake {
   std::size_t keyframes = 0, vertices = 0, targets = 0, extra_targets = 0;
-  std::size_t bytes = 0;            ///< of the file
-  double largest_error = 0;         ///< degrees, of endpoint and harmless; of a weighting that is fitted
-  std::size_t without_normals = 0;  ///< elements that have no area in the whole motion
-  bool is_curved = false;           ///< the vertices move on curves
-  double bend = 0;                  ///< of a curved path: bend_of(), to hold against kTooSparse
+  std::size_t bytes = 0;              ///< of the file
+  double largest_error = 0;           ///< degrees, of endpoint and harmless; of a weighting that is fitted
+  std::size_t without_normals = 0;    ///< elements that have no area in the whole motion
+  PathKind path = PathKind::kLinear;  ///< on which the vertices move
+  double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
   std::vector<std::string> warnings;
   /// The numbers that --encode keys reports.
   struct Keys {

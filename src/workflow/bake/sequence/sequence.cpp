@@ -255,7 +255,7 @@ Result<std::string> write_curved(const Motion& motion, const SequenceNormals& no
   report.largest_error = kDegreesPerRadian * curved.largest_error;
   report.targets = normals.keys() - 1 + with_velocities.size();
   report.extra_targets = curved.bends.size();
-  report.is_curved = true;
+  report.path = path;
   report.bend = bend_of(motion);
   return file.finish(track, "CUBICSPLINE", mark, std::vector<int>(report.targets + report.extra_targets, 0));
 }
