@@ -20,6 +20,9 @@ namespace chronormal::inline internal {
 /// The name of the row of the exact normals of a curved path.
 inline constexpr std::string_view kExactCurve = "exact";
 
+/// What an evaluation of that row costs.
+[[nodiscard]] OperationCounts exact_curve_operations() noexcept;
+
 class CurvedSegments {
  public:
   /// groups is nullptr for faces. The motion and the groups must outlive the object.
