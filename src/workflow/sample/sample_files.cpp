@@ -150,7 +150,9 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
-  const Result<std::vector<std::string>> names = sample_files(output, kind, count);
+  SampleOutput checked = output;
+  if (journal != nullptr) checked.force = true;  // an interrupted run may have written it just before its end
+  const Result<std::vector<std::string>> names = sample_files(checked, kind, count);
   if (!names) return names.error();
   if (Status status = check_moments(motion, moments); !status) return status.error();
   Result<NormalSampler> made = NormalSampler::make(stream, options);
