@@ -12,7 +12,7 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{300}, kLeastForPace{2000}, kRedrawn{1000};
+constexpr std::chrono::milliseconds kPatience{300}, kLeastForPace{1000}, kRedrawn{1000};
 constexpr int kWidth = 24;
 
 // Two units at most: "45 s", "3 min 20 s", "2 h 5 min".

@@ -123,6 +123,15 @@ TEST_F(Resume, files_of_other_people_are_not_touched) {
   EXPECT_EQ(run("audit 'w_*.obj' --resume --force -o old").exit_code, 0);
 }
 
+TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
+  for (const std::string command : {kSample, "compare 'w_*.obj'", "audit 'w_*.obj'"}) {
+    const ProcessResult failed = cut(command + " --resume -o out", "1");
+    EXPECT_EQ(failed.exit_code, 1) << command << failed.err;
+    EXPECT_EQ(failed.err.find("repeat"), std::string::npos) << command << failed.err;
+    EXPECT_FALSE(exists("out.journal") || exists("out.partial") || exists("out")) << command;
+  }
+}
+
 TEST_F(Resume, what_cannot_go_on_is_refused_at_once) {
   folder_.write("t.obj", file("w_1.obj"));
   for (const char* const arguments :

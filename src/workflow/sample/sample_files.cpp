@@ -5,7 +5,9 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "chronormal/io/output.h"
@@ -125,6 +127,20 @@ class ArrayFile {
   std::string storage_;
 };
 
+// Removes a partial output in the end, where no row of it was written: then there is nothing to go on with.
+struct EmptyPartial {
+  EmptyPartial() = default;
+  EmptyPartial(const EmptyPartial&) = delete;
+  EmptyPartial& operator=(const EmptyPartial&) = delete;
+  ~EmptyPartial() {
+    std::error_code ignored;
+    if (!name.empty() && journal->is_empty()) std::filesystem::remove(name, ignored);
+  }
+
+  std::string name;  // empty: there is none
+  const Journal* journal = nullptr;
+};
+
 // The mesh at one moment, as a file.
 std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
@@ -162,6 +178,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   if (!in_a_row) return in_a_row.error();
 
   const IndexRange share = output.shard.of(count);
+  EmptyPartial partial;
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
   std::size_t written = 0;  // rows, by an earlier run
@@ -187,6 +204,10 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     Result<OutputFile> file = journal != nullptr ? OutputFile::go_on(output.path, output.force, kept)
                                                  : OutputFile::create(output.path, output.force);
     if (!file) return file.error();
+    if (journal != nullptr) {
+      partial.journal = journal;
+      partial.name = OutputFile::partial_name(output.path);
+    }
     arrays.emplace(std::move(file).value(), output.format);
     if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, outputs, header); !status)
       return status.error();
