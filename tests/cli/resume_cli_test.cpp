@@ -124,8 +124,10 @@ TEST_F(Resume, files_of_other_people_are_not_touched) {
 }
 
 TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
-  for (const std::string command : {kSample, "compare 'w_*.obj'", "audit 'w_*.obj'"}) {
-    const ProcessResult failed = cut(command + " --resume -o out", "1");
+  // A row of the first one, and a record of the others, are too large for the limit.
+  for (const std::string command :
+       {"sample --sample twist --times 0,1 --format npy", "compare --sample twist", "audit --sample twist"}) {
+    const ProcessResult failed = cut(command + " --resume -o out", command.starts_with("sample") ? "4" : "2");
     EXPECT_EQ(failed.exit_code, 1) << command << failed.err;
     EXPECT_EQ(failed.err.find("repeat"), std::string::npos) << command << failed.err;
     EXPECT_FALSE(exists("out.journal") || exists("out.partial") || exists("out")) << command;
@@ -134,13 +136,16 @@ TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
 
 TEST_F(Resume, what_cannot_go_on_is_refused_at_once) {
   folder_.write("t.obj", file("w_1.obj"));
+  folder_.write("cache.xml", "<Autodesk_Cache_File/>");
+  ASSERT_EQ(run_shell("mkfifo pipe.obj", folder_.path()).exit_code, 0);
   for (const char* const arguments :
        {"audit 'w_*.obj' --resume", "sample 'w_*.obj' --times 1 --resume -o n.npz",
         "sample 'w_*.obj' --times 1 --resume -o n.ply", "sample 'w_*.obj' --times 1 --resume --format npy -o -",
         "compare --each 'w_*.obj' --sample twist --resume -o x", "compare 'w_*.obj' --truth 2 --resume -o x",
         "compare 'w_*.obj' --resume --errors e.npz -o x", "audit 'w_*.obj' --resume --errors e.npz -o x",
         "audit --base w_0.obj t.obj --resume -o x", "compare --base w_0.obj t.obj --resume -o x",
-        "compare --sample shapes --blend 5 --resume -o x"}) {
+        "compare --sample shapes --blend 5 --resume -o x", "audit w_0.obj - --resume -o x < t.obj",
+        "audit w_0.obj pipe.obj --resume -o x", "audit w_0.obj cache.xml --resume -o x"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
     EXPECT_FALSE(exists("x.journal")) << arguments;
