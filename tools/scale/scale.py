@@ -115,7 +115,7 @@ def commands(folder):
     return table(["command", "processor, s", "memory, MB"], rows)
 
 
-FRAMES = [24, 120, 240, 600, 1200, 2400]
+FRAMES = [24, 80, 240, 800, 2400]
 OVER_FRAMES = {
     "sample": ["sample", "--times", "0:0.23:23", "--format", "npy"],
     "compare": ["compare", "--schemes", "linear", "--samples", "2"],
