@@ -24,7 +24,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct AuditArguments {
   InputOptions input;
   CommonOptions common;
   std::string rule;  // empty: what is usual for the input
@@ -59,12 +59,12 @@ std::string words_of(const InputOptions& input) {
   return words;
 }
 
-const std::vector<RefusedOption> kRefused = {
+const std::vector<RefusedOption> kRefusedByAudit = {
     {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
 
-std::vector<std::vector<Option>> tables(Options& options) {
+std::vector<std::vector<Option>> tables(AuditArguments& options) {
   return {
-      input_table(options.input, kRefused),
+      input_table(options.input, kRefusedByAudit),
       {{"--rule NAME", &options.rule,
         "what a host makes of stored normals between keyframes: gltf (default for\n"
         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
@@ -91,7 +91,7 @@ Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
 }
 
 // Takes what an earlier run found, and keeps what this one finds.
-Status go_on(Input& input, const Options& options, AuditOptions& how, Journal& journal) {
+Status go_on(Input& input, const AuditArguments& options, AuditOptions& how, Journal& journal) {
   const Result<MotionStream*> motion = input.document() == nullptr ? input.stream() : Result<MotionStream*>(nullptr);
   if (!motion) return motion.error();
   if (motion.value() == nullptr || motion.value()->motion().kind != MotionKind::kSequence)
@@ -107,7 +107,7 @@ Status go_on(Input& input, const Options& options, AuditOptions& how, Journal& j
 }
 
 // resumed is nullptr where the run does not go on.
-Result<Audited> audit_input(const Options& options, AuditOptions how, Progress& progress, ResumedRun* resumed) {
+Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Progress& progress, ResumedRun* resumed) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
@@ -131,7 +131,7 @@ Result<Audited> audit_input(const Options& options, AuditOptions how, Progress& 
                  can_be_baked ? words_of(options.input) : ""};
 }
 
-Result<AuditOptions> understand(const Options& options, Progress& progress) {
+Result<AuditOptions> understand(const AuditArguments& options, Progress& progress) {
   AuditOptions how;
   if (!options.rule.empty()) {
     const Result<AuditRule> rule = make_audit_rule(options.rule);
@@ -199,8 +199,8 @@ bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   return false;
 }
 
-Result<int> run_one(const Options& options, const AuditOptions& how, Progress& progress) {
-  Options same = options;
+Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
+  AuditArguments same = options;
   const auto resumed = options.resume.begin("audit", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
   Result<Audited> audited = audit_input(options, how, progress, resumed.value().get());
@@ -229,7 +229,7 @@ int worse_exit(int a, int b) {
 }
 
 // Judges files one by one. One that cannot be read does not keep the others from being judged.
-Result<int> run_several(const Options& options, const AuditOptions& how, const std::vector<std::string>& names,
+Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
   if (options.resume.asked) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");
   if (!options.input.animation.empty())
@@ -238,7 +238,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {
-    Options one = options;
+    AuditArguments one = options;
     one.input.files = {name};
     const Result<Audited> audited = audit_input(one, how, progress, nullptr);
     progress.clear();
@@ -259,7 +259,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
   return exit;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const AuditArguments& options) {
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
   if (!how) return how.error();
@@ -275,7 +275,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command audit_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AuditArguments>();
   return {
       "audit",
       "Measure how far the normals that a host shows are from the right ones",
@@ -292,7 +292,7 @@ Command audit_command() {
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); },
-      kRefused};
+      kRefusedByAudit};
 }
 
 }  // namespace chronormal::cli

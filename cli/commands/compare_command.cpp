@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 1000000;
 
-struct Options {
+struct CompareArguments {
   InputOptions input;
   CommonOptions common;
   std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
@@ -58,12 +58,12 @@ std::vector<std::string> split_at_commas(const std::string& list) {
   }
 }
 
-std::vector<std::string> scheme_names(const Options& options) {
+std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
 // An option that was given, and has no meaning with --blend.
-std::string option_of_schemes(const Options& options) {
+std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
@@ -76,7 +76,7 @@ std::string option_of_schemes(const Options& options) {
   return options.each ? "--each" : "";
 }
 
-std::string footer() {
+std::string compare_footer() {
   std::string text = "Schemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
     text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
@@ -93,7 +93,7 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
-std::vector<std::vector<Option>> tables(Options& options) {
+std::vector<std::vector<Option>> tables(CompareArguments& options) {
   const auto check_access = [](const std::string& value) {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
@@ -130,7 +130,7 @@ std::vector<std::vector<Option>> tables(Options& options) {
 }
 
 // resumed is nullptr where the run does not go on.
-Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress, ResumedRun* resumed) {
+Result<Comparison> compare_one(Input& input, const CompareArguments& options, Progress& progress, ResumedRun* resumed) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
@@ -166,7 +166,8 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
 }
 
 // One motion at a time is in memory.
-Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress, ResumedRun* resumed) {
+Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
+                                                    ResumedRun* resumed) {
   std::vector<InputOptions> inputs;
   if (options.each) {
     InputOptions one = options.input;
@@ -209,7 +210,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   return comparisons;
 }
 
-Result<int> run_blend(const Options& options) {
+Result<int> run_blend(const CompareArguments& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
     return misuse(option, "it is about schemes, and does not go with --blend");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
@@ -225,7 +226,7 @@ Result<int> run_blend(const Options& options) {
 }
 
 // An option that was given, and has no meaning with --truth.
-std::string option_of_samples(const Options& options) {
+std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
   if (options.certify) return "--certify";
@@ -237,7 +238,7 @@ std::string option_of_samples(const Options& options) {
   return options.each ? "--each" : "";
 }
 
-Result<int> run_truth(const Options& options) {
+Result<int> run_truth(const CompareArguments& options) {
   if (const std::string option = option_of_samples(options); !option.empty())
     return misuse(option, "it does not go with --truth, which compares at the keyframes that are left out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
@@ -253,7 +254,7 @@ Result<int> run_truth(const Options& options) {
   return kExitDone;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const CompareArguments& options) {
   if (options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (options.blend.rows) return run_blend(options);
@@ -293,7 +294,7 @@ Result<int> run(const Options& options) {
   }
 
   Progress progress(options.common.quiet);
-  Options same = options;
+  CompareArguments same = options;
   const auto resumed = options.resume.begin("compare", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
   const auto comparisons = compare_inputs(options, progress, resumed.value().get());
@@ -334,9 +335,9 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command compare_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   return {"compare", "Compare ways to interpolate normals with the exact normals, on your mesh", tables(*options),
-          footer(), [options] { return run(*options); }};
+          compare_footer(), [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

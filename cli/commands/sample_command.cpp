@@ -15,7 +15,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct SampleArguments {
   InputOptions input;
   CommonOptions common;
   MomentArguments moments;
@@ -29,7 +29,7 @@ struct Options {
   ResumeArgument resume;
 };
 
-std::string footer() {
+std::string sample_footer() {
   std::string text = "Weightings:\n";
   for (const WeightingInfo& weighting : kWeightings)
     text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
@@ -47,7 +47,7 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
-std::vector<std::vector<Option>> tables(Options& options) {
+std::vector<std::vector<Option>> tables(SampleArguments& options) {
   return {
       input_table(options.input),
       options.moments.table(),
@@ -74,7 +74,7 @@ struct Request {
   SampleOutput output;
 };
 
-Result<SampleOptions> sample_options(const Options& options) {
+Result<SampleOptions> sample_options(const SampleArguments& options) {
   Result<ElementOptions> elements = options.elements.options();
   if (!elements) return elements.error();
   const ElementKind kind = elements.value().kind;
@@ -101,7 +101,7 @@ Result<SampleOptions> sample_options(const Options& options) {
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, path.value()};
 }
 
-Result<SampleFormat> format_of(const Options& options) {
+Result<SampleFormat> format_of(const SampleArguments& options) {
   if (!options.format.empty()) {
     auto format = make_sample_format(options.format);
     if (!format) return misuse("--format", format.error().message);
@@ -112,7 +112,7 @@ Result<SampleFormat> format_of(const Options& options) {
   return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
 }
 
-Result<Request> understand(const Options& options) {
+Result<Request> understand(const SampleArguments& options) {
   Result<SampleOptions> sample = sample_options(options);
   if (!sample) return sample.error();
   const Result<SampleFormat> format = format_of(options);
@@ -175,8 +175,8 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
 }
 
 // resumed is nullptr where the run does not go on.
-Result<SampleSummary> write(MotionStream& stream, const Request& request, const Moments& moments, Progress& progress,
-                            bool quiet, ResumedRun* resumed) {
+Result<SampleSummary> write_or_go_on(MotionStream& stream, const Request& request, const Moments& moments,
+                                     Progress& progress, bool quiet, ResumedRun* resumed) {
   const auto show = progress.callback("sampling", "times");
   if (resumed == nullptr) return write_samples(stream, request.sample, moments, request.output, show);
   if (stream.motion().kind != MotionKind::kSequence)
@@ -185,7 +185,7 @@ Result<SampleSummary> write(MotionStream& stream, const Request& request, const 
   return continue_samples(stream, request.sample, moments, request.output, resumed->journal(), show);
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const SampleArguments& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
   Request& request = understood.value();
@@ -212,7 +212,7 @@ Result<int> run(const Options& options) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
   }
-  Options same = options;
+  SampleArguments same = options;
   const auto resumed = options.resume.begin("sample", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
   const auto written =
@@ -231,9 +231,9 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command sample_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SampleArguments>();
   return {"sample", "Write the normals of a motion at chosen times, or of targets at chosen weights", tables(*options),
-          footer(), [options] { return run(*options); }};
+          sample_footer(), [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli
