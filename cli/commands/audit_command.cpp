@@ -13,6 +13,7 @@
 #include "chronormal/workflow/json.h"
 #include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
+#include "cli/options/resume.h"
 #include "cli/reports/audit_files.h"
 #include "cli/reports/audit_report.h"
 #include "cli/terminal/format.h"
@@ -32,6 +33,7 @@ struct AuditArguments {
   std::optional<double> tolerance;
   std::optional<std::string> errors;  // where to write every single one
   ShardArgument shard;
+  ResumeArgument resume;
   bool no_weld = false;
   bool json = false;
 };
@@ -63,6 +65,29 @@ std::string words_of(const InputOptions& input, PathKind path) {
   return words;
 }
 
+const std::vector<RefusedOption> kRefusedByAudit = {
+    {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
+
+std::vector<std::vector<Option>> tables(AuditArguments& options) {
+  return {
+      input_table(options.input, kRefusedByAudit),
+      {{"--rule NAME", &options.rule,
+        "what a host makes of stored normals between keyframes: gltf (default for\n"
+        "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
+      options.judge.table("judge what these hosts show of a glTF file"),
+      options.path.table("the right normals are those of this path"),
+      {{"--tolerance DEG", &options.tolerance, "exit with code 4 if the worst error is larger, in any host of --host"},
+       {"--errors FILE", &options.errors,
+        "write the error of every vertex at every sample: .npz for programs, or .ply\n"
+        "with the worst of each vertex as its quality, for MeshLab and Blender"},
+       {"--no-weld", &options.no_weld, "sequences: keep vertices apart that are at one point in all keyframes"},
+       options.shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
+                            "for chronormal merge"),
+       options.resume.option(),
+       {"--json", &options.json, "print one JSON object, for programs"}},
+      options.common.table(false)};
+}
+
 Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
@@ -71,7 +96,24 @@ Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
   return audit(*motion.value(), *normals.value(), how);
 }
 
-Result<Audited> audit_input(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
+// Takes what an earlier run found, and keeps what this one finds.
+Status go_on(Input& input, const AuditArguments& options, AuditOptions& how, Journal& journal) {
+  const Result<MotionStream*> motion = input.document() == nullptr ? input.stream() : Result<MotionStream*>(nullptr);
+  if (!motion) return motion.error();
+  if (motion.value() == nullptr || motion.value()->motion().kind != MotionKind::kSequence)
+    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+  for (const std::string& record : journal.records()) {
+    Result<SegmentErrors> segment = read_measured_segment(record, journal.path());
+    if (!segment) return segment.error();
+    how.known.push_back(std::move(segment).value());
+  }
+  say_goes_on("audit", how.known.size(), "segments", options.common.quiet);
+  how.keep = [&journal](const SegmentErrors& segment) { return journal.append(segment_part(segment)); };
+  return Success{};
+}
+
+// resumed is nullptr where the run does not go on.
+Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Progress& progress, ResumedRun* resumed) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
@@ -84,6 +126,9 @@ Result<Audited> audit_input(const AuditArguments& options, const AuditOptions& h
   if (document != nullptr && how.shard)
     return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path(input, how.path); !known) return known.error();
+  if (resumed != nullptr) {
+    if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
+  }
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   progress.clear();
@@ -118,11 +163,14 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   if (!shard) return shard.error();
   how.shard = shard.value();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (how.shard && options.json)
+    return misuse("--json", "OUT of a shard is a part, of which chronormal merge makes the JSON");
+  if (options.resume.asked && options.errors) return misuse("--errors", "a run with --resume keeps sums alone");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
-  how.progress = progress.callback("auditing");
+  how.progress = progress.callback("auditing", "segments");
   return how;
 }
 
@@ -159,7 +207,10 @@ bool say_what_is_beyond(const Audited& audited, const std::string& place) {
 }
 
 Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
-  Result<Audited> audited = audit_input(options, how, progress);
+  AuditArguments same = options;
+  const auto resumed = options.resume.begin("audit", tables(same), options.input, options.common);
+  if (!resumed) return resumed.error();
+  Result<Audited> audited = audit_input(options, how, progress, resumed.value().get());
   progress.clear();
   if (!audited) return audited.error();
   const Audited& found = audited.value();
@@ -170,8 +221,9 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   const std::string text = options.shard.text ? audit_part(found.name(), found.audit, found.tolerance)
                            : options.json     ? audit_json(found.name(), found.audit, found.tolerance)
                                               : audit_text(found);
-  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
-    return written.error();
+  const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
+                                              : print_to(options.common.output, text, options.common.force);
+  if (!written) return written.error();
   return options.shard.text || say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
@@ -186,6 +238,7 @@ int worse_exit(int a, int b) {
 // Judges files one by one. One that cannot be read does not keep the others from being judged.
 Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
+  if (options.resume.asked) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");
   if (!options.input.animation.empty())
     return misuse("--animation", "it chooses among the animations of one file: name one file");
   if (options.errors) return misuse("--errors", "it holds the errors of one input: name one file");
@@ -194,7 +247,7 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
   for (const std::string& name : names) {
     AuditArguments one = options;
     one.input.files = {name};
-    const Result<Audited> audited = audit_input(one, how, progress);
+    const Result<Audited> audited = audit_input(one, how, progress, nullptr);
     progress.clear();
     if (audited) {
       files.emplace_back(audited.value());
@@ -217,7 +270,7 @@ Result<int> run(const AuditArguments& options) {
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
   if (!how) return how.error();
-  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (const Status output = options.resume.check_output(options.common); !output) return output.error();
   if (!options.input.base.empty() || !options.input.samples.empty()) return run_one(options, how.value(), progress);
   const Result<std::vector<std::string>> files = find_gltf_files(options.input.files);
   if (!files) return files.error();
@@ -230,27 +283,10 @@ Result<int> run(const AuditArguments& options) {
 
 Command audit_command() {
   auto options = std::make_shared<AuditArguments>();
-  const std::vector<RefusedOption> refused = {
-      {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
   return {
       "audit",
       "Measure how far the normals that a host shows are from the right ones",
-      {input_table(options->input, refused),
-       {{"--rule NAME", &options->rule,
-         "what a host makes of stored normals between keyframes: gltf (default for\n"
-         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
-       options->judge.table("judge what these hosts show of a glTF file"),
-       options->path.table("the right normals are those of this path"),
-       {{"--tolerance DEG", &options->tolerance,
-         "exit with code 4 if the worst error is larger, in any host of --host"},
-        {"--errors FILE", &options->errors,
-         "write the error of every vertex at every sample: .npz for programs, or .ply\n"
-         "with the worst of each vertex as its quality, for MeshLab and Blender"},
-        {"--no-weld", &options->no_weld, "sequences: keep vertices apart that are at one point in all keyframes"},
-        options->shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
-                              "for chronormal merge"),
-        {"--json", &options->json, "print one JSON object, for programs"}},
-       options->common.table(false)},
+      tables(*options),
       "A host is a program that shows meshes, such as three.js or Godot. "
       "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
       "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
@@ -263,7 +299,7 @@ Command audit_command() {
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); },
-      refused};
+      kRefusedByAudit};
 }
 
 }  // namespace chronormal::cli

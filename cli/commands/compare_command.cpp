@@ -10,6 +10,7 @@
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
+#include "cli/options/resume.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
@@ -36,6 +37,7 @@ struct CompareArguments {
   std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
   ShardArgument shard;
+  ResumeArgument resume;
   BlendArguments blend;
   TruthArguments truth;
   PathArgument path;
@@ -67,6 +69,7 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
+  if (options.resume.asked) return "--resume";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.path.name != "linear") return "--path";
@@ -90,20 +93,72 @@ std::string compare_footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
-Result<Comparison> compare_one(Input& input, const CompareArguments& options, Progress& progress) {
+std::vector<std::vector<Option>> tables(CompareArguments& options) {
+  const auto check_access = [](const std::string& value) {
+    return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
+  };
+  return {
+      input_table(options.input),
+      {{"--each", &options.each, "compare motions side by side: every INPUT and --sample is one of its own"},
+       {"--schemes A,B,...", &options.schemes, "which schemes, in which order (listed below)"},
+       {"--samples N",
+        &options.samples,
+        "how many moments of each segment are compared, its ends included (default 21)",
+        {.check = check_whole(2, kMostSamples)}}},
+      options.elements.table(),
+      {{"--access KIND",
+        &options.access,
+        "random (default): each moment on its own; sequential: each from the one before",
+        {.check = check_access}}},
+      options.path.table("every scheme is held against the exact normals of this path"),
+      {{"--certify", &options.certify,
+        "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+       {"--tolerance DEG", &options.tolerance,
+        "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+      options.blend.table(),
+      options.truth.table(),
+      {{"--errors FILE", &options.errors,
+        "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+        "scheme with the worst of each as its quality, for MeshLab and Blender"},
+       options.shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
+                            "merge"),
+       options.resume.option(),
+       {"--json", &options.json, "print one JSON object, for programs"},
+       {"--csv", &options.csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+       {"--no-times", &options.no_times, "leave out measured times: the same output on every run"}},
+      options.common.table(false)};
+}
+
+// resumed is nullptr where the run does not go on.
+Result<Comparison> compare_one(Input& input, const CompareArguments& options, Progress& progress, ResumedRun* resumed) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
                                  options.sample_count(),
                                  options.access == "sequential" ? Access::kSequential : Access::kRandom,
-                                 progress.callback("comparing"),
+                                 {},
                                  options.elements.options().value(),
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
   compare_options.shard = options.shard.read().value();
   compare_options.path = options.path.read().value();
+  const std::size_t segments =
+      compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
+  compare_options.progress = progress.callback("comparing", "segments", segments);
   if (const Status status = check_path(input, compare_options.path); !status) return status.error();
+  if (resumed != nullptr) {
+    if (input.document() != nullptr || motion.value()->motion().kind != MotionKind::kSequence)
+      return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+    Journal& journal = resumed->journal();
+    for (const std::string& record : journal.records()) {
+      Result<ComparedSegment> segment = read_compared_segment(record, journal.path());
+      if (!segment) return segment.error();
+      compare_options.known.push_back(std::move(segment).value());
+    }
+    say_goes_on("compare", compare_options.known.size(), "segments", options.common.quiet);
+    compare_options.keep = [&journal](const ComparedSegment& segment) { return journal.append(segment_part(segment)); };
+  }
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
   if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
@@ -111,7 +166,8 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
 }
 
 // One motion at a time is in memory.
-Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress) {
+Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
+                                                    ResumedRun* resumed) {
   std::vector<InputOptions> inputs;
   if (options.each) {
     InputOptions one = options.input;
@@ -139,7 +195,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     wanted.velocities = options.path.needs_velocities();
     Result<Input> input = open_input(wanted, progress);
     Result<Comparison> comparison =
-        input ? compare_one(input.value(), options, progress) : Result<Comparison>(input.error());
+        input ? compare_one(input.value(), options, progress, resumed) : Result<Comparison>(input.error());
     if (!comparison) {
       Error error = comparison.error();
       const bool several = wanted.samples.size() + (wanted.files.empty() ? 0 : 1) > 1;
@@ -178,6 +234,7 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
+  if (options.resume.asked) return "--resume";
   if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
@@ -216,12 +273,17 @@ Result<int> run(const CompareArguments& options) {
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
                   "it is about normals at random access: leave out --access sequential");
-  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (const Status output = options.resume.check_output(options.common); !output) return output.error();
 
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   if (options.shard.text && options.each) return misuse("--shard", "it divides one motion: leave out --each");
   if (options.shard.text && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (options.shard.text && (options.json || options.csv))
+    return misuse(options.json ? "--json" : "--csv",
+                  "OUT of a shard is a part, of which chronormal merge makes the JSON");
+  if (options.resume.asked && (options.each || options.errors))
+    return misuse("--resume", "it keeps the sums of one motion: leave out --each and --errors");
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
     if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
@@ -230,7 +292,10 @@ Result<int> run(const CompareArguments& options) {
   }
 
   Progress progress(options.common.quiet);
-  const auto comparisons = compare_inputs(options, progress);
+  CompareArguments same = options;
+  const auto resumed = options.resume.begin("compare", tables(same), options.input, options.common);
+  if (!resumed) return resumed.error();
+  const auto comparisons = compare_inputs(options, progress, resumed.value().get());
   if (!comparisons) return comparisons.error();
 
   if (options.errors) {
@@ -238,7 +303,7 @@ Result<int> run(const CompareArguments& options) {
         write_errors(comparisons.value().front().comparison.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const bool with_times = !options.no_times;
+  const bool with_times = !options.no_times && !options.resume.asked;
   std::string text;
   if (options.shard.text)
     text = compare_part(comparisons.value().front());
@@ -250,8 +315,9 @@ Result<int> run(const CompareArguments& options) {
     text = compare_tables_side_by_side(comparisons.value());
   else
     text = compare_table(comparisons.value().front(), with_times);
-  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
-    return written.error();
+  const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
+                                              : print_to(options.common.output, text, options.common.force);
+  if (!written) return written.error();
   int exit = kExitDone;
   for (const NamedComparison& input : comparisons.value()) {
     if (!options.tolerance || input.comparison.cheapest || options.shard.text) continue;
@@ -267,43 +333,9 @@ Result<int> run(const CompareArguments& options) {
 }  // namespace
 
 Command compare_command() {
-  const auto check_access = [](const std::string& value) {
-    return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
-  };
   auto options = std::make_shared<CompareArguments>();
-  return {
-      "compare",
-      "Compare ways to interpolate normals with the exact normals, on your mesh",
-      {input_table(options->input),
-       {{"--each", &options->each, "compare motions side by side: every INPUT and --sample is one of its own"},
-        {"--schemes A,B,...", &options->schemes, "which schemes, in which order (listed below)"},
-        {"--samples N",
-         &options->samples,
-         "how many moments of each segment are compared, its ends included (default 21)",
-         {.check = check_whole(2, kMostSamples)}}},
-       options->elements.table(),
-       {{"--access KIND",
-         &options->access,
-         "random (default): each moment on its own; sequential: each from the one before",
-         {.check = check_access}}},
-       options->path.table("every scheme is held against the exact normals of this path"),
-       {{"--certify", &options->certify,
-         "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
-        {"--tolerance DEG", &options->tolerance,
-         "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
-       options->blend.table(),
-       options->truth.table(),
-       {{"--errors FILE", &options->errors,
-         "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-         "scheme with the worst of each as its quality, for MeshLab and Blender"},
-        options->shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
-                              "merge"),
-        {"--json", &options->json, "print one JSON object, for programs"},
-        {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
-        {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
-       options->common.table(false)},
-      compare_footer(),
-      [options] { return run(*options); }};
+  return {"compare", "Compare ways to interpolate normals with the exact normals, on your mesh", tables(*options),
+          compare_footer(), [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

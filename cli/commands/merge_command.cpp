@@ -1,5 +1,4 @@
 // The command `merge`: it joins the parts that shards wrote.
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "cli/options/command.h"
 #include "cli/terminal/print.h"
 #include "io/bytes/file.h"
+#include "io/cache/npy.h"
 
 namespace chronormal::cli {
 namespace {
@@ -20,18 +20,17 @@ struct MergeArguments {
 };
 
 Result<int> run(const MergeArguments& options) {
-  const auto is_array = [](std::string_view path) { return path.ends_with(".npy"); };
   if (options.parts.empty()) return misuse("", "there is nothing to merge: name the parts");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
-  if (std::all_of(options.parts.begin(), options.parts.end(), is_array)) {
-    const Status written = merge_arrays(options.parts, options.common.output, options.common.force);
-    if (!written) return written.error();
-    return kExitDone;
-  }
   std::vector<Part> parts;
   for (const std::string& path : options.parts) {
     const Result<FileBytes> file = FileBytes::open(path);
     if (!file) return file.error();
+    if (path != "-" && file.value().bytes().starts_with(npy::kFirstWord)) {
+      const Status written = merge_arrays(options.parts, options.common.output, options.common.force);
+      if (!written) return written.error();
+      return kExitDone;
+    }
     parts.push_back({short_name(path), std::string(file.value().bytes())});
   }
   const Result<MergedParts> merged = merge_parts(parts);
@@ -49,9 +48,7 @@ Command merge_command() {
   auto options = std::make_shared<MergeArguments>();
   return {"merge",
           "Put the shards of a comparison, an audit or of samples together",
-          {{{"PART", &options->parts,
-             "what --shard 1/N, 2/N, ... wrote: of compare and audit in any order, arrays\n"
-             "of sample (.npy) in that of their numbers"}},
+          {{{"PART", &options->parts, "what --shard 1/N, 2/N, ... of compare, audit or sample wrote, in any order"}},
            options->common.table(false)},
           "What comes out is what one run would have written, byte for byte: of compare and audit the JSON of --json\n"
           "(and --no-times), of sample the array.\n"

@@ -6,9 +6,11 @@
 #include "chronormal/workflow/sample.h"
 #include "cli/options/command.h"
 #include "cli/options/moments.h"
+#include "cli/options/resume.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
+#include "workflow/sample/continued_samples.h"
 
 namespace chronormal::cli {
 namespace {
@@ -24,6 +26,7 @@ struct SampleArguments {
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
   ShardArgument shard;
+  ResumeArgument resume;
 };
 
 std::string sample_footer() {
@@ -42,6 +45,26 @@ std::string sample_footer() {
          "  chronormal sample face.glb --weights 1,0,0 --weights 0.5,0.5,0 --weighting angle -o 'face_%d.ply'\n"
          "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+}
+
+std::vector<std::vector<Option>> tables(SampleArguments& options) {
+  return {
+      input_table(options.input),
+      options.moments.table(),
+      options.elements.table(),
+      {{"--weighting NAME", &options.weighting, "how the faces around a vertex count (listed below)"},
+       {"--length KIND", &options.length,
+        "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+        "around a vertex (with --weighting area)"}},
+      options.path.table("normals are exact on all of them"),
+      {{"--hard-edges KIND", &options.hard_edges,
+        "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+        "file, by its smoothing groups (groups) or its own normals (normals)"},
+       {"--format NAME", &options.format, "the format of OUT: npy (default for -), npz, ply, obj"},
+       options.shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
+                            ".obj with the numbers that they have among all"),
+       options.resume.option()},
+      options.common.table(true)};
 }
 
 // The options of the command line, after their texts were parsed.
@@ -102,6 +125,13 @@ Result<Request> understand(const SampleArguments& options) {
                   std::move(asked).value(),
                   {options.common.output, format.value(), options.common.force, shard.value().value_or(Shard{})}};
   if (const Status status = check_input(options.input); !status) return status.error();
+  if (options.resume.asked) {
+    if (format.value() != SampleFormat::kNpy)
+      return misuse("--resume", "only .npy files can be continued: write one, or give the times in several runs");
+    if (const Status output = options.resume.check_output(options.common); !output) return output.error();
+    // An interrupted run may have written OUT just before its end, as continue_samples() finds out.
+    return request;
+  }
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();
   return request;
@@ -144,6 +174,17 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
         Tone::kWarning);
 }
 
+// resumed is nullptr where the run does not go on.
+Result<SampleSummary> write_or_go_on(MotionStream& stream, const Request& request, const Moments& moments,
+                                     Progress& progress, bool quiet, ResumedRun* resumed) {
+  const auto show = progress.callback("sampling", "times");
+  if (resumed == nullptr) return write_samples(stream, request.sample, moments, request.output, show);
+  if (stream.motion().kind != MotionKind::kSequence)
+    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+  say_goes_on("sample", resumed->journal().records().size(), "times", quiet);
+  return continue_samples(stream, request.sample, moments, request.output, resumed->journal(), show);
+}
+
 Result<int> run(const SampleArguments& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
@@ -172,10 +213,14 @@ Result<int> run(const SampleArguments& options) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
   }
+  SampleArguments same = options;
+  const auto resumed = options.resume.begin("sample", tables(same), options.input, options.common);
+  if (!resumed) return resumed.error();
   const auto written =
-      write_samples(*read.value(), request.sample, moments.value(), request.output, progress.callback("sampling"));
+      write(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
   progress.clear();
   if (!written) return written.error();
+  if (const Status done = resumed.value() ? resumed.value()->finish() : Success{}; !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
         formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
@@ -188,26 +233,8 @@ Result<int> run(const SampleArguments& options) {
 
 Command sample_command() {
   auto options = std::make_shared<SampleArguments>();
-  return {
-      "sample",
-      "Write the normals of a motion at chosen times, or of targets at chosen weights",
-      {input_table(options->input),
-       options->moments.table(),
-       options->elements.table(),
-       {{"--weighting NAME", &options->weighting, "how the faces around a vertex count (listed below)"},
-        {"--length KIND", &options->length,
-         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-         "around a vertex (with --weighting area)"}},
-       options->path.table("normals are exact on all of them"),
-       {{"--hard-edges KIND", &options->hard_edges,
-         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-         "file, by its smoothing groups (groups) or its own normals (normals)"},
-        {"--format NAME", &options->format, "the format of OUT: npy (default for -), npz, ply, obj"},
-        options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
-                              ".obj with the numbers that they have among all")},
-       options->common.table(true)},
-      sample_footer(),
-      [options] { return run(*options); }};
+  return {"sample", "Write the normals of a motion at chosen times, or of targets at chosen weights", tables(*options),
+          sample_footer(), [options] { return run(*options); }};
 }
 
 }  // namespace chronormal::cli

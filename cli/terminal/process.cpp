@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -32,11 +33,14 @@ constexpr Ending kEndings[] = {
 };
 
 volatile std::sig_atomic_t stderr_is_terminal = 0;
+std::atomic<const char*> last_words{nullptr};
+static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
 
 // A progress bar may stand in the line.
 void say_ending(const char* message) {
   if (stderr_is_terminal != 0) say_raw("\r\033[K");
   say_raw(message);
+  if (const char* const text = last_words; text != nullptr) say_raw(text);
 }
 
 extern "C" void end_by_signal(int signal) {
@@ -113,6 +117,8 @@ void prepare_process() noexcept {
   std::set_new_handler(end_for_want_of_memory);
   std::set_terminate(end_by_exception);
 }
+
+void say_at_end(const char* text) noexcept { last_words = text; }
 
 void prepare_threads() noexcept {
 #ifdef NDEBUG

@@ -23,6 +23,10 @@ void prepare_process() noexcept;
 /// command runs.
 void prepare_threads() noexcept;
 
+/// What is said after the line of a signal or of memory that ran out, with its line feed; nullptr for nothing. The text
+/// must live as long as it may be said.
+void say_at_end(const char* text) noexcept;
+
 }  // namespace chronormal::cli
 
 #endif  // CLI_TERMINAL_PROCESS_H_

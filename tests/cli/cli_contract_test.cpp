@@ -245,6 +245,7 @@ const std::map<std::string, std::string> kUses = {
     {"report --animation", "shaded.glb --animation 0"},
     {"report --host", "shaded.glb --host three"},
     {"report --no-plan", "shaded.glb --no-plan"},
+    {"--resume", "a.obj b.obj --resume"},
     {"--rule", "a.obj b.obj --rule slerp"},
     {"--sample", "--sample twist"},
     {"--samples", "a.obj b.obj --samples 3"},
@@ -688,6 +689,30 @@ TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
   EXPECT_NE(shown.out.find("\033[K"), std::string::npos);
   const ProcessResult quiet = run_shell("script -qec '" + command + " --quiet' /dev/null", folder_.string());
   EXPECT_EQ(quiet.out.find("comparing ["), std::string::npos);
+}
+
+TEST_F(Cli, long_work_shows_its_pace_and_the_time_that_is_left) {
+  if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";
+  const std::string command = "timeout -s INT 3 " + std::string(kProgram) +
+                              " sample --sample twist --times 0:0.000002:1 --format npy -o /dev/null";
+  const std::string shown = run_shell("script -qec '" + command + "' /dev/null", folder_.string()).out;
+  const std::size_t pace = shown.find(" times/s, ");
+  ASSERT_NE(pace, std::string::npos) << shown;
+  const std::size_t begin = shown.rfind('\r', pace), end = shown.find("\033[K", pace);
+  const std::string line = shown.substr(begin + 1, end - begin - 1);
+  EXPECT_TRUE(line.starts_with("sampling [") && line.ends_with(" left")) << line;
+  EXPECT_LE(line.size(), 80U) << line;
+  // So many times at that rate take about as long as it says. Both are rounded.
+  const double rate = std::stod(line.substr(line.find("%, ") + 3));
+  double seconds = 0;
+  for (std::size_t at = line.find("/s, ") + 4; line.compare(at, 4, "left") != 0;) {
+    const std::size_t blank = line.find(' ', at), next = line.find(' ', blank + 1);
+    const std::string unit = line.substr(blank + 1, next - blank - 1);
+    seconds += std::stod(line.substr(at)) * (unit == "h" ? 3600 : unit == "min" ? 60 : 1);
+    at = next + 1;
+  }
+  EXPECT_GT(rate, 0);
+  EXPECT_NEAR(rate * seconds, 5e5, 0.5e5) << line;
 }
 
 }  // namespace

@@ -48,11 +48,13 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_EQ(merged.exit_code, 4);
   EXPECT_NE(merged.err.find("the tolerance that the parts were made with is exceeded"), std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
-  ASSERT_EQ(run("merge sample1.npy sample2.npy sample3.npy -o merged.npy").exit_code, 0);
+  std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");  // what it is, its bytes say
+  ASSERT_EQ(run("merge sample3.npy sample1.npy sample2.part -o merged.npy").exit_code, 0);
   EXPECT_TRUE(file("merged.npy") == file("one.npy"));
   ASSERT_EQ(run(sample + "-o one_%02d.ply").exit_code, 0);
   EXPECT_TRUE(file("part_39.ply") == file("one_39.ply"));
   EXPECT_EQ(run("merge compare1.json compare2.json").exit_code, 2);
+  EXPECT_EQ(run("merge sample1.npy sample3.npy -o x.npy").exit_code, 2);
   EXPECT_EQ(run("merge compare1.json w_0.obj").exit_code, 3);
   EXPECT_EQ(run("merge sample1.npy gone.npy -o x.npy").exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
@@ -64,8 +66,8 @@ TEST_F(Merge, shards_are_refused_where_they_divide_nothing) {
         "compare 'w_*.obj' --shard 1/2x", "compare --each w_0.obj --shard 1/2",
         "compare 'w_*.obj' --shard 1/2 --errors e.npz", "compare 'w_*.obj' --truth 2 --shard 1/2",
         "audit 'w_*.obj' --shard 1/2 --errors e.npz", "audit --base w_0.obj w_1.obj --shard 1/2",
-        "sample 'w_*.obj' --times 1 --shard 1/2 -o n.npz", "compare 'w_*.obj' --path catmull-rom --shard 1/2",
-        "merge"}) {
+        "sample 'w_*.obj' --times 1 --shard 1/2 -o n.npz", "compare 'w_*.obj' --shard 1/2 --json",
+        "compare 'w_*.obj' --shard 1/2 --csv", "audit 'w_*.obj' --shard 1/2 --json", "merge"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
     EXPECT_TRUE(result.out.empty()) << arguments;

@@ -78,10 +78,15 @@ struct AuditOptions {
   PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
   bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
   bool keep_errors = false;           ///< every single one, in Audit::errors
-  /// For sequences on straight paths: judges this share of the segments only, and keeps the errors of each of them in
+  /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
   /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
   /// long a normal gets).
   std::optional<Shard> shard = {};
+  /// For sequences: the errors of the first segments of the share, where an earlier run has them; they are not measured
+  /// again. `keep` is told of each segment that was measured, in order, so that a later run can have it among `known`;
+  /// an error that it returns ends the audit.
+  std::vector<SegmentErrors> known = {};
+  std::function<Status(const SegmentErrors&)> keep = {};
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -211,7 +216,7 @@ struct Audit {
 /// kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// The same for a stream, of which two keyframes are held at a time. It is read twice; it is read once more up to where
+/// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is read once more up to where
 /// all vertices have moved, and once more up to where none coincide any more. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 

@@ -49,6 +49,32 @@ enum class Access {
   kSequential,  ///< each from the one before, by the schemes that can; the others as in kRandom
 };
 
+/// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
+/// the upper one.
+struct CertifiedError {
+  double lower = 0;  ///< radians
+  double upper = 0;  ///< radians; pi where no better one could be shown
+  /// The first piece of a segment, from local t to local t, on which the error may be as large as the upper bound.
+  std::size_t segment = 0, element = 0;
+  double from = 0, to = 1;
+  std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
+};
+
+/// The results of one scheme in one segment.
+struct SchemeTally {
+  Quality quality;
+  std::size_t fallbacks = 0, flagged = 0;
+  double bytes = 0;  ///< of all elements together
+  CertifiedError certified = {};
+};
+
+/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
+struct ComparedSegment {
+  std::size_t segment = 0;
+  std::vector<SchemeTally> schemes;
+  double bent = 0, way = 0;  ///< of a curved path: what the keyframe at its end adds to the two sums of bend_of()
+};
+
 struct CompareOptions {
   std::vector<std::string> schemes;  ///< names, in the order of the rows; empty: default_schemes()
   std::size_t samples = 21;          ///< per segment, ends included; 2 or more
@@ -61,23 +87,17 @@ struct CompareOptions {
   bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
-  /// For straight paths: compares this share of the segments only, and keeps the results of each in
-  /// Comparison::compared.
+  /// Compares this share of the segments only, and keeps the results of each in Comparison::compared.
   std::optional<Shard> shard = {};
   /// How the vertices of a sequence move. On curved paths every scheme is compared with the exact normals of these
   /// curves, and one more row, "exact", is for PathCurves (normals/path_curves.h).
   PathKind path = PathKind::kLinear;
-};
-
-/// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
-/// the upper one.
-struct CertifiedError {
-  double lower = 0;  ///< radians
-  double upper = 0;  ///< radians; pi where no better one could be shown
-  /// The first piece of a segment, from local t to local t, on which the error may be as large as the upper bound.
-  std::size_t segment = 0, element = 0;
-  double from = 0, to = 1;
-  std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
+  /// The results of the first segments of the share, where an earlier run has them: they are not computed again, and
+  /// have no times.
+  std::vector<ComparedSegment> known = {};
+  /// Told of each segment that was computed, in order, so that a later run can have it among `known`; may be empty. An
+  /// error that it returns ends the comparison.
+  std::function<Status(const ComparedSegment&)> keep = {};
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -96,20 +116,6 @@ struct SchemeComparison {
   OperationCounts operations;                    ///< of the access that was measured
   std::vector<Quality> samples = {};             ///< with keep_samples: of each sample, segment after segment
   std::optional<CertifiedError> certified = {};  ///< where it was asked for
-};
-
-/// The results of one scheme in one segment.
-struct SchemeTally {
-  Quality quality;
-  std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;  ///< of all elements together
-  CertifiedError certified = {};
-};
-
-/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
-struct ComparedSegment {
-  std::size_t segment = 0;
-  std::vector<SchemeTally> schemes;
 };
 
 struct Comparison {
@@ -133,8 +139,9 @@ struct Comparison {
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access, and errors to keep that take more than kMostErrorBytes;
-///            those of check_path().
+///            tolerance, certificates of sequential access, errors to keep that take more than kMostErrorBytes, single
+///            errors of a shard or beside known segments, and known segments of another comparison; those of
+///            check_path() and of options.keep.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

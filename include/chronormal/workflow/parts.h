@@ -1,12 +1,12 @@
 /// Parts, the files that shards (workflow/shard.h) write, and how they become what one run would have written, byte for
 /// byte.
 ///
-///     chronormal compare body.obj walk.pc2 --shard 1/8 --json -o part_1.json      ... 8/8, wherever and whenever
+///     chronormal compare body.obj walk.pc2 --shard 1/8 -o part_1.json             ... 8/8, wherever and whenever
 ///     chronormal merge part_*.json -o all.json                   as compare ... --json --no-times -o all.json
 ///
 /// A part of a comparison or an audit is a JSON object. It describes the whole task, and has the sums of each segment
 /// of the share with all of their bits. Only merge reads it, and only where both have the same version of this format.
-/// A part of samples is a .npy array.
+/// A part of samples is a .npy array of the rows of its share; a comment in its header says which of how many they are.
 ///
 /// Threads    everything here is pure, apart from reading and writing files.
 #ifndef CHRONORMAL_WORKFLOW_PARTS_H_
@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -27,6 +28,13 @@ namespace chronormal {
 [[nodiscard]] std::string compare_part(const NamedComparison& shard);
 /// The text of the part that a shard of an audit writes; input and tolerance are those of audit_json().
 [[nodiscard]] std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance);
+
+/// The text of one segment as a part has it, in one line, and the segment of such a text; name is for messages. Errors:
+/// kInvalidInput with the place in the text.
+[[nodiscard]] std::string segment_part(const ComparedSegment& segment);
+[[nodiscard]] std::string segment_part(const SegmentErrors& segment);
+[[nodiscard]] Result<ComparedSegment> read_compared_segment(std::string_view text, const std::string& name);
+[[nodiscard]] Result<SegmentErrors> read_measured_segment(std::string_view text, const std::string& name);
 
 struct Part {
   std::string name;  ///< of the file, for messages
@@ -46,9 +54,10 @@ struct MergedParts {
 /// There must be at least one part
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
-/// Writes one array of the rows of all files, in the order given. The files must be .npy in C order, with the same type
-/// of numbers and the same shape of rows. Memory: a megabyte. Errors: kFailed for files that cannot be read;
-/// kInvalidInput for those that are no such array or differ from the first; those of write_output() in io/output.h.
+/// Writes the array of which the files have the rows, in any order. Memory: a megabyte. Errors: kFailed for files that
+/// cannot be read; kInvalidInput for those that no shard of samples has left; kUsage for shards of different samples, and
+/// unless each row is in exactly one of them; those of write_output() in io/output.h.
+/// There must be at least one path
 [[nodiscard]] Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force);
 
 }  // namespace chronormal

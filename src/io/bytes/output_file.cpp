@@ -168,6 +168,27 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   return error;
 }
 
+Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::uint64_t kept) {
+  if (is_stream(path))
+    return Error{ErrorCode::kUsage, path, "this is no file, and only a file can be continued by a later run"};
+  if (Status status = check_output(path, force); !status) return status.error();
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->force = force;
+  state->replaces = ::stat(path.c_str(), &state->old) == 0;
+  if (!state->replaces && errno != ENOENT) return failure(path, errno);
+  state->target = follow_links(path);
+  const TemporaryFile::Kept partial{partial_name(path)};
+  state->file = std::make_unique<TemporaryFile>(partial, state->replaces ? 0600 : 0666);
+  const auto size = static_cast<off_t>(kept);
+  if (!state->file->is_open() || ::ftruncate(state->descriptor(), size) != 0 ||
+      ::lseek(state->descriptor(), size, SEEK_SET) != size)
+    return failure(partial.name, errno);
+  return OutputFile(std::move(state));
+}
+
+std::string OutputFile::partial_name(const std::string& path) { return follow_links(path) + ".partial"; }
+
 Status OutputFile::append(std::span<const std::string_view> pieces) {
   if (!write_all(state_->descriptor(), pieces)) return state_->error();
   return Success{};

@@ -67,9 +67,16 @@ TemporaryFile::TemporaryFile(const std::string& target, mode_t mode) {
   if (!file_.is_open()) forget();
 }
 
+TemporaryFile::TemporaryFile(const Kept& kept, mode_t mode) : place_(kMostFiles), stays_(true) {
+  name_ = ::strdup(kept.name.c_str());
+  if (name_ == nullptr) return;  // errno says so
+  file_ = Descriptor(open_descriptor(kept.name, O_WRONLY | O_CREAT | O_NOFOLLOW, mode));
+  if (!file_.is_open()) forget();
+}
+
 TemporaryFile::~TemporaryFile() {
   if (name_ == nullptr) return;
-  (void)::unlink(name_);
+  if (!stays_) (void)::unlink(name_);
   forget();
 }
 

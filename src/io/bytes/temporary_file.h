@@ -21,9 +21,15 @@ class TemporaryFile {
  public:
   /// Opens a file in the folder of target; is_open() says whether that went well, and errno why not.
   TemporaryFile(const std::string& target, mode_t mode);
+  /// Opens the file `name`, which may be there already. It stays where it is when its time is over and when the process
+  /// is told to end, so that a later run can go on with it.
+  struct Kept {
+    std::string name;
+  };
+  TemporaryFile(const Kept& kept, mode_t mode);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
-  /// Removes the file, unless it was renamed.
+  /// Removes the file, unless it was renamed or is one that stays.
   ~TemporaryFile();
 
   [[nodiscard]] bool is_open() const noexcept { return file_.is_open(); }
@@ -40,6 +46,7 @@ class TemporaryFile {
 
   char* name_ = nullptr;   // on the heap, for the list; nullptr where there is no file
   std::size_t place_ = 0;  // in the list
+  bool stays_ = false;     // then it is in no list
   Descriptor file_{-1};
 };
 

@@ -13,8 +13,6 @@
 namespace chronormal::inline internal::npy {
 namespace {
 
-constexpr std::string_view kFirstWord("\x93NUMPY", 6);
-
 // Reads the few forms of Python that a header is made of.
 class Python {
  public:
@@ -68,6 +66,15 @@ class Python {
   [[nodiscard]] bool at_end() {
     (void)sign('\0');
     return text_.empty();
+  }
+  // What stands behind a '#', without blanks at its ends; empty where there is none.
+  [[nodiscard]] std::string_view comment() {
+    if (!sign('#')) return {};
+    const std::string_view line = text_.substr(0, text_.find('\n'));
+    text_.remove_prefix(line.size());
+    const std::size_t first = line.find_first_not_of(' ');
+    return first == std::string_view::npos ? line.substr(0, 0)
+                                           : line.substr(first, line.find_last_not_of(' ') + 1 - first);
   }
 
  private:
@@ -146,6 +153,7 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
       break;
     }
   }
+  array.comment = header.comment();
   if (!header.at_end() || !has_type || !has_order || !has_shape) return broken();
 
   const std::uint64_t left = total_size - array.data_begin;
@@ -237,12 +245,13 @@ std::string write_text(std::string_view text) {
   return bytes;
 }
 
-std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape) {
+std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape, std::string_view comment) {
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
   for (const std::uint64_t length : shape) text += std::to_string(length) + ", ";
   if (!shape.empty()) text.pop_back();
   if (shape.size() > 1) text.pop_back();  // (5,) keeps its comma
   text += "), }";
+  if (!comment.empty()) text.append(" # ").append(comment);
   while ((10 + text.size() + 1) % 64 != 0) text += ' ';
   text += '\n';
 

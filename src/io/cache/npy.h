@@ -18,6 +18,9 @@ namespace chronormal::inline internal::npy {
 
 enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 'U', kBytes = 'S' };
 
+/// What an array begins with.
+inline constexpr std::string_view kFirstWord("\x93NUMPY", 6);
+
 /// Longest header that is read; NumPy itself stops at 10,000 bytes unless it is told otherwise.
 constexpr std::size_t kLongestHeader = 65536;
 
@@ -27,6 +30,7 @@ struct Array {
   std::endian order = std::endian::little;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
+  std::string comment;         ///< what stands behind "# " in the header; NumPy passes over it
   std::size_t data_begin = 0;  ///< byte of the first element
   std::string_view data;       ///< the elements; set by the caller, which has them
 
@@ -57,7 +61,8 @@ struct Array {
 [[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place);
 
 /// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
-[[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
+[[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape,
+                                       std::string_view comment = {});
 
 }  // namespace chronormal::inline internal::npy
 

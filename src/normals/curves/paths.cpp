@@ -145,31 +145,6 @@ VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   return result;
 }
 
-double bend_of(const Motion& motion, std::size_t every) {
-  MotionStream stream(motion);
-  return bend_of(stream, every).value();
-}
-
-Result<double> bend_of(MotionStream& stream, std::size_t every) {
-  const Motion& motion = stream.motion();
-  double bent = 0, way = 0;
-  for (std::size_t i = every; i + every < motion.keyframes.size(); i += every) {
-    if (const Status status = stream.hold(i - every, i + every); !status) return status.error();
-    const Motion::Keyframe &from = motion.keyframes[i - every], &middle = motion.keyframes[i],
-                           &to = motion.keyframes[i + every];
-    const auto before = packed(from.positions), at = packed(middle.positions), after = packed(to.positions);
-    // Times may be uneven, so the middle keyframe is compared with the place on the straight line at its time.
-    const double part = (middle.time - from.time) / (to.time - from.time);
-    for (std::size_t v = 0; v < at.count; ++v) {
-      const Vec3d p = to_double(before[v]), q = to_double(at[v]), r = to_double(after[v]);
-      // With even times, the second difference is twice the distance from the middle.
-      bent += 2 * length(q - ((1 - part) * p + part * r));
-      way += length(q - p) + length(r - q);
-    }
-  }
-  return way > 0 ? bent / way : 0;
-}
-
 PolynomialSegment<3> catmull_rom_segment(const Topology& topology, std::span<const Motion::Keyframe* const> keys,
                                          std::size_t i) {
   return path_segment(topology, keys, i, PathKind::kCatmullRom);

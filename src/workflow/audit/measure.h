@@ -151,18 +151,29 @@ template <class Source, class Shown>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
-  bool are_watched = false;                        ///< each_sample looks at them
-  Shard shard = {};                                ///< the share of the segments that is measured
-  std::vector<SegmentErrors>* segments = nullptr;  ///< gets the errors of each segment; nullptr: not kept
+  bool are_watched = false;                   ///< each_sample looks at them
+  Shard shard = {};                           ///< the share of the segments that is measured
+  std::span<const SegmentErrors> known = {};  ///< of the first segments of the share, which are not measured
+  /// Is told of the errors of each segment, known or measured, while the segment is held; may be empty.
+  std::function<Status(SegmentErrors& found, bool is_known)> tell_segment = {};
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
 /// Adds up errors segment by segment, so that sums do not depend on where a motion is divided.
-inline void add_segment(SegmentErrors found, const KeptErrors& kept, AuditSubject& subject) {
+[[nodiscard]] inline Status add_segment(SegmentErrors found, bool is_known, const KeptErrors& kept,
+                                        AuditSubject& subject) {
   subject.error.add(found.error);
   subject.at_keys.add(found.at_keys);
-  if (kept.segments != nullptr) kept.segments->push_back(std::move(found));
+  return kept.tell_segment ? kept.tell_segment(found, is_known) : Success{};
+}
+
+/// Adds the segments that are known, and returns the rest of the share.
+[[nodiscard]] inline Result<IndexRange> add_known(const KeptErrors& kept, AuditSubject& subject) {
+  const IndexRange share = kept.shard.of(subject.segments);
+  for (const SegmentErrors& known : kept.known)
+    if (const Status status = add_segment(known, true, kept, subject); !status) return status.error();
+  return IndexRange{share.first + kept.known.size(), share.count - kept.known.size()};
 }
 
 /// A sample that was measured.
@@ -196,8 +207,9 @@ template <class Source, class EachSample>
   };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
-  const IndexRange share = kept.shard.of(subject.segments);
-  for (std::size_t s = share.first; s < share.end(); ++s) {
+  const Result<IndexRange> rest = add_known(kept, subject);
+  if (!rest) return rest.error();
+  for (std::size_t s = rest.value().first; s < rest.value().end(); ++s) {
     if (const Status status = source.enter(s); !status) return status;
     SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {
@@ -220,7 +232,7 @@ template <class Source, class EachSample>
       if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
-    add_segment(std::move(found), kept, subject);
+    if (Status status = add_segment(std::move(found), false, kept, subject); !status) return status;
     progress();
   }
   subject.vertices = part.outputs().size();

@@ -214,8 +214,9 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
   const std::size_t per_wave = std::min(blocks.size(), kBlocksPerWaveAndThread * thread_count());
   std::vector<std::vector<MotionError>> wave(per_wave, std::vector<MotionError>(subject.samples));
   std::vector<Scratch> scratch(per_wave);
-  const IndexRange share = kept.shard.of(segments.size());
-  for (std::size_t s = share.first; s < share.end(); ++s) {
+  const Result<IndexRange> rest = add_known(kept, subject);
+  if (!rest) return rest.error();
+  for (std::size_t s = rest.value().first; s < rest.value().end(); ++s) {
     if (Status status = stream.hold_segment(segments[s]); !status) return status;
     const Segment segment = motion.segment(segments[s]);
     std::vector<MotionError> of_samples(subject.samples);
@@ -233,7 +234,7 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
       found.error.add(of_samples[i]);
       if (i == 0 || i + 1 == of_samples.size()) found.at_keys.add(of_samples[i]);
     }
-    add_segment(std::move(found), kept, subject);
+    if (Status status = add_segment(std::move(found), false, kept, subject); !status) return status;
     progress();
   }
   subject.vertices = part.outputs().size();

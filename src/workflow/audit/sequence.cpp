@@ -11,6 +11,7 @@
 #include "core/blocks.h"
 #include "core/float32.h"
 #include "core/portable_math.h"
+#include "normals/curves/path_stream.h"
 #include "workflow/audit/measure.h"
 #include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
@@ -41,7 +42,9 @@ class SequenceSource {
         first_(std::move(first)),
         segments_(segments) {}
 
-  [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
+  [[nodiscard]] Status enter(std::size_t segment) {
+    return hold_paths(stream_, segments_[segment], segments_[segment], path_);
+  }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
     if (known_ && segment == segment_ && t == t_) return false;
     known_ = true;
@@ -143,6 +146,14 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
       return invalid_input(place, "a normal is not finite");
   }
   return Success{};
+}
+
+// Checks that errors of an earlier run are those of the first segments of this one.
+Status check_known(std::span<const SegmentErrors> known, IndexRange share) {
+  bool are_first = known.size() <= share.count;
+  for (std::size_t i = 0; i < known.size(); ++i) are_first = are_first && known[i].segment == share.first + i;
+  if (are_first) return Success{};
+  return Error{ErrorCode::kUsage, "", "the segments that are known already are those of another audit"};
 }
 
 // A vertex once for each normal that it shows: corners of one element with the same stored normals show the same.
@@ -247,14 +258,12 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   const bool is_straight = options.path == PathKind::kLinear;
-  if (options.shard && (motion.kind == MotionKind::kTargets || options.keep_errors || !is_straight))
-    return Error{ErrorCode::kUsage, "",
-                 "a shard is of the segments of a sequence of straight paths, and keeps sums and no single errors"};
-  if (!is_straight) {
-    if (const Status status = stream.hold_all(); !status) return status.error();
-  }
+  const bool in_parts = options.shard || options.keep || !options.known.empty();
+  if (in_parts && (motion.kind == MotionKind::kTargets || options.keep_errors))
+    return Error{
+        ErrorCode::kUsage, "",
+        "a shard, or a run that goes on, is of the segments of a sequence, and keeps sums and no single errors"};
   result.path = options.path;
-  if (!is_straight) result.bend = bend_of(motion);
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
@@ -286,7 +295,21 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     if (const Status status = reserve_rows(result.errors[0], rows); !status) return status.error();
   }
   const Shard share = options.shard.value_or(Shard{});
-  std::size_t done = 0;
+  if (const Status status = check_known(options.known, share.of(motion.segments.size())); !status)
+    return status.error();
+  BendSums bend;
+  const auto tell_segment = [&](SegmentErrors& found, bool is_known) -> Status {
+    if (!is_known && !is_straight) {
+      const BendSums here = bend_at(motion, found.segment + 1);
+      found.bent = here.bent;
+      found.way = here.way;
+    }
+    bend.add({found.bent, found.way});
+    if (Status kept = options.keep && !is_known ? options.keep(found) : Success{}; !kept) return kept;
+    if (options.shard) result.measured.push_back(std::move(found));
+    return Success{};
+  };
+  std::size_t done = options.known.size();
   const auto progress = [&] {
     if (options.progress) options.progress(++done, share.of(motion.segments.size()).count);
   };
@@ -314,8 +337,12 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
     SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
                           normals_at_first_keyframe(part, base), segments);
-    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
-                          static_cast<bool>(watch), share, options.shard ? &result.measured : nullptr};
+    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr,
+                          result.subjects.size(),
+                          static_cast<bool>(watch),
+                          share,
+                          options.known,
+                          tell_segment};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;
@@ -343,6 +370,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     result.subjects.push_back(std::move(subject));
   }
   if (result.subjects.empty()) result.errors.clear();
+  result.bend = bend.bend();
   finish(result);
   return result;
 }

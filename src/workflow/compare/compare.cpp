@@ -17,6 +17,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "normals/curves/path_stream.h"
 #include "workflow/compare/compared.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
@@ -274,6 +275,15 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
+// Checks that results of an earlier run are those of the first segments of this one.
+Status check_known(std::span<const ComparedSegment> known, IndexRange share, std::size_t schemes) {
+  bool are_first = known.size() <= share.count;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    are_first = are_first && known[i].segment == share.first + i && known[i].schemes.size() == schemes;
+  if (are_first) return Success{};
+  return Error{ErrorCode::kUsage, "", "the segments that are known already are those of another comparison"};
+}
+
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -340,7 +350,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     all.emplace(std::move(groups).value());
   }
   if (curved) {
-    if (const Status status = stream.hold_all(); !status) return status.error();
     all->follow(motion, options.path, certified);
     rows.back().operations = all->make(rows.back().scheme)->operations();
   }
@@ -352,8 +361,9 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (const Status status = reserve_rows(room, samples * kept); !status) return status.error();
     each.assign(kept, std::vector<float>(samples * all->count()));
   }
-  if (options.shard && (options.keep_errors || options.keep_samples || curved))
-    return Error{ErrorCode::kUsage, "", "a shard keeps sums, of straight paths: the rest is of a whole motion"};
+  if ((options.shard || !options.known.empty()) && (options.keep_errors || options.keep_samples))
+    return Error{ErrorCode::kUsage, "",
+                 "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());
@@ -361,10 +371,19 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   std::vector<ComparedSegment> compared;
   const IndexRange share = options.shard.value_or(Shard{}).of(motion.segments.size());
   const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
-  const std::size_t first_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
+  if (const Status status = check_known(options.known, share, names.size()); !status) return status.error();
+  const std::size_t share_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
+  const std::size_t first_block = share_block + options.known.size() * blocks_per_segment;
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
   std::vector<std::vector<Tally>> wave(std::min(blocks - first_block, blocks_per_wave));
   std::vector<Tally> of_segment(names.size());
+  BendSums bend;
+  const auto add_segment = [&](ComparedSegment found) {
+    for (std::size_t s = 0; s < names.size(); ++s) add(totals[s], found.schemes[s]);
+    bend.add({found.bent, found.way});
+    if (options.shard) compared.push_back(std::move(found));
+  };
+  for (const ComparedSegment& known : options.known) add_segment(known);
   for (std::size_t first = first_block, count = 0; first < blocks; first += count) {
     // A wave goes over the end of a segment only where segments have fewer blocks than it.
     const std::size_t left = blocks_per_segment - first % blocks_per_segment;
@@ -372,7 +391,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
         std::min({blocks_per_wave, blocks - first, std::max(left, blocks_per_segment < blocks_per_wave ? blocks : 0)});
     const std::size_t first_segment = first / blocks_per_segment;
     const std::size_t last_segment = (first + count - 1) / blocks_per_segment;
-    if (const Status status = stream.hold_segments(first_segment, last_segment); !status) return status.error();
+    if (const Status status = hold_paths(stream, first_segment, last_segment, options.path); !status)
+      return status.error();
     all->enter(motion, first_segment, last_segment);
     parallel_for(count, [&](std::size_t i) {
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
@@ -391,19 +411,25 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
           rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
       }
       if ((first + i + 1) % blocks_per_segment != 0) continue;
-      if (options.shard) compared.push_back({segment, {}});
+      ComparedSegment done{segment, {}};
       for (std::size_t s = 0; s < names.size(); ++s) {
         Tally& found = of_segment[s];
         found.quality.max_at.element = all->first_output(found.quality.max_at.element);
         found.certified.element = all->first_output(found.certified.element);
-        add(totals[s], found);
         times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
         times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
-        if (options.shard) compared.back().schemes.push_back(found);
+        done.schemes.push_back(found);
         found = {};
       }
+      if (curved) {
+        const BendSums here = bend_at(motion, segment + 1);
+        done.bent = here.bent;
+        done.way = here.way;
+      }
+      if (const Status kept = options.keep ? options.keep(done) : Success{}; !kept) return kept.error();
+      add_segment(std::move(done));
     }
-    if (options.progress) options.progress(first + count - first_block, blocks - first_block);
+    if (options.progress) options.progress(first + count - share_block, blocks - share_block);
   }
 
   Comparison comparison{kind,
@@ -416,7 +442,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         motion.kind};
   comparison.path = options.path;
   comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
-  if (curved) comparison.bend = bend_of(motion);
+  comparison.bend = bend.bend();
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;
   comparison.compared = std::move(compared);

@@ -32,10 +32,7 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
   [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
   [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }
-  // There are seven products and six sums of vectors, and a division by the length.
-  [[nodiscard]] OperationCounts operations() const override {
-    return {.add = 6 * 3 + 2, .multiply = 7 * 3 + 3 + 3, .divide = 1, .sqrt = 1};
-  }
+  [[nodiscard]] OperationCounts operations() const override { return exact_curve_operations(); }
 
  private:
   const CurvedSegments& segments_;
@@ -52,6 +49,11 @@ std::vector<PathErrors> all_errors(const PolynomialSegment<3>& curve) {
 }
 
 }  // namespace
+
+// There are seven products and six sums of vectors, and a division by the length.
+OperationCounts exact_curve_operations() noexcept {
+  return {.add = 6 * 3 + 2, .multiply = 7 * 3 + 3 + 3, .divide = 1, .sqrt = 1};
+}
 
 void CurvedSegments::enter(std::size_t first, std::size_t last) {
   segments_.erase(segments_.begin(), segments_.lower_bound(first));

@@ -21,6 +21,9 @@ namespace chronormal::inline internal {
 /// The name of the row of the exact normals of a curved path.
 inline constexpr std::string_view kExactCurve = "exact";
 
+/// What an evaluation of that row costs.
+[[nodiscard]] OperationCounts exact_curve_operations() noexcept;
+
 class CurvedSegments {
  public:
   /// groups is nullptr for faces; certified says whether truth() will be asked for. The motion and the groups must outlive

@@ -14,12 +14,14 @@
 #include "io/bytes/positioned_file.h"
 #include "io/cache/npy.h"
 #include "io/json/json.h"
+#include "workflow/compare/curved_segments.h"
 #include "workflow/json/object.h"
+#include "workflow/sample/array_place.h"
 
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kVersion = 1;
+constexpr std::size_t kVersion = 2;
 constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
 
 // Reads the numbers of a list one after the other.
@@ -166,6 +168,28 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
+// Where the exact normals are those of curves: the path, and what each segment adds to the sums of its bend.
+template <class Segment>
+void put_bend(const Segment& segment, Json& json) {
+  if (segment.way != 0) json["bend"] = {segment.bent, segment.way};
+}
+
+template <class Segment>
+void read_bend(const JsonView& view, Segment& segment) {
+  if (!view.has("bend")) return;
+  const std::optional<JsonView> list = view.array("bend");
+  if (!list) return;
+  Numbers numbers(*list);
+  segment.bent = numbers.real();
+  segment.way = numbers.real();
+}
+
+PathKind read_path(const JsonView& part) {
+  const Result<PathKind> path = make_path(part.required_text("path"));
+  if (!path) part.complain("path", path.error().message);
+  return path ? path.value() : PathKind::kLinear;
+}
+
 // Calls each(view) for the items of a list that may be missing.
 template <class Each>
 void each_item(const JsonView& object, const char* key, const Each& each) {
@@ -175,6 +199,51 @@ void each_item(const JsonView& object, const char* key, const Each& each) {
 }
 
 constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() >> 1U;
+
+Json segment_json(const ComparedSegment& segment) {
+  Json tallies = Json::array();
+  for (const SchemeTally& tally : segment.schemes) tallies.push_back(tally_json(tally));
+  Json json = {{"segment", segment.segment}, {"tallies", std::move(tallies)}};
+  put_bend(segment, json);
+  return json;
+}
+
+ComparedSegment read_compared(const JsonView& segment) {
+  ComparedSegment found{segment.required_count("segment", kMost), {}};
+  each_item(segment, "tallies", [&](const JsonView& tally) { found.schemes.push_back(read_tally(Numbers(tally))); });
+  read_bend(segment, found);
+  return found;
+}
+
+Json segment_json(const SegmentErrors& segment) {
+  Json json = {
+      {"segment", segment.segment}, {"error", error_json(segment.error)}, {"at_keys", error_json(segment.at_keys)}};
+  put_bend(segment, json);
+  return json;
+}
+
+SegmentErrors read_measured(const JsonView& segment) {
+  SegmentErrors found;
+  found.segment = segment.required_count("segment", kMost);
+  if (const auto list = segment.array("error")) found.error = read_error(*list);
+  if (const auto list = segment.array("at_keys")) found.at_keys = read_error(*list);
+  read_bend(segment, found);
+  return found;
+}
+
+// Reads the text of one segment.
+template <class Read>
+auto read_segment(std::string_view text, const std::string& name, const Read& read)
+    -> Result<decltype(read(std::declval<const JsonView&>()))> {
+  const Result<nlohmann::json> json = parse_json(text, name, 0, {});
+  if (!json) return json.error();
+  JsonComplaint complaint(name);
+  auto found = read(JsonView(json.value(), "", complaint));
+  if (complaint.first()) return *complaint.first();
+  return found;
+}
+
+std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 NamedComparison read_comparison(const JsonView& part) {
   NamedComparison named;
@@ -189,12 +258,17 @@ NamedComparison read_comparison(const JsonView& part) {
   c.samples = part.required_count("samples", kMost);
   c.tolerance = read_tolerance(part);
   c.span = read_span(part);
+  c.path = read_path(part);
   if (c.segments == 0) part.complain("segment_count", "there are no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
   each_item(part, "schemes", [&](const JsonView& name) {
     SchemeComparison row;
     row.scheme = name.as_text();
+    if (c.path != PathKind::kLinear && row.scheme == kExactCurve) {
+      row.operations = exact_curve_operations();
+      return c.schemes.push_back(std::move(row));
+    }
     const auto scheme = make_scheme(row.scheme);
     if (!scheme) return name.complain(scheme.error().message);
     const auto sequential = scheme.value()->sequential_operations();
@@ -206,8 +280,7 @@ NamedComparison read_comparison(const JsonView& part) {
   });
   const std::size_t tallies = c.schemes.size() + (has_linear ? 0 : 1);
   each_item(part, "segments", [&](const JsonView& segment) {
-    ComparedSegment found{segment.required_count("segment", kMost), {}};
-    each_item(segment, "tallies", [&](const JsonView& tally) { found.schemes.push_back(read_tally(Numbers(tally))); });
+    ComparedSegment found = read_compared(segment);
     if (found.schemes.size() != tallies) segment.complain("there must be a tally for each scheme, and for linear");
     c.compared.push_back(std::move(found));
   });
@@ -228,6 +301,7 @@ NamedAudit read_audit(const JsonView& part) {
   named.tolerance = read_tolerance(part);
   Audit& audit = named.audit;
   audit.span = read_span(part);
+  audit.path = read_path(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
   audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
   audit.stored = part.flag("stored");
@@ -242,13 +316,7 @@ NamedAudit read_audit(const JsonView& part) {
     subject.vertices = part.required_count("vertices", kMost);
     audit.subjects.push_back(std::move(subject));
   }
-  each_item(part, "segments", [&](const JsonView& segment) {
-    SegmentErrors found;
-    found.segment = segment.required_count("segment", kMost);
-    if (const auto list = segment.array("error")) found.error = read_error(*list);
-    if (const auto list = segment.array("at_keys")) found.at_keys = read_error(*list);
-    audit.measured.push_back(std::move(found));
-  });
+  each_item(part, "segments", [&](const JsonView& segment) { audit.measured.push_back(read_measured(segment)); });
   return named;
 }
 
@@ -294,16 +362,13 @@ std::string compare_part(const NamedComparison& shard) {
   json["elements"] = c.elements;
   json["segment_count"] = c.segments;
   json["span"] = c.span;
+  json["path"] = path_name(c.path);
   json["samples"] = c.samples;
   json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
   json["certified"] = c.schemes.front().certified.has_value();
   for (const SchemeComparison& row : c.schemes) json["schemes"].push_back(row.scheme);
-  for (const ComparedSegment& segment : c.compared) {
-    Json tallies = Json::array();
-    for (const SchemeTally& tally : segment.schemes) tallies.push_back(tally_json(tally));
-    json["segments"].push_back({{"segment", segment.segment}, {"tallies", std::move(tallies)}});
-  }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  for (const ComparedSegment& segment : c.compared) json["segments"].push_back(segment_json(segment));
+  return line_of(json) + '\n';
 }
 
 std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance) {
@@ -313,6 +378,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
   json["stored"] = shard.stored;
   json["still"] = shard.still;
   json["span"] = shard.span;
+  json["path"] = path_name(shard.path);
   for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(authored_offset_json(offset));
   json["subjects"] = shard.subjects.size();
   for (const AuditSubject& subject : shard.subjects) {
@@ -320,10 +386,19 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
     json["samples"] = subject.samples;
     json["vertices"] = subject.vertices;
   }
-  for (const SegmentErrors& segment : shard.measured)
-    json["segments"].push_back(
-        {{"segment", segment.segment}, {"error", error_json(segment.error)}, {"at_keys", error_json(segment.at_keys)}});
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  for (const SegmentErrors& segment : shard.measured) json["segments"].push_back(segment_json(segment));
+  return line_of(json) + '\n';
+}
+
+std::string segment_part(const ComparedSegment& segment) { return line_of(segment_json(segment)); }
+std::string segment_part(const SegmentErrors& segment) { return line_of(segment_json(segment)); }
+
+Result<ComparedSegment> read_compared_segment(std::string_view text, const std::string& name) {
+  return read_segment(text, name, read_compared);
+}
+
+Result<SegmentErrors> read_measured_segment(std::string_view text, const std::string& name) {
+  return read_segment(text, name, read_measured);
 }
 
 Result<MergedParts> merge_parts(std::span<const Part> parts) {
@@ -356,9 +431,11 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   struct Rows {
     PositionedFile file;
     npy::Array array;
+    ArrayPlace place;
+
+    [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
   };
   std::vector<Rows> all;
-  std::uint64_t count = 0;
   for (const std::string& path : paths) {
     std::optional<PositionedFile> file = PositionedFile::open(path);
     if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
@@ -367,15 +444,29 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
     Result<npy::Array> array = npy::read_header(start, file->size(), path);
     if (!array) return array.error();
     const npy::Array& found = array.value();
-    const npy::Array& first = all.empty() ? found : all.front().array;
-    const bool is_alike = !found.is_fortran && !found.shape.empty() && found.shape.size() == first.shape.size() &&
-                          std::equal(found.shape.begin() + 1, found.shape.end(), first.shape.begin() + 1) &&
-                          found.kind == npy::Kind::kFloat && found.item_size == sizeof(float) &&
-                          found.order == std::endian::little;
-    if (!is_alike)
-      return invalid_input(path, "it is " + found.text() + ", and not rows of float32 like those of the first part");
-    count += found.shape.front();
-    all.push_back({std::move(*file), std::move(array).value()});
+    const std::optional<ArrayPlace> place = ArrayPlace::read(found.comment);
+    const bool is_part = place && !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
+                         found.item_size == sizeof(float) && found.order == std::endian::little &&
+                         place->first <= place->total && found.shape.front() <= place->total - place->first;
+    if (!is_part) return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
+    const bool is_alike =
+        all.empty() || (place->samples == all.front().place.samples && place->total == all.front().place.total &&
+                        std::equal(found.shape.begin() + 1, found.shape.end(), all.front().array.shape.begin() + 1));
+    if (!is_alike) return Error{ErrorCode::kUsage, path, "it is a shard of other samples than the first part"};
+    all.push_back({std::move(*file), std::move(array).value(), *place});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Rows& a, const Rows& b) {
+    return std::pair(a.place.first, a.end()) < std::pair(b.place.first, b.end());
+  });
+  const std::uint64_t count = all.front().place.total;
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i <= all.size(); ++i) {
+    const std::uint64_t first = i < all.size() ? all[i].place.first : count;
+    if (first != next)
+      return Error{ErrorCode::kUsage, "",
+                   "row " + std::to_string(std::min(first, next)) +
+                       (first < next ? " is in two of the shards" : " is in none of the shards")};
+    if (i < all.size()) next = all[i].end();
   }
   std::vector<std::uint64_t> shape = all.front().array.shape;
   shape.front() = count;

@@ -12,6 +12,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
+#include "normals/curves/path_stream.h"
 
 namespace chronormal {
 namespace {
@@ -43,16 +44,6 @@ std::vector<float> positions_at(const Segment& segment, double t) {
     result.set(v, to_float(lerp(to_double(segment.from[v]), to_double(segment.to[v]), t)));
   });
   return positions;
-}
-
-// Holds the keyframes from which a moment of a segment is computed: its ends, and on a curved path their neighbours, of
-// which the first and the last segment have two on one side.
-Status hold_around(MotionStream& stream, std::size_t segment, PathKind path) {
-  if (path == PathKind::kLinear) return stream.hold_segment(segment);
-  const std::size_t end = stream.motion().keyframes.size() - 1;
-  const std::size_t first = std::min(segment - std::min<std::size_t>(segment, 1), end - std::min<std::size_t>(end, 3));
-  const std::size_t last = std::min(std::max<std::size_t>(segment + 2, 3), end);
-  return stream.hold(first, last);
 }
 
 // Positions in double, as the point half way between two in float32: one takes what the other had to round. So a pose
@@ -172,13 +163,13 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
   const double t = instant.value().t;
-  if (const Status status = hold_around(*stream_, instant.value().segment, options_.path); !status)
-    return status.error();
+  const std::size_t here = instant.value().segment;
+  if (const Status status = hold_paths(*stream_, here, here, options_.path); !status) return status.error();
   if (options_.path != PathKind::kLinear) {
-    const auto curve = path_segment(*motion_, instant.value().segment, options_.path);
+    const auto curve = path_segment(*motion_, here, options_.path);
     return pose_at(positions_at(curve, t), "this path moves");
   }
-  const Segment segment = motion_->segment(instant.value().segment);
+  const Segment segment = motion_->segment(here);
   return Pose{positions_at(segment, t),
               are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
 }

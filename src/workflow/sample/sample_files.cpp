@@ -5,7 +5,9 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "chronormal/io/output.h"
@@ -15,6 +17,8 @@
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
+#include "workflow/sample/array_place.h"
+#include "workflow/sample/continued_samples.h"
 
 namespace chronormal {
 namespace {
@@ -76,9 +80,11 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t rows, std::size_t outputs) {
-    const std::vector<std::uint64_t> shape = {rows, outputs, 3};
-    if (!npz_) return file_->append(npy::write_header("<f4", shape));
+  // header is that of a .npy file.
+  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t outputs,
+                             std::string_view header) {
+    if (!npz_) return file_->append(header);
+    const std::vector<std::uint64_t> shape = {moments.count(), outputs, 3};
     std::vector<double> values = moments.times;
     std::vector<std::uint64_t> when_shape = {moments.count()};
     if (moments.weights.empty() && values.empty()) values = {motion.keyframes[0].time};
@@ -93,8 +99,14 @@ class ArrayFile {
     return npz_->begin();
   }
 
-  [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose) {
-    if (!npz_) return file_->append(bytes_of(normals));
+  // A row of a .npy file gets a record of the journal, where there is one.
+  [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose, std::size_t zeros,
+                              Journal* journal) {
+    if (!npz_) {
+      const std::string_view bytes = bytes_of(normals);
+      if (Status status = file_->append(bytes); !status || journal == nullptr) return status;
+      return journal->append(WrittenRow::of(bytes, zeros).text());
+    }
     const Status status = npz_->append(normals_, bytes_of(normals));
     return status ? npz_->append(positions_, bytes_of(pose.positions)) : status;
   }
@@ -115,6 +127,20 @@ class ArrayFile {
   std::string storage_;
 };
 
+// Removes a partial output in the end, where no row of it was written: then there is nothing to go on with.
+struct EmptyPartial {
+  EmptyPartial() = default;
+  EmptyPartial(const EmptyPartial&) = delete;
+  EmptyPartial& operator=(const EmptyPartial&) = delete;
+  ~EmptyPartial() {
+    std::error_code ignored;
+    if (!name.empty() && journal->is_empty()) std::filesystem::remove(name, ignored);
+  }
+
+  std::string name;  // empty: there is none
+  const Journal* journal = nullptr;
+};
+
 // The mesh at one moment, as a file.
 std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
@@ -131,6 +157,87 @@ std::string mesh_file(const Topology& topology, const NormalSampler& sampler, co
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     face_of_corner.insert(face_of_corner.end(), topology.face(f).size(), static_cast<std::uint32_t>(f));
   return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner);
+}
+
+// Writes all moments of the share, but for rows that an earlier run wrote, as the journal has it.
+Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& options, const Moments& moments,
+                                const SampleOutput& output, Journal* journal,
+                                const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const Motion& motion = stream.motion();
+  const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
+  const ElementKind kind = options.elements.kind;
+  SampleOutput checked = output;
+  if (journal != nullptr) checked.force = true;  // an interrupted run may have written it just before its end
+  const Result<std::vector<std::string>> names = sample_files(checked, kind, count);
+  if (!names) return names.error();
+  if (Status status = check_moments(motion, moments); !status) return status.error();
+  Result<NormalSampler> made = NormalSampler::make(stream, options);
+  if (!made) return made.error();
+  NormalSampler& sampler = made.value();
+  const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
+  if (!in_a_row) return in_a_row.error();
+
+  const IndexRange share = output.shard.of(count);
+  EmptyPartial partial;
+  std::optional<ArrayFile> arrays;
+  SampleSummary summary;
+  std::size_t written = 0;  // rows, by an earlier run
+  if (is_array(output.format)) {
+    const std::size_t per_moment = sampler.output_count() + vertices;
+    const bool is_gathered = output.format == SampleFormat::kNpz && is_stream(output.path);
+    if (is_gathered && count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
+      return Error{ErrorCode::kUsage, output.path,
+                   "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
+    const std::size_t outputs = sampler.output_count(), row_bytes = 3 * sizeof(float) * outputs;
+    const ArrayPlace place{share.first, count, checksum_of(motion.topology, options, moments)};
+    const std::string header =
+        npy::write_header("<f4", {share.count, outputs, 3}, output.shard.is_all() ? "" : place.text());
+    if (journal != nullptr) {
+      const auto found = find_written_rows(output.path, header, row_bytes, share.count, *journal);
+      if (!found) return found.error();
+      written = found.value().rows.size();
+      summary.normals = written * outputs;
+      for (const WrittenRow& row : found.value().rows) summary.zeros += row.zeros;
+      if (found.value().is_whole) return summary;
+    }
+    const std::uint64_t kept = written > 0 ? header.size() + std::uint64_t{row_bytes} * written : 0;
+    Result<OutputFile> file = journal != nullptr ? OutputFile::go_on(output.path, output.force, kept)
+                                                 : OutputFile::create(output.path, output.force);
+    if (!file) return file.error();
+    if (journal != nullptr) {
+      partial.journal = journal;
+      partial.name = OutputFile::partial_name(output.path);
+    }
+    arrays.emplace(std::move(file).value(), output.format);
+    if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, outputs, header); !status)
+      return status.error();
+  }
+
+  std::vector<OutputFile> meshes;  // without names until all are there: they may have those of keyframes
+  for (std::size_t i = share.first + written; i < share.end(); ++i) {
+    const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
+    if (!pose) return pose.error();
+    const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
+    summary.normals += normals.size() / 3;
+    const std::size_t zeros = count_zeros(normals);
+    summary.zeros += zeros;
+    if (arrays) {
+      if (Status status = arrays->append(normals, pose.value(), zeros, journal); !status) return status.error();
+    } else {
+      const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
+      Result<OutputFile> file = OutputFile::create(names.value()[i], output.force);
+      if (!file) return file.error();
+      if (Status status = file.value().append(bytes); !status) return status.error();
+      if (Status status = file.value().seal(); !status) return status.error();
+      meshes.push_back(std::move(file).value());
+    }
+    if (progress) progress(i + 1 - share.first, share.count);
+  }
+  for (OutputFile& mesh : meshes) {
+    if (Status status = mesh.finish(); !status) return status.error();
+  }
+  if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
+  return summary;
 }
 
 }  // namespace
@@ -201,58 +308,15 @@ Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& o
 Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                     const SampleOutput& output,
                                     const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  const Motion& motion = stream.motion();
-  const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
-  const ElementKind kind = options.elements.kind;
-  const Result<std::vector<std::string>> names = sample_files(output, kind, count);
-  if (!names) return names.error();
-  if (Status status = check_moments(motion, moments); !status) return status.error();
-  Result<NormalSampler> made = NormalSampler::make(stream, options);
-  if (!made) return made.error();
-  NormalSampler& sampler = made.value();
-  const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
-  if (!in_a_row) return in_a_row.error();
+  return write_all(stream, options, moments, output, nullptr, progress);
+}
 
-  const IndexRange share = output.shard.of(count);
-  std::optional<ArrayFile> arrays;
-  if (is_array(output.format)) {
-    const std::size_t per_moment = sampler.output_count() + vertices;
-    const bool is_gathered = output.format == SampleFormat::kNpz && is_stream(output.path);
-    if (is_gathered && count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
-      return Error{ErrorCode::kUsage, output.path,
-                   "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
-    Result<OutputFile> file = OutputFile::create(output.path, output.force);
-    if (!file) return file.error();
-    arrays.emplace(std::move(file).value(), output.format);
-    if (Status status = arrays->begin(motion, moments, share.count, sampler.output_count()); !status)
-      return status.error();
-  }
-
-  SampleSummary summary;
-  std::vector<OutputFile> meshes;  // without names until all are there: they may have those of keyframes
-  for (std::size_t i = share.first; i < share.end(); ++i) {
-    const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
-    if (!pose) return pose.error();
-    const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
-    summary.normals += normals.size() / 3;
-    summary.zeros += count_zeros(normals);
-    if (arrays) {
-      if (Status status = arrays->append(normals, pose.value()); !status) return status.error();
-    } else {
-      const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
-      Result<OutputFile> file = OutputFile::create(names.value()[i], output.force);
-      if (!file) return file.error();
-      if (Status status = file.value().append(bytes); !status) return status.error();
-      if (Status status = file.value().seal(); !status) return status.error();
-      meshes.push_back(std::move(file).value());
-    }
-    if (progress) progress(i + 1 - share.first, share.count);
-  }
-  for (OutputFile& mesh : meshes) {
-    if (Status status = mesh.finish(); !status) return status.error();
-  }
-  if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
-  return summary;
+Result<SampleSummary> internal::continue_samples(
+    MotionStream& stream, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
+    Journal& journal, const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  if (output.format != SampleFormat::kNpy)
+    return Error{ErrorCode::kUsage, output.path, "only a .npy file can be continued by a later run"};
+  return write_all(stream, options, moments, output, &journal, progress);
 }
 
 }  // namespace chronormal

@@ -220,6 +220,35 @@ TEST(InputStream, curved_paths_need_nothing_but_the_keyframes_around_a_time) {
   }
 }
 
+TEST(InputStream, curved_paths_are_compared_and_audited_with_at_most_five_keyframes) {
+  const Motion whole = wave(9);
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+    MotionStream read(whole);
+    std::size_t most_held = 0;
+    MotionStream stream = strict(read, most_held);
+    CompareOptions options;
+    options.path = PathKind::kCatmullRom;
+    options.elements.kind = kind;
+    const auto text = [](const Result<Comparison>& comparison) {
+      return compare_json({{"x", comparison.value()}}, false, false);
+    };
+    EXPECT_EQ(text(compare(stream, options)), text(compare(whole, options)));
+    EXPECT_EQ(compare(whole, options).value().bend, bend_of(whole));
+  }
+  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
+    MotionStream read(whole);
+    std::size_t most_held = 0;
+    MotionStream stream = strict(read, most_held);
+    AuditOptions options;
+    options.path = PathKind::kCatmullRom;
+    options.rule = rule;
+    EXPECT_EQ(audit_json("x", audit(stream, {}, options).value(), 1),
+              audit_json("x", audit(whole, {}, options).value(), 1));
+    EXPECT_LE(most_held, 5U);  // a comparison takes several small segments at once
+    EXPECT_EQ(audit(whole, {}, options).value().bend, bend_of(whole));
+  }
+}
+
 TEST(InputStream, keyframes_may_be_written_over_the_files_that_they_come_from) {
   const Moments moments{{0, 0.25, 0.5, 1.5, 3.5}, {}};
   for (const bool sampled : {false, true}) {

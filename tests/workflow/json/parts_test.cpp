@@ -86,6 +86,9 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
   all[1].schemes = {"slerp", "quadratic"};
   all[1].tolerance = 0.5;
   all[2].access = Access::kSequential;
+  all.emplace_back().path = PathKind::kCatmullRom;
+  all.emplace_back(all[1]).tolerance = {};
+  all.back().path = PathKind::kCatmullRom;
   for (const CompareOptions& options : all) {
     const std::string whole = compare_json({{"walk", compare(motion, options).value()}}, false, false);
     for (const std::size_t count : {1U, 2U, 3U, 8U, 11U})
@@ -104,13 +107,99 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
   for (const StoredNormals& stored : {StoredNormals{}, normals}) {
     for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
-      AuditOptions options;
-      options.rule = rule;
-      const std::string whole = audit_json("walk", audit(motion, stored, options).value(), 1);
-      for (const std::size_t count : {2U, 5U, 9U})
-        EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
+      for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+        AuditOptions options;
+        options.rule = rule;
+        options.path = path;
+        const std::string whole = audit_json("walk", audit(motion, stored, options).value(), 1);
+        for (const std::size_t count : {2U, 5U, 9U})
+          EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
+      }
     }
   }
+}
+
+// Ends a run after so many segments, and gives what it kept to another one.
+TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
+  const Motion motion = bending();
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    for (const Shard shard : {Shard{}, Shard{1, 2}}) {
+      for (std::size_t most = 0; most <= shard.of(8).count; ++most) {
+        CompareOptions options;
+        options.path = path;
+        options.shard = shard;
+        const std::string whole = compare_part({"walk", compare(motion, options).value()});
+        std::vector<std::string> kept;
+        CompareOptions first = options, second = options;
+        first.keep = [&](const ComparedSegment& segment) -> Status {
+          if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
+          kept.push_back(segment_part(segment));
+          return Success{};
+        };
+        EXPECT_EQ(compare(motion, first).ok(), most == shard.of(8).count);
+        ASSERT_EQ(kept.size(), most);
+        for (const std::string& text : kept) second.known.push_back(read_compared_segment(text, "journal").value());
+        std::size_t computed = 0;
+        second.keep = [&](const ComparedSegment&) -> Status {
+          ++computed;
+          return Success{};
+        };
+        EXPECT_EQ(compare_part({"walk", compare(motion, second).value()}), whole);
+        EXPECT_EQ(computed + most, shard.of(8).count);
+      }
+    }
+  }
+}
+
+TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
+  const Motion motion = bending();
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
+      for (const std::size_t most : {0U, 3U, 8U}) {
+        AuditOptions options;
+        options.path = path;
+        options.rule = rule;
+        const std::string whole = audit_json("walk", audit(motion, {}, options).value(), 1);
+        std::vector<std::string> kept;
+        AuditOptions first = options, second = options;
+        first.keep = [&](const SegmentErrors& segment) -> Status {
+          if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
+          kept.push_back(segment_part(segment));
+          return Success{};
+        };
+        EXPECT_EQ(audit(motion, {}, first).ok(), most == 8);
+        for (const std::string& text : kept) second.known.push_back(read_measured_segment(text, "journal").value());
+        std::size_t measured = 0;
+        second.keep = [&](const SegmentErrors&) -> Status {
+          ++measured;
+          return Success{};
+        };
+        EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), 1), whole);
+        EXPECT_EQ(measured + most, 8U);
+      }
+    }
+  }
+}
+
+TEST(KnownSegments, those_of_another_run_are_refused) {
+  const Motion motion = bending();
+  CompareOptions options;
+  options.known.resize(1);  // without a tally
+  EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage);
+  options.known.clear();
+  options.shard = Shard{1, 2};
+  options.keep = [&](const ComparedSegment& segment) -> Status {
+    options.known.push_back(segment);
+    return Success{};
+  };
+  ASSERT_TRUE(compare(motion, CompareOptions(options)).ok());
+  options.shard = Shard{0, 2};
+  EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage);
+  AuditOptions audit_options;
+  audit_options.known.resize(9);
+  EXPECT_EQ(audit(motion, {}, audit_options).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(read_compared_segment("{\"segment\": 1, \"tallies\": [[1]]}", "journal").error().place,
+            "journal, /tallies/0");
 }
 
 TEST(MergeParts, says_whether_the_tolerance_was_kept) {
@@ -183,9 +272,9 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
     }
   }
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 3, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 1, "command": "bake"})"}}).find("of compare and of audit"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "bake"})"}}).find("of compare and of audit"),
             std::string::npos);
   std::string text = audit_parts(motion, {}, {}, 2)[0].text;
   const std::size_t list = text.find("\"error\":[");
@@ -205,15 +294,43 @@ TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
       parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
       ASSERT_TRUE(write_samples(motion, options, moments, {parts.back(), SampleFormat::kNpy, true, {i, count}}).ok());
     }
+    std::reverse(parts.begin(), parts.end());  // any order
     ASSERT_TRUE(merge_arrays(parts, folder / "merged.npy", true).ok());
     EXPECT_TRUE(test::read_whole(folder / "merged.npy") == test::read_whole(folder / "all.npy")) << count;
   }
   EXPECT_EQ(write_samples(motion, options, moments, {folder / "p.npz", SampleFormat::kNpz, true, {0, 2}}).error().code,
             ErrorCode::kUsage);
-  ASSERT_TRUE(write_samples(motion, {ElementOptions{ElementKind::kFaces}}, moments, {folder / "faces.npy"}).ok());
-  const std::vector<std::string> unlike = {folder / "all.npy", folder / "faces.npy"}, gone = {folder / "gone.npy"};
-  EXPECT_EQ(merge_arrays(unlike, folder / "x.npy", true).error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(merge_arrays(gone, folder / "x.npy", true).error().code, ErrorCode::kFailed);
+}
+
+TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
+  const test::TemporaryFolder folder;
+  const Motion motion = bending();
+  const Moments moments{{0, 0.1, 0.2, 0.3, 0.4}, {}};
+  const auto shard = [&](const std::string& name, std::size_t index, const SampleOptions& options, double scale = 1) {
+    Moments scaled = moments;
+    for (double& time : scaled.times) time *= scale;
+    EXPECT_TRUE(write_samples(motion, options, scaled, {folder / name, SampleFormat::kNpy, true, {index, 3}}).ok());
+    return folder / name;
+  };
+  const std::string first = shard("1.npy", 0, {}), second = shard("2.npy", 1, {}), third = shard("3.npy", 2, {});
+  SampleOptions by_angle;
+  by_angle.weighting = Weighting::kAngle;
+  const std::string other = shard("other.npy", 1, by_angle), later = shard("later.npy", 1, {}, 0.5);
+  ASSERT_TRUE(write_samples(motion, {}, moments, {folder / "all.npy"}).ok());
+  const auto merged_arrays = [&](const std::vector<std::string>& paths) {
+    const Status status = merge_arrays(paths, folder / "merged.npy", true);
+    return status ? "done" : status.error().message;
+  };
+  EXPECT_EQ(merged_arrays({third, first, second}), "done");
+  EXPECT_EQ(merged_arrays({first, third}), "row 1 is in none of the shards");
+  EXPECT_EQ(merged_arrays({second, third}), "row 0 is in none of the shards");
+  EXPECT_EQ(merged_arrays({first, second}), "row 3 is in none of the shards");
+  EXPECT_EQ(merged_arrays({first, second, second, third}), "row 1 is in two of the shards");
+  for (const std::string& foreign : {other, later})
+    EXPECT_EQ(merged_arrays({first, foreign, third}), "it is a shard of other samples than the first part");
+  EXPECT_EQ(merged_arrays({first, folder / "all.npy"}),
+            "this is no part that sample --shard has left, but (5, 80, 3) of '<f4'");
+  EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
 }
 
 }  // namespace

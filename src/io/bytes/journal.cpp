@@ -1,0 +1,104 @@
+// Reads a journal once, when it is opened, and then only writes behind its end.
+#include "io/bytes/journal.h"
+
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <utility>
+
+#include "chronormal/io/output.h"
+#include "io/bytes/file.h"
+#include "io/bytes/zip.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kDigits = 8;
+
+std::string checksum_digits(std::string_view text) {
+  std::uint32_t sum = zip::checksum(text);
+  std::string digits(kDigits, '0');
+  for (std::size_t i = kDigits; i-- > 0; sum >>= 4U) digits[i] = "0123456789abcdef"[sum & 0xFU];
+  return digits;
+}
+
+std::string line_of(std::string_view text) { return checksum_digits(text).append(" ").append(text).append("\n"); }
+
+// The text of a line without its end; nothing where it is damaged.
+std::optional<std::string_view> text_of(std::string_view line) {
+  if (line.size() <= kDigits || line[kDigits] != ' ') return std::nullopt;
+  const std::string_view text = line.substr(kDigits + 1);
+  return line.starts_with(checksum_digits(text)) ? std::optional(text) : std::nullopt;
+}
+
+}  // namespace
+
+bool Journal::read(std::string_view bytes) {
+  for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != std::string_view::npos; begin = end + 1) {
+    const std::optional<std::string_view> text = text_of(bytes.substr(begin, end - begin));
+    if (!text) break;
+    if (ends_.empty())
+      run_ = *text;
+    else
+      records_.emplace_back(*text);
+    ends_.push_back(end + 1);
+  }
+  return !ends_.empty();
+}
+
+Result<Journal> Journal::open(const std::string& path, std::string_view run) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 && errno == ENOENT) {
+    if (const Status begun = write_output(path, line_of(run), false); !begun) return begun.error();
+  }
+  Journal journal(path, Descriptor(open_descriptor(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK)));
+  const int file = journal.file_.number();
+  if (file < 0 || ::fstat(file, &status) != 0) return failure(path, errno);
+  const Error foreign{ErrorCode::kFailed, path,
+                      "this is no journal of an interrupted run: remove it, or write to another output"};
+  if (!S_ISREG(status.st_mode)) return foreign;
+  // Where the file system has no locks, two runs of one output are not found out.
+  const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (is_taken || ::fstat(file, &status) != 0 || status.st_nlink == 0)
+    return Error{ErrorCode::kFailed, path, "another run is writing this output now"};
+  const Result<FileBytes> bytes = FileBytes::open(path);
+  if (!bytes) return bytes.error();
+  if (!journal.read(bytes.value().bytes())) return foreign;
+  if (const Status whole = journal.keep_first(journal.records_.size()); !whole) return whole.error();
+  return journal;
+}
+
+Status Journal::append(std::string_view record) {
+  const std::string line = line_of(record);
+  std::string_view rest = line;
+  while (!rest.empty()) {
+    const ssize_t count = ::write(file_.number(), rest.data(), rest.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return failure(path_, errno);
+    rest.remove_prefix(static_cast<std::size_t>(count));
+  }
+  ++count_;
+  return Success{};
+}
+
+Status Journal::keep_first(std::size_t count) {
+  count = std::min(count, records_.size());
+  records_.resize(count);
+  ends_.resize(count + 1);
+  count_ = count;
+  const auto end = static_cast<off_t>(ends_.back());
+  if (::ftruncate(file_.number(), end) != 0 || ::lseek(file_.number(), end, SEEK_SET) != end)
+    return failure(path_, errno);
+  return Success{};
+}
+
+Status Journal::remove() {
+  if (::unlink(path_.c_str()) != 0 && errno != ENOENT) return failure(path_, errno);
+  return Success{};
+}
+
+}  // namespace chronormal::inline internal

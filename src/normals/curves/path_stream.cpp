@@ -1,0 +1,53 @@
+// Holds what paths follow from, and adds up how far they bend.
+#include "normals/curves/path_stream.h"
+
+#include <algorithm>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+
+namespace chronormal {
+
+Status internal::hold_paths(MotionStream& stream, std::size_t first, std::size_t last, PathKind path) {
+  if (path == PathKind::kLinear) return stream.hold_segments(first, last);
+  const std::size_t end = stream.motion().keyframes.size() - 1;
+  const std::size_t from = std::min(first - std::min<std::size_t>(first, 1), end - std::min<std::size_t>(end, 3));
+  return stream.hold(from, std::min(std::max<std::size_t>(last + 2, 3), end));
+}
+
+BendSums internal::bend_at(const Motion& motion, std::size_t at, std::size_t every) {
+  BendSums sums;
+  if (at < every || at + every >= motion.keyframes.size()) return sums;
+  const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
+                         &to = motion.keyframes[at + every];
+  // Times may be uneven, so the middle keyframe is compared with the place on the straight line at its time.
+  const double part = (middle.time - from.time) / (to.time - from.time);
+  const auto positions = [&](const Motion::Keyframe& key) {
+    return VectorView<const float>::packed(key.positions.data(), motion.topology.vertex_count());
+  };
+  const auto before = positions(from), here = positions(middle), after = positions(to);
+  for (std::size_t v = 0; v < here.count; ++v) {
+    const Vec3d p = to_double(before[v]), q = to_double(here[v]), r = to_double(after[v]);
+    // With even times, the second difference is twice the distance from the middle.
+    sums.bent += 2 * length(q - ((1 - part) * p + part * r));
+    sums.way += length(q - p) + length(r - q);
+  }
+  return sums;
+}
+
+Result<double> bend_of(MotionStream& stream, std::size_t every) {
+  const Motion& motion = stream.motion();
+  BendSums all;
+  for (std::size_t i = every; i + every < motion.keyframes.size(); i += every) {
+    if (const Status status = stream.hold(i - every, i + every); !status) return status.error();
+    all.add(bend_at(motion, i, every));
+  }
+  return all.bend();
+}
+
+double bend_of(const Motion& motion, std::size_t every) {
+  MotionStream stream(motion);
+  return bend_of(stream, every).value();
+}
+
+}  // namespace chronormal
