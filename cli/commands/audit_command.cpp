@@ -13,6 +13,7 @@
 #include "chronormal/workflow/json.h"
 #include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
+#include "cli/ranks/ranks.h"
 #include "cli/reports/audit_files.h"
 #include "cli/reports/audit_report.h"
 #include "cli/terminal/format.h"
@@ -75,7 +76,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
   const GltfDocument* const document = input.document();
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   if (document != nullptr && how.shard)
-    return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
+    return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path(input, how.path); !known) return known.error();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
@@ -109,13 +110,13 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   }
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
-  how.shard = shard.value();
+  how.shard = has_ranks() ? own_shard() : shard.value();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
-  how.progress = progress.callback("auditing");
+  how.progress = watching_ranks(progress.callback("auditing"));
   return how;
 }
 
@@ -155,7 +156,14 @@ Result<int> run_one(const Options& options, const AuditOptions& how, Progress& p
   Result<Audited> audited = audit_input(options, how, progress);
   progress.clear();
   if (!audited) return audited.error();
-  const Audited& found = audited.value();
+  Audited& found = audited.value();
+  if (has_ranks()) {
+    const std::vector<Part> parts = gather_parts(audit_part(found.name(), found.audit, found.tolerance));
+    if (parts.empty()) return kExitDone;  // the first rank prints
+    Result<Audit> all = merge_audit_parts(parts);
+    if (!all) return all.error();
+    found.audit = std::move(all).value();
+  }
   if (options.errors) {
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
     if (!written) return written.error();
@@ -207,6 +215,11 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
 }
 
 Result<int> run(const Options& options) {
+  if (const Status divisible = check_ranks(options.shard.text ? "--shard"
+                                           : options.errors   ? "--errors"
+                                                              : "");
+      !divisible)
+    return divisible.error();
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
   if (!how) return how.error();
@@ -214,6 +227,8 @@ Result<int> run(const Options& options) {
   if (!options.input.base.empty() || !options.input.samples.empty()) return run_one(options, how.value(), progress);
   const Result<std::vector<std::string>> files = find_gltf_files(options.input.files);
   if (!files) return files.error();
+  if (has_ranks() && !files.value().empty())
+    return misuse("mpirun", "it divides the segments of a sequence, and a glTF file is none");
   const bool is_one = files.value().empty() || files.value() == options.input.files;
   return is_one && files.value().size() < 2 ? run_one(options, how.value(), progress)
                                             : run_several(options, how.value(), files.value(), progress);
@@ -256,7 +271,8 @@ Command audit_command() {
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); },
-      refused};
+      refused,
+      true};
 }
 
 }  // namespace chronormal::cli

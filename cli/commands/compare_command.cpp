@@ -10,6 +10,7 @@
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
+#include "cli/ranks/ranks.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
@@ -96,18 +97,27 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
   CompareOptions compare_options{scheme_names(options),
                                  options.sample_count(),
                                  options.access == "sequential" ? Access::kSequential : Access::kRandom,
-                                 progress.callback("comparing"),
+                                 watching_ranks(progress.callback("comparing")),
                                  options.elements.options().value(),
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
-  compare_options.shard = options.shard.read().value();
+  compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
   compare_options.path = options.path.read().value();
   if (const Status status = check_path(input, compare_options.path); !status) return status.error();
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
   if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
   return comparison;
+}
+
+// An option that was given, and has no meaning where several ranks divide one motion.
+std::string option_of_one_process(const Options& options) {
+  if (options.shard.text) return "--shard";
+  if (options.errors) return "--errors";
+  if (options.blend.rows) return "--blend";
+  if (options.truth.every) return "--truth";
+  return options.each ? "--each" : "";
 }
 
 // One motion at a time is in memory.
@@ -198,6 +208,7 @@ Result<int> run_truth(const Options& options) {
 }
 
 Result<int> run(const Options& options) {
+  if (const Status divisible = check_ranks(option_of_one_process(options)); !divisible) return divisible.error();
   if (options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (options.blend.rows) return run_blend(options);
@@ -232,15 +243,23 @@ Result<int> run(const Options& options) {
   }
 
   Progress progress(options.common.quiet);
-  const auto comparisons = compare_inputs(options, progress);
+  auto comparisons = compare_inputs(options, progress);
   if (!comparisons) return comparisons.error();
+  if (has_ranks()) {
+    NamedComparison& own = comparisons.value().front();
+    const std::vector<Part> parts = gather_parts(compare_part(own));
+    if (parts.empty()) return kExitDone;  // the first rank prints
+    Result<NamedComparison> all = merge_compare_parts(parts);
+    if (!all) return all.error();
+    own.comparison = std::move(all.value().comparison);
+  }
 
   if (options.errors) {
     const Status written =
         write_errors(comparisons.value().front().comparison.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const bool with_times = !options.no_times;
+  const bool with_times = !options.no_times && !has_ranks();
   std::string text;
   if (options.shard.text)
     text = compare_part(comparisons.value().front());
@@ -305,7 +324,9 @@ Command compare_command() {
         {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
        options->common.table(false)},
       footer(),
-      [options] { return run(*options); }};
+      [options] { return run(*options); },
+      {},
+      true};
 }
 
 }  // namespace chronormal::cli

@@ -6,6 +6,7 @@
 #include "chronormal/workflow/sample.h"
 #include "cli/options/command.h"
 #include "cli/options/moments.h"
+#include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
@@ -98,9 +99,12 @@ Result<Request> understand(const Options& options) {
   if (!asked) return asked.error();
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
+  static const Peers ranks{gather_texts, broadcast_text};
+  if (const Status divisible = check_ranks(options.shard.text ? "--shard" : ""); !divisible) return divisible.error();
   Request request{sample.value(),
                   std::move(asked).value(),
-                  {options.common.output, format.value(), options.common.force, shard.value().value_or(Shard{})}};
+                  {options.common.output, format.value(), options.common.force, shard.value().value_or(own_shard())}};
+  if (has_ranks()) request.output.peers = &ranks;
   if (const Status status = check_input(options.input); !status) return status.error();
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();
@@ -171,8 +175,8 @@ Result<int> run(const Options& options) {
     const Status status = take_hard_edges(input.value(), options.hard_edges, request.sample.elements);
     if (!status) return status.error();
   }
-  const auto written =
-      write_samples(*read.value(), request.sample, moments.value(), request.output, progress.callback("sampling"));
+  const auto written = write_samples(*read.value(), request.sample, moments.value(), request.output,
+                                     watching_ranks(progress.callback("sampling")));
   progress.clear();
   if (!written) return written.error();
   if (written.value().zeros > 0)
@@ -206,7 +210,9 @@ Command sample_command() {
                               ".obj with the numbers that they have among all")},
        options->common.table(true)},
       footer(),
-      [options] { return run(*options); }};
+      [options] { return run(*options); },
+      {},
+      true};
 }
 
 }  // namespace chronormal::cli

@@ -46,6 +46,11 @@ struct MergedParts {
 /// There must be at least one part
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
+/// The same of parts of comparisons alone, as what one run would have returned, without times and names of targets.
+[[nodiscard]] Result<NamedComparison> merge_compare_parts(std::span<const Part> parts);
+/// The same of parts of audits alone.
+[[nodiscard]] Result<Audit> merge_audit_parts(std::span<const Part> parts);
+
 /// Writes one array of the rows of all files, in the order given. The files must be .npy in C order, with the same type
 /// of numbers and the same shape of rows. Memory: a megabyte. Errors: kFailed for files that cannot be read;
 /// kInvalidInput for those that are no such array or differ from the first; those of write_output() in io/output.h.
