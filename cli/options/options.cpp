@@ -229,8 +229,7 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
                                    [&](const Command& command) { return program.got_subcommand(command.name); });
   running = chosen->name;
   if (has_ranks() && !chosen->shares)
-    return Error{ErrorCode::kUsage, "",
-                 "it is one task for one process: mpirun divides compare, audit and sample alone"};
+    return Error{ErrorCode::kUsage, "mpirun", "it divides compare, audit and sample: run this on one rank"};
   prepare_threads();
   return chosen->run();
 }
