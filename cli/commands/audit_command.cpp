@@ -111,6 +111,7 @@ Result<AuditOptions> understand(const Options& options, Progress& progress) {
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   how.shard = has_ranks() ? own_shard() : shard.value();
+  how.peers = ranks_as_peers();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;

@@ -99,12 +99,11 @@ Result<Request> understand(const Options& options) {
   if (!asked) return asked.error();
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
-  static const Peers ranks{gather_texts, broadcast_text};
   if (const Status divisible = check_ranks(options.shard.text ? "--shard" : ""); !divisible) return divisible.error();
   Request request{sample.value(),
                   std::move(asked).value(),
                   {options.common.output, format.value(), options.common.force, shard.value().value_or(own_shard())}};
-  if (has_ranks()) request.output.peers = &ranks;
+  request.output.peers = ranks_as_peers();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
     return files.error();

@@ -79,8 +79,7 @@ std::vector<Part> gather_parts(const std::string& own) {
 
 Status check_ranks(const std::string& option) {
   if (!has_ranks() || option.empty()) return Success{};
-  return misuse(option,
-                "mpirun divides one motion and adds up the sums of its shares: leave out this option, or mpirun");
+  return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
 }
 
 std::vector<Option> PathArgument::table(const std::string& what) {

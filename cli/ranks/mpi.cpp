@@ -175,6 +175,16 @@ std::string broadcast_text(const std::string& of_first) {
   return text;
 }
 
+void maximize_numbers(std::span<double> numbers) {
+  constexpr std::size_t kMost = kBlock / sizeof(double);
+  for (; !numbers.empty(); numbers = numbers.subspan(std::min(numbers.size(), kMost))) {
+    MPI_Request request{};
+    MPI_Iallreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(std::min(numbers.size(), kMost)), MPI_DOUBLE, MPI_MAX,
+                   MPI_COMM_WORLD, &request);
+    wait(request);
+  }
+}
+
 ProgressCallback watching_ranks(ProgressCallback progress) {
   if (!has_ranks()) return progress;
   return [progress = std::move(progress)](std::size_t done, std::size_t total) {

@@ -15,10 +15,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "chronormal/core/result.h"
+#include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
 
 namespace chronormal::cli {
@@ -39,6 +41,15 @@ void start_ranks(std::function<int(const Error&)> report);
 
 /// Returns the text of the first rank on every rank, once the first has called this.
 [[nodiscard]] std::string broadcast_text(const std::string& of_first);
+
+/// Makes each number the largest of those that all ranks have in its place, once all have called this.
+void maximize_numbers(std::span<double> numbers);
+
+/// These three, for the library; nullptr where there is one process.
+[[nodiscard]] inline const Peers* ranks_as_peers() {
+  static const Peers peers{gather_texts, broadcast_text, maximize_numbers};
+  return has_ranks() ? &peers : nullptr;
+}
 
 /// The same progress callback, which on the first rank also looks for errors of the others.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;

@@ -91,6 +91,13 @@ class RanksTest(unittest.TestCase):
                     run = self.run_program(command, ranks, text=False)
                     self.assertEqual((run.returncode, run.stdout), (alone.returncode, alone.stdout), run.stderr)
 
+    def test_each_rank_of_an_audit_reads_its_own_segments_alone(self):
+        # The last rank meets the keyframe that is broken; the others do not, though all know how long normals get.
+        run = self.run_program("audit large.obj broken.pc2 --no-weld --samples 2 -o x.txt", 3)
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("rank 2: broken.pc2", run.stderr)
+        self.assertEqual(run.stderr.count("chronormal"), 1, run.stderr)
+
     def test_measured_times_are_left_out(self):
         alone = self.run_program("compare small.obj small.pc2 --no-times")
         self.assertEqual(self.run_program("compare small.obj small.pc2", 2).stdout, alone.stdout)

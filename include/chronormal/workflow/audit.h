@@ -44,6 +44,7 @@
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/motion_error.h"
+#include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
 
 namespace chronormal {
@@ -82,6 +83,9 @@ struct AuditOptions {
   /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
   /// long a normal gets).
   std::optional<Shard> shard = {};
+  /// With these the shards find out together, by maximize(), which vertices move and how long normals get, so that each
+  /// of them looks at its own segments alone.
+  const Peers* peers = nullptr;
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };

@@ -1,5 +1,5 @@
 /// Processes that do one task together, each its own shard (workflow/shard.h), as far as the library needs to know of
-/// them: it can send texts between them, by whatever the program that runs it has for that, such as MPI.
+/// them: it can send texts and numbers between them, by whatever the program that runs it has for that, such as MPI.
 ///
 /// Every process makes the same calls in the same order. One that fails makes none any more, and its program must end
 /// the others.
@@ -7,6 +7,7 @@
 #define CHRONORMAL_WORKFLOW_PEERS_H_
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Peers {
   std::function<std::vector<std::string>(const std::string& own)> gather;
   /// Returns in every process the text of the first.
   std::function<std::string(const std::string& of_first)> broadcast;
+  /// Makes each number the largest of those that all processes have in its place; all have as many.
+  std::function<void(std::span<double> numbers)> maximize = {};
 };
 
 }  // namespace chronormal

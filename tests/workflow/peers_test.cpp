@@ -1,5 +1,5 @@
-// Processes that write samples together, here as threads: one output with the bytes of one process, which nobody sees
-// before all are done.
+// Processes that share a task, here as threads. Samples are one output with the bytes of one process, which nobody sees
+// before all are done; audits have the bytes of one process, though each looks at its own segments alone.
 #include "chronormal/workflow/peers.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <span>
@@ -16,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
 #include "io/bytes/zip.h"
 #include "tests/support/fixtures.h"
@@ -36,7 +39,15 @@ class Meeting {
               const std::vector<std::string> all = meet(self, own);
               return self == 0 ? all : std::vector<std::string>();
             },
-            [this, self](const std::string& of_first) { return meet(self, of_first).front(); }};
+            [this, self](const std::string& of_first) { return meet(self, of_first).front(); },
+            [this, self](std::span<double> numbers) {
+              const std::string own(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes());
+              for (const std::string& text : meet(self, own)) {
+                std::vector<double> others(numbers.size());
+                std::memcpy(others.data(), text.data(), text.size());
+                for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = std::max(numbers[i], others[i]);
+              }
+            }};
   }
 
  private:
@@ -194,6 +205,65 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
                                     {"-", SampleFormat::kNpy, false, {1, 2}, &peers});
   ASSERT_FALSE(stream.ok());
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
+}
+
+// A sheet whose first half moves in the first segment alone and gets large there, and its second half in the last.
+Motion moving_by_turns() {
+  Motion motion = fixtures::smooth_morph(6);
+  motion.keyframes.resize(1);
+  const std::vector<float> base = motion.keyframes[0].positions;
+  for (std::size_t k = 1; k < 6; ++k) {
+    Motion::Keyframe keyframe{k == 1 ? base : motion.keyframes.back().positions, static_cast<double>(k), ""};
+    const std::size_t half = base.size() / 6 * 3;
+    if (k == 1)
+      for (std::size_t i = 0; i < half; ++i) keyframe.positions[i] *= 1000 + static_cast<float>(i % 7);
+    if (k == 2) keyframe.positions = base;
+    if (k == 5)
+      for (std::size_t i = half; i + 9 < base.size(); ++i)
+        keyframe.positions[i] *= 0x1p-40F * static_cast<float>(i % 5);
+    motion.keyframes.push_back(std::move(keyframe));
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
+  const Motion motion = moving_by_turns();
+  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {  // in blocks, and not
+    AuditOptions options;
+    options.rule = rule;
+    options.samples = 5;
+    options.weld = false;
+    const std::string whole = audit_json("m", audit(motion, {}, options).value(), 1);
+    for (const std::size_t count : {1U, 2U, 3U, 5U, 8U}) {
+      Meeting meeting(count);
+      std::vector<Part> parts(count);
+      std::vector<std::vector<bool>> was_read(count, std::vector<bool>(motion.keyframes.size()));
+      std::vector<std::thread> threads;
+      for (std::size_t i = 0; i < count; ++i) {
+        threads.emplace_back([&, i] {
+          const Peers peers = meeting.peers(i);
+          AuditOptions own = options;
+          own.shard = Shard{i, count};
+          own.peers = &peers;
+          Motion outline = motion;
+          for (Motion::Keyframe& keyframe : outline.keyframes) keyframe.positions.clear();
+          const auto read = [&](const Motion&, std::size_t keyframe, std::span<float> positions) {
+            was_read[i][keyframe] = true;
+            const std::vector<float>& all = motion.keyframes[keyframe].positions;
+            std::copy(all.begin(), all.end(), positions.begin());
+            return Status(Success{});
+          };
+          MotionStream stream(std::move(outline), read, 0);
+          parts[i] = {"part", audit_part("m", audit(stream, {}, own).value(), 1)};
+        });
+      }
+      for (std::thread& thread : threads) thread.join();
+      EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
+      // The last shard reads the first keyframe, and else those of its own segments alone.
+      EXPECT_EQ(was_read.back()[2], count < 3) << count;
+    }
+  }
 }
 
 TEST(Zip, joined_checksums_are_those_of_the_whole) {
