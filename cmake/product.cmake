@@ -46,6 +46,44 @@ set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/js
 # What the parser of the command line makes of options compiles four times as fast when it is not optimised.
 set_source_files_properties(cli/options/options.cpp PROPERTIES COMPILE_OPTIONS -O0)
 
+# chronormal_compile_together(TARGET SOURCES...): where CHRONORMAL_UNITY asks for it, up to eight files of a folder are one
+# to the compiler, which reads their headers and makes their templates once. Files of different folders are never
+# together, so that what a file calls its own things concerns its folder alone. Kernels, which are compiled once for every
+# instruction set, and files with options of their own stay by themselves.
+function(chronormal_compile_together target)
+  if(NOT CHRONORMAL_UNITY)
+    return()
+  endif()
+  set(folders "")
+  foreach(source ${ARGN})
+    get_filename_component(folder ${source} DIRECTORY)
+    list(APPEND folders ${folder})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder ${folders})
+    set(sources ${ARGN})
+    list(FILTER sources INCLUDE REGEX "^${folder}/[^/]+$")
+    list(LENGTH sources count)
+    math(EXPR groups "(${count} + 7) / 8")
+    math(EXPR size "(${count} + ${groups} - 1) / ${groups}")
+    set(i 0)
+    foreach(source ${sources})
+      math(EXPR group "${i} / ${size}")
+      math(EXPR i "${i} + 1")
+      file(STRINGS ${source} targets REGEX "hwy/foreach_target.h")
+      if(targets)
+        set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+      else()
+        string(REGEX REPLACE "[^a-z0-9]" "_" name "${folder}")
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${name}_${group}")
+      endif()
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # GCC takes such a group for the file of another, and wonders what is private to the .cpp files in it.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
 # A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
 set(linkable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
@@ -57,6 +95,7 @@ function(chronormal_add_product suffix flags)
                                                         $<INSTALL_INTERFACE:include> PRIVATE src)
   target_compile_features(chronormal${suffix} PUBLIC cxx_std_20)
   set_target_properties(chronormal${suffix} PROPERTIES ${linkable})
+  chronormal_compile_together(chronormal${suffix} ${library_sources})
   target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}> hwy::hwy)
   # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
   # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
@@ -77,6 +116,7 @@ function(chronormal_add_product suffix flags)
   endif()
   add_library(chronormal_io${suffix} STATIC ${io_sources})
   set_target_properties(chronormal_io${suffix} PROPERTIES ${linkable})
+  chronormal_compile_together(chronormal_io${suffix} ${io_sources})
   target_include_directories(chronormal_io${suffix} PRIVATE src)
   target_link_libraries(chronormal_io${suffix} PUBLIC chronormal${suffix}
                                                PRIVATE $<BUILD_INTERFACE:${flags}> ZLIB::ZLIB pugixml::pugixml
@@ -88,6 +128,7 @@ function(chronormal_add_product suffix flags)
   endif()
   add_executable(chronormal_cli${suffix} ${cli_sources})
   set_target_properties(chronormal_cli${suffix} PROPERTIES OUTPUT_NAME chronormal${suffix})
+  chronormal_compile_together(chronormal_cli${suffix} ${cli_sources})
   target_include_directories(chronormal_cli${suffix} PRIVATE . src)
   target_compile_definitions(chronormal_cli${suffix} PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt

@@ -24,7 +24,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct AuditArguments {
   InputOptions input;
   CommonOptions common;
   std::string rule;  // empty: what is usual for the input
@@ -66,7 +66,7 @@ Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
   return audit(*motion.value(), *normals.value(), how);
 }
 
-Result<Audited> audit_input(const Options& options, const AuditOptions& how, Progress& progress) {
+Result<Audited> audit_input(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
@@ -87,7 +87,7 @@ Result<Audited> audit_input(const Options& options, const AuditOptions& how, Pro
                  can_be_baked ? words_of(options.input) : ""};
 }
 
-Result<AuditOptions> understand(const Options& options, Progress& progress) {
+Result<AuditOptions> understand(const AuditArguments& options, Progress& progress) {
   AuditOptions how;
   if (!options.rule.empty()) {
     const Result<AuditRule> rule = make_audit_rule(options.rule);
@@ -153,7 +153,7 @@ bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   return false;
 }
 
-Result<int> run_one(const Options& options, const AuditOptions& how, Progress& progress) {
+Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
   Result<Audited> audited = audit_input(options, how, progress);
   progress.clear();
   if (!audited) return audited.error();
@@ -186,7 +186,7 @@ int worse_exit(int a, int b) {
 }
 
 // Judges files one by one. One that cannot be read does not keep the others from being judged.
-Result<int> run_several(const Options& options, const AuditOptions& how, const std::vector<std::string>& names,
+Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
   if (!options.input.animation.empty())
     return misuse("--animation", "it chooses among the animations of one file: name one file");
@@ -194,7 +194,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {
-    Options one = options;
+    AuditArguments one = options;
     one.input.files = {name};
     const Result<Audited> audited = audit_input(one, how, progress);
     progress.clear();
@@ -215,7 +215,7 @@ Result<int> run_several(const Options& options, const AuditOptions& how, const s
   return exit;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const AuditArguments& options) {
   if (const Status divisible = check_ranks(options.shard.text ? "--shard"
                                            : options.errors   ? "--errors"
                                                               : "");
@@ -238,7 +238,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command audit_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AuditArguments>();
   const std::vector<RefusedOption> refused = {
       {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
   return {

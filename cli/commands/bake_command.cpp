@@ -23,7 +23,7 @@ namespace {
 // An audit looks at every target: files beyond this would wait for a line of the report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
-struct Options {
+struct BakeArguments {
   InputOptions input;
   CommonOptions common;
   std::string encode;     // empty: by what drives the weights
@@ -48,7 +48,7 @@ std::string host_names() {
   return names;
 }
 
-Result<BakeOptions> understand(const Options& options) {
+Result<BakeOptions> understand(const BakeArguments& options) {
   BakeOptions how;
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
@@ -103,7 +103,7 @@ Result<BakeOptions> understand(const Options& options) {
 }
 
 // Whether some mesh has no form within what was asked for.
-bool is_beyond(const Options& options, const GltfBake& bake) {
+bool is_beyond(const BakeArguments& options, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
     return std::any_of(mesh.choices.begin(), mesh.choices.end(),
@@ -112,7 +112,7 @@ bool is_beyond(const Options& options, const GltfBake& bake) {
 }
 
 // Where the report goes: beside the result, or out of its way.
-Result<int> report(const Options& options, const std::string& text, const std::string& json) {
+Result<int> report(const BakeArguments& options, const std::string& text, const std::string& json) {
   const bool is_aside = is_stream(options.common.output) && !options.json;
   if (is_aside && !options.common.quiet) say_text(text);
   if (is_aside) return kExitDone;
@@ -133,7 +133,7 @@ void warn_if_worse(const BakeReport& report) {
 // was, and may show what was there before: the input is looked at as often before the result is called worse. The result is
 // empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be read.
 template <class AuditBefore>
-Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const Options& options,
+Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
@@ -155,7 +155,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const O
   return result;
 }
 
-Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input, Progress& progress) {
+Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
   if (options.input.frames_per_second != 1)
@@ -209,7 +209,7 @@ Result<int> run_gltf(const Options& options, BakeOptions how, const Input& input
   return code;
 }
 
-Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, Progress& progress) {
+Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   constexpr const char* kNotOfSequences = "it is for glTF files, which have targets of their own";
   if (options.most_targets) return misuse("--max-targets", kNotOfSequences);
@@ -280,7 +280,7 @@ Result<int> run_sequence(const Options& options, BakeOptions how, Input& input, 
 }
 
 // Without -o the last of several files is where to write, where it can be: IN OUT.
-Status take_output(Options& options) {
+Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {
     options.common.output = *options.output;
@@ -295,7 +295,7 @@ Status take_output(Options& options) {
   return Success{};
 }
 
-Result<int> run(Options options) {
+Result<int> run(BakeArguments options) {
   if (const Status status = take_output(options); !status) return status.error();
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
@@ -328,7 +328,7 @@ std::vector<Option> with_output(std::vector<Option> table, std::optional<std::st
 }  // namespace
 
 Command bake_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BakeArguments>();
   const std::vector<RefusedOption> refused = {
       {"--base",
        "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},

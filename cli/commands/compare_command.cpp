@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 1000000;
 
-struct Options {
+struct CompareArguments {
   InputOptions input;
   CommonOptions common;
   std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
@@ -57,12 +57,12 @@ std::vector<std::string> split_at_commas(const std::string& list) {
   }
 }
 
-std::vector<std::string> scheme_names(const Options& options) {
+std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
 // An option that was given, and has no meaning with --blend.
-std::string option_of_schemes(const Options& options) {
+std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
@@ -74,7 +74,7 @@ std::string option_of_schemes(const Options& options) {
   return options.each ? "--each" : "";
 }
 
-std::string footer() {
+std::string compare_footer() {
   std::string text = "Schemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
     text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
@@ -91,7 +91,7 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
-Result<Comparison> compare_one(Input& input, const Options& options, Progress& progress) {
+Result<Comparison> compare_one(Input& input, const CompareArguments& options, Progress& progress) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
@@ -112,7 +112,7 @@ Result<Comparison> compare_one(Input& input, const Options& options, Progress& p
 }
 
 // An option that was given, and has no meaning where several ranks divide one motion.
-std::string option_of_one_process(const Options& options) {
+std::string option_of_one_process(const CompareArguments& options) {
   if (options.shard.text) return "--shard";
   if (options.errors) return "--errors";
   if (options.blend.rows) return "--blend";
@@ -121,7 +121,7 @@ std::string option_of_one_process(const Options& options) {
 }
 
 // One motion at a time is in memory.
-Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Progress& progress) {
+Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress) {
   std::vector<InputOptions> inputs;
   if (options.each) {
     InputOptions one = options.input;
@@ -164,7 +164,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const Options& options, Prog
   return comparisons;
 }
 
-Result<int> run_blend(const Options& options) {
+Result<int> run_blend(const CompareArguments& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
     return misuse(option, "it is about schemes, and does not go with --blend");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
@@ -180,7 +180,7 @@ Result<int> run_blend(const Options& options) {
 }
 
 // An option that was given, and has no meaning with --truth.
-std::string option_of_samples(const Options& options) {
+std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
   if (options.certify) return "--certify";
@@ -191,7 +191,7 @@ std::string option_of_samples(const Options& options) {
   return options.each ? "--each" : "";
 }
 
-Result<int> run_truth(const Options& options) {
+Result<int> run_truth(const CompareArguments& options) {
   if (const std::string option = option_of_samples(options); !option.empty())
     return misuse(option, "it does not go with --truth, which compares at the keyframes that are left out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
@@ -207,7 +207,7 @@ Result<int> run_truth(const Options& options) {
   return kExitDone;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const CompareArguments& options) {
   if (const Status divisible = check_ranks(option_of_one_process(options)); !divisible) return divisible.error();
   if (options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
@@ -291,7 +291,7 @@ Command compare_command() {
   const auto check_access = [](const std::string& value) {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   return {
       "compare",
       "Compare ways to interpolate normals with the exact normals, on your mesh",
@@ -323,7 +323,7 @@ Command compare_command() {
         {"--csv", &options->csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
         {"--no-times", &options->no_times, "leave out measured times: the same output on every run"}},
        options->common.table(false)},
-      footer(),
+      compare_footer(),
       [options] { return run(*options); },
       {},
       true};

@@ -10,12 +10,12 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct ConvertArguments {
   InputOptions input;
   CommonOptions common;
 };
 
-std::string footer() {
+std::string convert_footer() {
   std::string text =
       "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
       "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
@@ -33,7 +33,7 @@ std::string footer() {
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const ConvertArguments& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
@@ -51,11 +51,11 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command convert_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   return {"convert",
           "Write a motion, or a built-in morph, in another format",
           {input_table(options->input), options->common.table(true)},
-          footer(),
+          convert_footer(),
           [options] { return run(*options); }};
 }
 

@@ -11,7 +11,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct InspectArguments {
   InputOptions input;
   CommonOptions common;
   bool json = false;
@@ -29,7 +29,7 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
   return result;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const InspectArguments& options) {
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto inspected = open_and_inspect(options.input, progress);
@@ -43,7 +43,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command inspect_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InspectArguments>();
   return {"inspect",
           "List what a file contains and what may cause wrong normals",
           {input_table(options->input),

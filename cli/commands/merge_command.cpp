@@ -14,12 +14,12 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct MergeArguments {
   std::vector<std::string> parts;
   CommonOptions common;
 };
 
-Result<int> run(const Options& options) {
+Result<int> run(const MergeArguments& options) {
   const auto is_array = [](std::string_view path) { return path.ends_with(".npy"); };
   if (options.parts.empty()) return misuse("", "there is nothing to merge: name the parts");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
@@ -46,7 +46,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command merge_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeArguments>();
   return {"merge",
           "Put the shards of a comparison, an audit or of samples together",
           {{{"PART", &options->parts,

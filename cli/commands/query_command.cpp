@@ -19,7 +19,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct QueryArguments {
   InputOptions input;
   CommonOptions common;
   std::string question;
@@ -46,7 +46,7 @@ bool was_given(const Option& option) {
       option.target);
 }
 
-Result<Question> find_question(const Options& options) {
+Result<Question> find_question(const QueryArguments& options) {
   const auto& questions = options.questions;
   std::string names;
   for (const Question& question : questions) names += (names.empty() ? "" : ", ") + question.name;
@@ -63,7 +63,7 @@ Result<Question> find_question(const Options& options) {
   return *found;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const QueryArguments& options) {
   const Result<Question> question = find_question(options);
   if (!question) return question.error();
   const Result<Ask> ask = question.value().understand();
@@ -112,7 +112,7 @@ std::string footer(const std::vector<Question>& questions) {
 }  // namespace
 
 Command query_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<QueryArguments>();
   // A question takes an interval of time here, and not a range of keyframes.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
   input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});

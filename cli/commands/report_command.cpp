@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportArguments {
   InputOptions input;
   CommonOptions common;
   JudgeArguments judge;
@@ -29,7 +29,7 @@ struct Options {
   bool json = false;
 };
 
-bool is_container(const Options& options) { return lower_extension(options.common.output) == ".bin"; }
+bool is_container(const ReportArguments& options) { return lower_extension(options.common.output) == ".bin"; }
 
 // The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not say
 // where that is.
@@ -41,7 +41,7 @@ std::optional<std::string> usual_template() {
 }
 
 // The template of the page. It is read before anything is computed, so that nothing is in vain.
-Result<std::string> read_template(const Options& options) {
+Result<std::string> read_template(const ReportArguments& options) {
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();
   std::error_code failed;
   if (!options.page_template && (!path || !fs::exists(*path, failed)))
@@ -55,7 +55,7 @@ Result<std::string> read_template(const Options& options) {
   return std::string(file.value().bytes());
 }
 
-Result<ReportOptions> understand(const Options& options, Progress& progress) {
+Result<ReportOptions> understand(const ReportArguments& options, Progress& progress) {
   ReportOptions how;
   if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -71,7 +71,7 @@ Result<ReportOptions> understand(const Options& options, Progress& progress) {
   return how;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const ReportArguments& options) {
   Progress progress(options.common.quiet);
   Result<ReportOptions> how = understand(options, progress);
   if (!how) return how.error();
@@ -109,7 +109,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command report_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportArguments>();
   const std::vector<RefusedOption> refused = {
       {"--world", "report shows each mesh in its own space, since nodes turn the shown and the right normal alike"}};
   return {

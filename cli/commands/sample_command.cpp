@@ -14,7 +14,7 @@
 namespace chronormal::cli {
 namespace {
 
-struct Options {
+struct SampleArguments {
   InputOptions input;
   CommonOptions common;
   MomentArguments moments;
@@ -27,7 +27,7 @@ struct Options {
   ShardArgument shard;
 };
 
-std::string footer() {
+std::string sample_footer() {
   std::string text = "Weightings:\n";
   for (const WeightingInfo& weighting : kWeightings)
     text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
@@ -52,7 +52,7 @@ struct Request {
   SampleOutput output;
 };
 
-Result<SampleOptions> sample_options(const Options& options) {
+Result<SampleOptions> sample_options(const SampleArguments& options) {
   Result<ElementOptions> elements = options.elements.options();
   if (!elements) return elements.error();
   const ElementKind kind = elements.value().kind;
@@ -79,7 +79,7 @@ Result<SampleOptions> sample_options(const Options& options) {
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, path.value()};
 }
 
-Result<SampleFormat> format_of(const Options& options) {
+Result<SampleFormat> format_of(const SampleArguments& options) {
   if (!options.format.empty()) {
     auto format = make_sample_format(options.format);
     if (!format) return misuse("--format", format.error().message);
@@ -90,7 +90,7 @@ Result<SampleFormat> format_of(const Options& options) {
   return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
 }
 
-Result<Request> understand(const Options& options) {
+Result<Request> understand(const SampleArguments& options) {
   Result<SampleOptions> sample = sample_options(options);
   if (!sample) return sample.error();
   const Result<SampleFormat> format = format_of(options);
@@ -147,7 +147,7 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
         Tone::kWarning);
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(const SampleArguments& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
   Request& request = understood.value();
@@ -189,7 +189,7 @@ Result<int> run(const Options& options) {
 }  // namespace
 
 Command sample_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SampleArguments>();
   return {
       "sample",
       "Write the normals of a motion at chosen times, or of targets at chosen weights",
@@ -208,7 +208,7 @@ Command sample_command() {
         options->shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
                               ".obj with the numbers that they have among all")},
        options->common.table(true)},
-      footer(),
+      sample_footer(),
       [options] { return run(*options); },
       {},
       true};

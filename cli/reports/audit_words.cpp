@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -10,8 +11,6 @@
 
 namespace chronormal::cli {
 namespace {
-
-constexpr std::size_t kLongestName = 32;
 
 std::string named(std::string what, const std::string& name) {
   return name.empty() ? what : what.append(" (").append(printable(name, kLongestName)).append(")");

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "chronormal/normals/weighting.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -12,8 +13,6 @@
 
 namespace chronormal::cli {
 namespace {
-
-constexpr std::size_t kLongestName = 32;
 
 std::string headline(const BakeReport& report) {
   return formatted("{} -> {}\n", heading(printable(report.input)), heading(printable(report.output)));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/reports/compare_report.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -15,8 +16,6 @@ namespace {
 using Align = Table::Align;
 
 constexpr std::size_t kShownTargets = 3, kShownName = 24;
-
-double degrees(double radians) { return radians * kDegreesPerRadian; }
 
 bool is_several_primitives(const BlendSubject& subject) {
   for (const BlendErrors& errors : subject.errors)
@@ -83,8 +82,8 @@ std::string table_of(const BlendSubject& subject) {
     for (const BlendError& error : errors.deltas) {
       const Quality& q = error.quality;
       std::vector<std::string> cells = {&error == &errors.deltas.front() ? grouped(errors.active) : "",
-                                        std::string(name_of(error.deltas)), four_decimals(degrees(q.mean())),
-                                        four_decimals(degrees(q.rms())), four_decimals(degrees(q.max))};
+                                        std::string(name_of(error.deltas)), four_decimals(in_degrees(q.mean())),
+                                        four_decimals(in_degrees(q.rms())), four_decimals(in_degrees(q.max))};
       if (several) cells.push_back(q.max > 0 ? grouped(error.worst_primitive.value_or(0)) : "-");
       cells.push_back(q.max > 0 ? grouped(error.worst_output) : "-");
       cells.push_back(targets_cell(subject, error));
@@ -148,8 +147,8 @@ std::string blend_csv(const NamedBlendComparison& input) {
         text += formatted(
             "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name),
             subject.mesh ? formatted("{}", *subject.mesh) : "", subject.vertices, subject.faces, subject.targets.size(),
-            element_kind_name(subject.kind), errors.active, errors.rows, name_of(error.deltas), degrees(q.mean()),
-            degrees(q.rms()), degrees(q.max), q.max > 0 ? formatted("{}", q.max_at.segment) : "",
+            element_kind_name(subject.kind), errors.active, errors.rows, name_of(error.deltas), in_degrees(q.mean()),
+            in_degrees(q.rms()), in_degrees(q.max), q.max > 0 ? formatted("{}", q.max_at.segment) : "",
             error.worst_primitive ? formatted("{}", *error.worst_primitive) : "",
             q.max > 0 ? formatted("{}", error.worst_output) : "", csv_field(targets), q.count, q.degenerate, q.missing);
       }

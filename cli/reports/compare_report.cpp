@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/options/command.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -13,8 +14,6 @@ namespace chronormal::cli {
 namespace {
 
 using Align = Table::Align;
-
-double degrees(double radians) { return radians * kDegreesPerRadian; }
 
 bool is_of_targets(const Comparison& comparison) { return comparison.motion == MotionKind::kTargets; }
 
@@ -77,7 +76,7 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
   if (comparison.tolerance && comparison.cheapest) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
     text += formatted("{}cheapest within {:g} degrees at every time: {}, at most {}\n", prefix, *comparison.tolerance,
-                      row.scheme, rounded_up(degrees(row.certified->upper)));
+                      row.scheme, rounded_up(in_degrees(row.certified->upper)));
   } else if (comparison.tolerance) {
     text += formatted("{}none of them is within {:g} degrees at every time\n", prefix, *comparison.tolerance);
   }
@@ -134,17 +133,17 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
   for (const SchemeComparison& row : input.comparison.schemes) {
     const Quality& q = row.quality;
     std::vector<std::string> cells = {row.scheme,
-                                      grouped_sum(degrees(q.sum)),
+                                      grouped_sum(in_degrees(q.sum)),
                                       ratio_cell(row.relative_to_linear),
-                                      four_decimals(degrees(q.mean())),
-                                      four_decimals(degrees(q.rms())),
-                                      four_decimals(degrees(q.max))};
+                                      four_decimals(in_degrees(q.mean())),
+                                      four_decimals(in_degrees(q.rms())),
+                                      four_decimals(in_degrees(q.max))};
     if (several_segments) cells.push_back(q.max > 0 ? segment_cell(input, q.max_at.segment) : "-");
     cells.push_back(q.max > 0 ? grouped(q.max_at.element) : "-");
     cells.push_back(q.max > 0 ? formatted("{:.2f}", q.max_at.t) : "-");
     if (certified) {
-      cells.push_back(rounded_down(degrees(row.certified->lower)));
-      cells.push_back(rounded_up(degrees(row.certified->upper)));
+      cells.push_back(rounded_down(in_degrees(row.certified->lower)));
+      cells.push_back(rounded_up(in_degrees(row.certified->upper)));
     }
     cells.push_back(formatted("{:.0f}", row.bytes));
     if (with_times) {
@@ -172,9 +171,9 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
     std::vector<std::string> cells = {inputs.front().comparison.schemes[r].scheme};
     for (const NamedComparison& input : inputs) {
       const SchemeComparison& row = input.comparison.schemes[r];
-      cells.push_back(grouped_sum(degrees(row.quality.sum)));
+      cells.push_back(grouped_sum(in_degrees(row.quality.sum)));
       cells.push_back(ratio_cell(row.relative_to_linear));
-      if (row.certified) cells.push_back(rounded_up(degrees(row.certified->upper)));
+      if (row.certified) cells.push_back(rounded_up(in_degrees(row.certified->upper)));
     }
     table.add_row(std::move(cells));
   }
@@ -204,17 +203,17 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
       const Quality& q = row.quality;
       text += formatted("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csv_field(input.name), c.vertices,
                         c.faces, c.segments, element_kind_name(c.kind), c.samples, csv_field(row.scheme),
-                        degrees(q.sum), row.relative_to_linear ? formatted("{}", *row.relative_to_linear) : "",
-                        degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
-                        q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
+                        in_degrees(q.sum), row.relative_to_linear ? formatted("{}", *row.relative_to_linear) : "",
+                        in_degrees(q.mean()), in_degrees(q.rms()), in_degrees(q.max), q.max_at.segment,
+                        q.max_at.element, q.max_at.t, q.degenerate, q.missing, row.fallbacks, row.flagged);
       if (with_times) text += formatted("{},{},", row.prepare_ns, row.evaluate_ns);
       const OperationCounts& o = row.operations;
       text += formatted("{},{},{},{},{},{},{}", row.bytes, access_name(row), o.add, o.multiply, o.divide, o.sqrt,
                         o.trigonometric);
       if (row.certified) {
         const CertifiedError& e = *row.certified;
-        text += formatted(",{},{},{},{},{},{},{}", degrees(e.lower), degrees(e.upper), e.segment, e.element, e.from,
-                          e.to, e.unbounded);
+        text += formatted(",{},{},{},{},{},{},{}", in_degrees(e.lower), in_degrees(e.upper), e.segment, e.element,
+                          e.from, e.to, e.unbounded);
       }
       if (is_curved) text += formatted(",{},{}", path_name(c.path), c.bend);
       text += '\n';

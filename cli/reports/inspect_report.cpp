@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -17,7 +18,6 @@ namespace {
 
 using Align = Table::Align;
 
-constexpr std::size_t kMostRows = 16;
 constexpr std::size_t kLongestCell = 32;
 
 // Faces that are carried along turn by the rounding of their positions.

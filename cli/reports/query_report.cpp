@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -11,8 +12,6 @@
 
 namespace chronormal::cli {
 namespace {
-
-constexpr std::size_t kMostRows = 16;
 
 template <class T>
 std::string cell_of(T value) {

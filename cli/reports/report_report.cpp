@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/reports/audit_words.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -13,7 +14,7 @@ namespace {
 
 using Align = Table::Align;
 
-constexpr std::size_t kLongestName = 32, kMostPlaces = 5;
+constexpr std::size_t kMostPlaces = 5;
 
 std::string parts_table(const Report& report) {
   Table table;

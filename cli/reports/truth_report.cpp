@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/reports/compare_report.h"
+#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
@@ -13,15 +14,13 @@ namespace {
 
 using Align = Table::Align;
 
-double degrees(double radians) { return radians * kDegreesPerRadian; }
-
 const TruthRow* find_row(const TruthComparison& comparison, const std::string& path, const std::string& scheme) {
   const auto found = std::find_if(comparison.rows.begin(), comparison.rows.end(),
                                   [&](const TruthRow& row) { return row.path == path && row.scheme == scheme; });
   return found == comparison.rows.end() ? nullptr : &*found;
 }
 
-std::string mean_of(const TruthRow& row) { return four_decimals(degrees(row.quality.mean())); }
+std::string mean_of(const TruthRow& row) { return four_decimals(in_degrees(row.quality.mean())); }
 
 // Returns sentences that tell a reader what the figures mean.
 std::string remarks(const TruthComparison& c) {
@@ -71,9 +70,9 @@ std::string truth_table(const NamedTruthComparison& input) {
   for (const TruthRow& row : c.rows) {
     const Quality& q = row.quality;
     const bool has_worst = q.max > 0;
-    table.add_row({row.path, row.scheme, mean_of(row), four_decimals(degrees(q.rms())), four_decimals(degrees(q.max)),
-                   has_worst ? grouped(q.max_at.segment) : "-", has_worst ? grouped(q.max_at.element) : "-",
-                   has_worst ? formatted("{:.2f}", q.max_at.t) : "-"});
+    table.add_row({row.path, row.scheme, mean_of(row), four_decimals(in_degrees(q.rms())),
+                   four_decimals(in_degrees(q.max)), has_worst ? grouped(q.max_at.segment) : "-",
+                   has_worst ? grouped(q.max_at.element) : "-", has_worst ? formatted("{:.2f}", q.max_at.t) : "-"});
   }
   return text + '\n' + table.text() + remarks(c);
 }
@@ -87,7 +86,7 @@ std::string truth_csv(const NamedTruthComparison& input) {
     const Quality& q = row.quality;
     text += formatted("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(input.name), c.vertices,
                       c.faces, element_kind_name(c.kind), c.kept, c.left_out, c.bend, row.path, csv_field(row.scheme),
-                      degrees(q.mean()), degrees(q.rms()), degrees(q.max), q.max_at.segment, q.max_at.element,
+                      in_degrees(q.mean()), in_degrees(q.rms()), in_degrees(q.max), q.max_at.segment, q.max_at.element,
                       q.max_at.t, q.degenerate, q.missing);
   }
   return text;

@@ -33,6 +33,12 @@ class SmallSet {
   std::array<std::uint32_t, 2 * kMost> slots_;
 };
 
+/// Positions that fit here may be read in any order: a cache near the core holds them.
+inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
+
+/// Up to this many lines per face, caches and their prefetchers keep up by themselves.
+inline constexpr double kMostLinesPerFace = 1;
+
 /// How many cache lines of packed positions a face brings in that the faces just before it did not: about 0.2 on a mesh
 /// in grid order, 3 where vertices lie in no order. A pure function of the topology; less than 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {

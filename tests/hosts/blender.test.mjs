@@ -86,8 +86,8 @@ async function checkRoundTrip(context, original) {
     const text = ({ mean_degrees: mean, worst_degrees: worst }) => `${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: exported by Blender ${text(audited(again))}, baked first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
-    // Blender writes weights at every frame, and normals with a few decimals.
-    assert.ok(second.mean_degrees <= first.mean_degrees + 0.1, outcome);
+    // Blender writes weights at every frame, and normals with a few decimals, which it made from all faces of a vertex.
+    assert.ok(second.mean_degrees <= 1.1 * first.mean_degrees + 0.01, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);
   }

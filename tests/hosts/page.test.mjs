@@ -191,6 +191,7 @@ test('a task can be cancelled, and the page goes on', async () => {
   await page.waitForSelector('.busy:not([hidden]) button', WAIT);
   await press('.busy button');
   await page.waitForSelector('.busy[hidden]', WAIT);
+  assert.doesNotMatch(await page.$eval('#report', (report) => report.dataset.ready), /baked$/, 'the bake went on');
   await drop(path('bumps.glb'));
   assert.equal(await said(), '');
 });

@@ -48,7 +48,7 @@ template <class S>
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 
-/// The larger of two numbers, and the number of a number and NaN: std::fmax, which is a call, in two instructions.
+/// The larger of two numbers; of a number and NaN, the number. This is std::fmax in two instructions instead of a call.
 [[nodiscard]] inline double maximum_number(double a, double b) noexcept {
   const double larger = b > a ? b : a;  // a where one is NaN
   if (larger == larger) [[likely]]

@@ -76,9 +76,9 @@ struct Motion {
 };
 
 /// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
-/// granted: at least one face and one segment, every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none, a body for each
-/// vertex or none, segments between keyframes that exist, finite times that ascend along every segment, and segments as
-/// the kind of the motion has them. (A Topology checks its own indices when it is built.)
+/// granted: at least one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many
+/// velocities or none; a body for each vertex or none; segments between keyframes that exist; finite times that ascend
+/// along every segment; and segments as the kind of the motion has them. (A Topology checks its own indices.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 
@@ -89,7 +89,7 @@ struct Instant {
 };
 
 /// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
-/// later one, and the end of the motion that of the last one. The motion must be valid, or stand still. O(segments).
+/// later one, and the end of the motion is the end of the last one. The motion must be valid, or stand still. O(segments).
 /// Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that stands still.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 

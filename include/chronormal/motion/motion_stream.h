@@ -1,17 +1,17 @@
-/// A motion that is longer than memory: its keyframes are read when they are needed, and given back.
+/// A motion that is larger than memory: its keyframes are read when they are needed, and released after that.
 ///
-///     MotionStream stream = ...;                      // of a file (Input::stream() in io/input.h), or of a whole motion
+///     MotionStream stream = ...;                      // from Input::stream() in io/input.h, or from a whole motion
 ///     for (std::size_t s = 0; s < stream.motion().segments.size(); ++s) {
 ///       if (const Status status = stream.hold_segment(s); !status) return status.error();
 ///       const Segment segment = stream.motion().segment(s);      // good until the next hold
 ///     }
 ///
-/// motion() is the whole motion but for the positions of keyframes that are not held: faces, segments, times and names
-/// are always there. So what takes a Motion takes the motion of a stream, once it holds what is looked at. Where keyframes
-/// are held one after the other, the next one is read ahead in a thread of its own.
+/// motion() is the whole motion except for the positions of keyframes that are not held: faces, segments, times and names
+/// are always there. So a function that takes a Motion takes the motion of a stream too, once the stream holds what the
+/// function looks at. Where keyframes are held one after the other, a thread of its own reads the next one ahead.
 ///
-/// Memory     the keyframes that are held, and one that is read ahead; all of them where they take no more than `kept`
-///            bytes together, for these are read once and stay. Nothing of a motion that was whole before.
+/// Memory     the keyframes that are held, and one that is read ahead. Keyframes that take no more than `kept` bytes
+///            together are read once and stay. A motion that was whole before takes nothing more.
 /// Threads    one stream belongs to one thread at a time; what is held may be read by many.
 #ifndef CHRONORMAL_MOTION_MOTION_STREAM_H_
 #define CHRONORMAL_MOTION_MOTION_STREAM_H_
@@ -34,11 +34,11 @@ class MotionStream {
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
-  /// A motion that is in memory and stays there; it must outlive the stream, and may stand still.
+  /// A motion that is in memory and stays there; it must outlive the stream, and it may stand still.
   explicit MotionStream(const Motion& whole);
 
-  /// A motion whose keyframes have no positions yet, but that the first one may.
-  /// outline must be valid otherwise (motion/motion.h)
+  /// A motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline must be
+  /// valid (motion/motion.h).
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;

@@ -14,11 +14,11 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kRefinements = 10;
+constexpr std::size_t kAxisRefinements = 10;
 constexpr double kWidest = 0.995;         // the sine of 84 degrees: beyond it the test would hardly ever reject
 constexpr double kTestSlack = 0x1p-20;    // for the test in float32: some ten roundings of 2^-24
 constexpr double kRoundUp = 1 + 0x1p-22;  // to float, and what was rounded before that
-constexpr double kRounding = 0x1p-46;     // of sums of products in double
+constexpr double kSumRounding = 0x1p-46;  // of sums of products in double
 constexpr double kSteps = 127;            // of a component in 8 bits
 
 // Where a vertex is at both ends of the interval, and how far that is rounded.
@@ -53,7 +53,7 @@ class Cluster {
       error = std::fmax(error, p.error);
     }
     Vec3d center = points.front();
-    for (std::size_t i = 0; i < kRefinements; ++i)
+    for (std::size_t i = 0; i < kAxisRefinements; ++i)
       center = center + (1 / static_cast<double>(i + 2)) * (farthest_from(center, points) - center);
     const Vec3f rounded = to_float(center);
     set(bounds.center, rounded);
@@ -88,7 +88,7 @@ class Cluster {
       const std::array<double, 4> along = cubic(a0, a1, a2, a0, a1, a2), size = cubic(s0, s1, s2, s0, s1, s2);
       for (std::size_t k = 0; k < size.size(); ++k) {
         if (size[k] == 0) continue;
-        const double error = 2 * (unknown + kRounding) * size[k];
+        const double error = 2 * (unknown + kSumRounding) * size[k];
         if (!(along[k] > 2 * error)) return std::nullopt;
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }

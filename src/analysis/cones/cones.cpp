@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBlock = 256;  // control normals of a block are 18 KiB
 constexpr std::size_t kRefinements = 10;
-constexpr double kRounding = 0x1p-46;  // of the sine of a sum of angles
+constexpr double kSineRounding = 0x1p-46;  // of the sine of a sum of angles
 
 bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
@@ -146,7 +146,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
   // The cone must hold around the axis as it is rounded.
   const Vec3f rounded = to_float(best);
   const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
-  const double sine = far.sine + kRounding;
+  const double sine = far.sine + kSineRounding;
   if (is_zero(best) || far.nearness() <= 0 || !(sine <= 1)) return NormalCone::whole_sphere();
   return {rounded, static_cast<float>(std::fmin(sine * (1 + 0x1p-23), 1.0))};
 }

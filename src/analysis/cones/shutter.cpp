@@ -24,9 +24,9 @@ namespace {
 
 constexpr double kRadius = 2.125;
 constexpr double kGaussError = 32.0 / 15 * 0x1p-32 / (1 - 0x1p-4);
-constexpr double kNearness = 0.5;      // of q to q(0), at which a piece is small enough
-constexpr int kDeepest = 28;           // halvings
-constexpr double kRounding = 0x1p-47;  // of n(t) against its control normals, and of sums of unit vectors
+constexpr double kNearness = 0.5;           // of q to q(0), at which a piece is small enough
+constexpr int kDeepest = 28;                // halvings
+constexpr double kCurveRounding = 0x1p-47;  // of n(t) against its control normals, and of sums of unit vectors
 
 constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
                                        0.96028985649753623};
@@ -78,9 +78,9 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
     const double bound = (a + kRadius * (length(n.b) + kRadius * length(n.c))) / (a * root);
     const double size = std::max({piece.size[0], piece.size[1], piece.size[2]});
     // Two vectors that differ by e have unit vectors that differ by up to 2 e through the sum of their lengths.
-    const double of_input = std::fmin(2 * (kNormalShare + kRounding) * size / (a * root), 2.0);
+    const double of_input = std::fmin(2 * (kNormalShare + kCurveRounding) * size / (a * root), 2.0);
     sum.unit = sum.unit + share * n.mean_unit();
-    sum.error += share * (1.01 * kGaussError * bound + of_input + kRounding);
+    sum.error += share * (1.01 * kGaussError * bound + of_input + kCurveRounding);
   } else if (depth == kDeepest) {
     sum.error += share;
   } else {

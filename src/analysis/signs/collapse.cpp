@@ -9,6 +9,7 @@
 // Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.
 
 #include "chronormal/analysis/collapse.h"
+#include "analysis/signs/length_1.h"
 
 #include <algorithm>
 #include <array>
@@ -25,8 +26,6 @@ namespace {
 using Vectors = std::array<ExactCurve::CoefficientVector, 3>;  // c0, c1, c2
 constexpr std::size_t kDigits = ExactCurve::kDigits;
 using Product = WideInteger<2 * kDigits + 1>;
-
-double length_1(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 
 // The dot product of exact vectors is within 2^-25 (|c| |w|) of that of rounded ones, where only c is rounded.
 constexpr double kShare = 0x1p-24;

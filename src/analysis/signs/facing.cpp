@@ -6,6 +6,7 @@
 // 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has no area.
 
 #include "chronormal/analysis/facing.h"
+#include "analysis/signs/length_1.h"
 
 #include <algorithm>
 #include <array>
@@ -22,11 +23,9 @@
 namespace chronormal {
 namespace {
 
-double length_1(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-
 // By how much a dot product with a control normal may be off, against the length_1 of that and the largest component of
 // the other vector: sqrt(3) 2^-26 and a few roundings.
-constexpr double kShare = 0x1p-25;
+constexpr double kDotShare = 0x1p-25;
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
@@ -58,13 +57,13 @@ int common_sign(const Bounded<M>& f) noexcept {
 }
 
 Bounded<3> from_far(const ControlNormals& c, const Vec3d& w) noexcept {
-  const double share = kShare * max_abs(w);
+  const double share = kDotShare * max_abs(w);
   return {{dot(c.n0, w), 2 * dot(c.m, w), dot(c.n1, w)},
           {share * length_1(c.n0), 2 * share * length_1(c.m), share * length_1(c.n1)}};
 }
 
 Bounded<4> from_eye(const ControlNormals& c, const Ways& w) noexcept {
-  const double share = kShare * std::fmax(max_abs(w.from), max_abs(w.to));
+  const double share = kDotShare * std::fmax(max_abs(w.from), max_abs(w.to));
   const double n0 = share * length_1(c.n0), m = 2 * share * length_1(c.m), n1 = share * length_1(c.n1);
   return {{dot(c.n0, w.from), dot(c.n0, w.to) + 2 * dot(c.m, w.from), 2 * dot(c.m, w.to) + dot(c.n1, w.from),
            dot(c.n1, w.to)},

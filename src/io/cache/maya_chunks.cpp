@@ -12,7 +12,7 @@
 namespace chronormal::inline internal::maya {
 namespace {
 
-constexpr std::endian kOrder = std::endian::big;
+constexpr std::endian kMayaOrder = std::endian::big;
 
 struct Chunk {
   std::string_view tag;
@@ -52,8 +52,8 @@ class ChunkReader {
     if (end - at < header) return error(at, "the file or group ends inside the header of a chunk");
     chunk.tag = bytes_.substr(at, kTagSize);
     chunk.begin = at + header;
-    const std::uint64_t size = is_wide_ ? binary::load<std::uint64_t>(bytes_.data() + at + 8, kOrder)
-                                        : binary::load<std::uint32_t>(bytes_.data() + at + 4, kOrder);
+    const std::uint64_t size = is_wide_ ? binary::load<std::uint64_t>(bytes_.data() + at + 8, kMayaOrder)
+                                        : binary::load<std::uint32_t>(bytes_.data() + at + 4, kMayaOrder);
     if (size > end - chunk.begin)
       return error(at, "the chunk " + scan::quoted(chunk.tag) + " declares " + std::to_string(size) +
                            " bytes, but the file or group has only " + std::to_string(end - chunk.begin) + " more");
@@ -66,7 +66,7 @@ class ChunkReader {
   [[nodiscard]] Status read_integer(const Chunk& chunk, std::int32_t& value) const {
     if (chunk.end - chunk.begin != sizeof value)
       return error(chunk.begin, "the chunk " + scan::quoted(chunk.tag) + " must have 4 bytes");
-    value = binary::load<std::int32_t>(bytes_.data() + chunk.begin, kOrder);
+    value = binary::load<std::int32_t>(bytes_.data() + chunk.begin, kMayaOrder);
     return Success{};
   }
 
@@ -189,16 +189,16 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
     sample.time = static_cast<double>(points.ticks) / kMayaTicksPerSecond;
     sample.positions.resize(3 * count);
     const char* const begin = bytes.data() + points.begin;
-    const std::size_t read = points.is_double
-                                 ? binary::load_coordinates<double>(begin, 3 * count, kOrder, sample.positions.data())
-                                 : binary::load_coordinates<float>(begin, 3 * count, kOrder, sample.positions.data());
+    const std::size_t read =
+        points.is_double ? binary::load_coordinates<double>(begin, 3 * count, kMayaOrder, sample.positions.data())
+                         : binary::load_coordinates<float>(begin, 3 * count, kMayaOrder, sample.positions.data());
     if (read < 3 * count) {
       const std::size_t size = points.is_double ? sizeof(double) : sizeof(float);
       const char* const at = begin + read * size;
       return invalid_input(binary::place(name, points.begin + read * size) + ", channel " + scan::quoted(channel) +
                                ", point " + std::to_string(read / 3),
-                           binary::coordinate_fault(points.is_double ? binary::load<double>(at, kOrder)
-                                                                     : double{binary::load<float>(at, kOrder)}));
+                           binary::coordinate_fault(points.is_double ? binary::load<double>(at, kMayaOrder)
+                                                                     : double{binary::load<float>(at, kMayaOrder)}));
     }
     cache.samples.push_back(std::move(sample));
   }

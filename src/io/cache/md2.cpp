@@ -14,8 +14,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::endian kOrder = std::endian::little;
-constexpr std::size_t kHeaderSize = 68, kTriangleSize = 12, kFrameHeaderSize = 40, kNameAt = 24, kNameSize = 16;
+constexpr std::endian kMd2Order = std::endian::little;
+constexpr std::size_t kMd2HeaderSize = 68, kTriangleSize = 12, kFrameHeaderSize = 40, kNameAt = 24, kNameSize = 16;
 
 // A table of records that lies inside the file.
 struct Table {
@@ -52,12 +52,12 @@ class Md2Reader {
     return invalid_input(binary::place(name_, at), std::move(message));
   }
   [[nodiscard]] std::int32_t field(std::size_t at) const {
-    return binary::load<std::int32_t>(bytes_.data() + at, kOrder);
+    return binary::load<std::int32_t>(bytes_.data() + at, kMd2Order);
   }
 
   [[nodiscard]] Status read_header() {
     if (!bytes_.starts_with("IDP2")) return error(0, "this is not an MD2 file: its first word is not IDP2");
-    if (bytes_.size() < kHeaderSize) return error(bytes_.size(), "the file ends inside its header of 68 bytes");
+    if (bytes_.size() < kMd2HeaderSize) return error(bytes_.size(), "the file ends inside its header of 68 bytes");
     if (field(4) != 8) return error(4, "version " + std::to_string(field(4)) + " of MD2 is unknown; there is only 8");
     if (field(24) <= 0) return error(24, "the header declares " + std::to_string(field(24)) + " vertices");
     vertex_count_ = static_cast<std::size_t>(field(24));
@@ -89,7 +89,7 @@ class Md2Reader {
     for (std::size_t f = 0; f < triangles_.count; ++f) {
       for (const std::size_t c : {std::size_t{0}, std::size_t{2}, std::size_t{1}}) {
         const std::size_t at = triangles_.record(f) + 2 * c;
-        const auto vertex = binary::load<std::uint16_t>(bytes_.data() + at, kOrder);
+        const auto vertex = binary::load<std::uint16_t>(bytes_.data() + at, kMd2Order);
         if (vertex >= vertex_count_)
           return invalid_input(binary::place(name_, at) + ", triangle " + std::to_string(f),
                                "corner " + std::to_string(c) + " names vertex " + std::to_string(vertex) +
@@ -104,16 +104,16 @@ class Md2Reader {
     const std::size_t at = frames_.record(k);
     std::array<double, 6> scale_and_translate{};
     for (std::size_t i = 0; i < 6; ++i)
-      scale_and_translate[i] = double{binary::load<float>(bytes_.data() + at + 4 * i, kOrder)};
+      scale_and_translate[i] = double{binary::load<float>(bytes_.data() + at + 4 * i, kMd2Order)};
     const std::string_view label = bytes_.substr(at + kNameAt, kNameSize);
     for (const char c : label.substr(0, label.find('\0'))) keyframe.name += c >= ' ' && c <= '~' ? c : '?';
 
     keyframe.positions.resize(3 * vertex_count_);
     for (std::size_t i = 0; i < keyframe.positions.size(); ++i) {
       const std::size_t axis = i % 3, byte_at = at + kFrameHeaderSize + 4 * (i / 3) + axis;
-      const double value =
-          scale_and_translate[axis] * static_cast<double>(binary::load<std::uint8_t>(bytes_.data() + byte_at, kOrder)) +
-          scale_and_translate[3 + axis];
+      const double value = scale_and_translate[axis] *
+                               static_cast<double>(binary::load<std::uint8_t>(bytes_.data() + byte_at, kMd2Order)) +
+                           scale_and_translate[3 + axis];
       if (const char* const fault = binary::coordinate_fault(value))
         return invalid_input(
             binary::place(name_, byte_at) + ", frame " + std::to_string(k) + ", vertex " + std::to_string(i / 3),

@@ -11,25 +11,25 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kHeaderSize = 8;
-constexpr std::endian kOrder = std::endian::big;
+constexpr std::size_t kMddHeaderSize = 8;
+constexpr std::endian kMddOrder = std::endian::big;
 
 }  // namespace
 
 Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                     const CacheOptions& /*options*/) {
-  if (bytes.size() < kHeaderSize)
+  if (bytes.size() < kMddHeaderSize)
     return invalid_input(binary::place(name, bytes.size()), "the file ends inside its header of 8 bytes");
-  const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 4, kOrder),
-                                   binary::load<std::int32_t>(bytes.data(), kOrder)};
-  if (Status status = point_cache::check_counts(size, name, counts, kHeaderSize, sizeof(float)); !status)
+  const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 4, kMddOrder),
+                                   binary::load<std::int32_t>(bytes.data(), kMddOrder)};
+  if (Status status = point_cache::check_counts(size, name, counts, kMddHeaderSize, sizeof(float)); !status)
     return status.error();
-  const std::size_t body = kHeaderSize + sizeof(float) * static_cast<std::size_t>(counts.samples);
+  const std::size_t body = kMddHeaderSize + sizeof(float) * static_cast<std::size_t>(counts.samples);
   if (body > bytes.size()) return invalid_input(binary::place(name, bytes.size()), "the times are not here");
-  CacheLayout layout = point_cache::layout_of(counts, body, kOrder);
+  CacheLayout layout = point_cache::layout_of(counts, body, kMddOrder);
   for (std::size_t k = 0; k < layout.times.size(); ++k) {
-    const std::size_t at = kHeaderSize + sizeof(float) * k;
-    layout.times[k] = double{binary::load<float>(bytes.data() + at, kOrder)};
+    const std::size_t at = kMddHeaderSize + sizeof(float) * k;
+    layout.times[k] = double{binary::load<float>(bytes.data() + at, kMddOrder)};
     if (!std::isfinite(layout.times[k]))
       return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k),
                            "the time is not a finite number");
@@ -46,8 +46,8 @@ Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name, 
 Result<std::string> mdd_header(const Motion& motion) {
   if (Status status = point_cache::check_writable(motion); !status) return status.error();
   std::string bytes;
-  binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kOrder);
-  binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kOrder);
+  binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kMddOrder);
+  binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kMddOrder);
   float before = -std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const auto time = static_cast<float>(motion.keyframes[k].time);
@@ -55,14 +55,14 @@ Result<std::string> mdd_header(const Motion& motion) {
       return Error{ErrorCode::kUsage, "",
                    "MDD holds times as float32, for which keyframe " + std::to_string(k) +
                        " is too near to the one before or too far from 0; write .npz"};
-    binary::append(bytes, time, kOrder);
+    binary::append(bytes, time, kMddOrder);
     before = time;
   }
   return bytes;
 }
 
 Status write_mdd(MotionStream& stream, OutputFile& file) {
-  return point_cache::write(mdd_header(stream.motion()), stream, kOrder, file);
+  return point_cache::write(mdd_header(stream.motion()), stream, kMddOrder, file);
 }
 
 }  // namespace chronormal::inline internal

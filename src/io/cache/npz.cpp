@@ -24,7 +24,7 @@ namespace {
 using npy::Array;
 using npy::Kind;
 
-constexpr std::endian kOrder = std::endian::little;  // of what is written
+constexpr std::endian kNpzOrder = std::endian::little;  // of what is written
 
 std::string element_place(const std::string& place, std::initializer_list<std::size_t> indices) {
   std::string text = place + "[";
@@ -322,12 +322,12 @@ NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape) : bytes_(npy::write_
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values)
     : bytes_(npy::write_header("<f8", shape)) {
-  for (const double value : values) binary::append(bytes_, value, kOrder);
+  for (const double value : values) binary::append(bytes_, value, kNpzOrder);
 }
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values)
     : bytes_(npy::write_header("<i8", shape)) {
-  for (const std::int64_t value : values) binary::append(bytes_, value, kOrder);
+  for (const std::int64_t value : values) binary::append(bytes_, value, kNpzOrder);
 }
 
 NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::uint8_t> values)
@@ -336,7 +336,7 @@ NpyBytes::NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std:
 }
 
 void NpyBytes::append(std::span<const float> values) {
-  for (const float value : values) binary::append(bytes_, value, kOrder);
+  for (const float value : values) binary::append(bytes_, value, kNpzOrder);
 }
 
 Result<std::string> write_npy_faces(const Topology& topology) {
@@ -350,7 +350,7 @@ Result<std::string> write_npy_faces(const Topology& topology) {
   }
   std::string bytes = npy::write_header(topology.vertex_count() <= 0x80000000U ? "<i4" : "<u4", {faces, corners});
   bytes.reserve(bytes.size() + 4 * topology.corner_count());
-  for (const std::uint32_t vertex : topology.corners()) binary::append(bytes, vertex, kOrder);
+  for (const std::uint32_t vertex : topology.corners()) binary::append(bytes, vertex, kNpzOrder);
   return bytes;
 }
 
@@ -387,7 +387,7 @@ Status write_npz(MotionStream& stream, OutputFile& file) {
   for (const NpzMember& member : whole) npz.add(member);
   if (Status status = npz.begin(); !status) return status;
   const Status written =
-      each_keyframe(stream, kOrder, [&](std::string_view row) { return npz.append(positions, row); });
+      each_keyframe(stream, kNpzOrder, [&](std::string_view row) { return npz.append(positions, row); });
   return written ? npz.finish() : written;
 }
 

@@ -11,8 +11,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kFirstWord("POINTCACHE2\0", 12);
-constexpr std::size_t kHeaderSize = 32;
-constexpr std::endian kOrder = std::endian::little;
+constexpr std::size_t kPc2HeaderSize = 32;
+constexpr std::endian kPc2Order = std::endian::little;
 
 }  // namespace
 
@@ -20,20 +20,20 @@ Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, 
                                     const CacheOptions& options) {
   if (!bytes.starts_with(kFirstWord))
     return invalid_input(binary::place(name, 0), "this is not a PC2 file: its first word is not POINTCACHE2");
-  if (bytes.size() < kHeaderSize)
+  if (bytes.size() < kPc2HeaderSize)
     return invalid_input(binary::place(name, bytes.size()), "the file ends inside its header of 32 bytes");
-  if (const auto version = binary::load<std::int32_t>(bytes.data() + 12, kOrder); version != 1)
+  if (const auto version = binary::load<std::int32_t>(bytes.data() + 12, kPc2Order); version != 1)
     return invalid_input(binary::place(name, 12),
                          "version " + std::to_string(version) + " of PC2 is unknown; there is only 1");
-  const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 16, kOrder),
-                                   binary::load<std::int32_t>(bytes.data() + 28, kOrder)};
-  const double first = double{binary::load<float>(bytes.data() + 20, kOrder)};
-  const double step = double{binary::load<float>(bytes.data() + 24, kOrder)};
+  const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 16, kPc2Order),
+                                   binary::load<std::int32_t>(bytes.data() + 28, kPc2Order)};
+  const double first = double{binary::load<float>(bytes.data() + 20, kPc2Order)};
+  const double step = double{binary::load<float>(bytes.data() + 24, kPc2Order)};
   if (!std::isfinite(first)) return invalid_input(binary::place(name, 20), "the first frame is not a finite number");
   if (!std::isfinite(step) || !(step > 0))
     return invalid_input(binary::place(name, 24), "the frames between two samples must be finite and above 0");
-  if (Status status = point_cache::check_counts(size, name, counts, kHeaderSize, 0); !status) return status.error();
-  CacheLayout layout = point_cache::layout_of(counts, kHeaderSize, kOrder);
+  if (Status status = point_cache::check_counts(size, name, counts, kPc2HeaderSize, 0); !status) return status.error();
+  CacheLayout layout = point_cache::layout_of(counts, kPc2HeaderSize, kPc2Order);
   for (std::size_t k = 0; k < layout.times.size(); ++k)
     layout.times[k] = (first + static_cast<double>(k) * step) / options.frames_per_second;
   return layout;
@@ -60,16 +60,16 @@ Result<std::string> pc2_header(const Motion& motion, double frames_per_second) {
   }
 
   std::string bytes(kFirstWord);
-  binary::append(bytes, std::int32_t{1}, kOrder);
-  binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kOrder);
-  binary::append(bytes, first, kOrder);
-  binary::append(bytes, step, kOrder);
-  binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kOrder);
+  binary::append(bytes, std::int32_t{1}, kPc2Order);
+  binary::append(bytes, static_cast<std::int32_t>(motion.topology.vertex_count()), kPc2Order);
+  binary::append(bytes, first, kPc2Order);
+  binary::append(bytes, step, kPc2Order);
+  binary::append(bytes, static_cast<std::int32_t>(motion.keyframes.size()), kPc2Order);
   return bytes;
 }
 
 Status write_pc2(MotionStream& stream, OutputFile& file) {
-  return point_cache::write(pc2_header(stream.motion()), stream, kOrder, file);
+  return point_cache::write(pc2_header(stream.motion()), stream, kPc2Order, file);
 }
 
 }  // namespace chronormal::inline internal

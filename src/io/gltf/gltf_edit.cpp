@@ -41,8 +41,6 @@ struct GltfEdit::State {
 
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 bool is_same_folder(const std::string& a, const std::string& b) {
   std::error_code error;
   return std::filesystem::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, error);

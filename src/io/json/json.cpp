@@ -13,8 +13,6 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // Whether text is a number as JSON writes it.
 bool is_number(std::string_view text) {
   const auto skip_digits = [&] {
@@ -263,7 +261,7 @@ std::optional<JsonView> JsonView::array(const char* key) const {
     return std::nullopt;
   }
   if (value->empty()) {
-    complain(key, "the array is empty; glTF asks for one item or more, or for none of this name");
+    complain(key, "the array is empty: leave it out, or give it one item or more");
     return std::nullopt;
   }
   return member(key, *value);

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF", kBlanks = " \t\r\n";
+constexpr std::string_view kBlanks = " \t\r\n";
 // Longer runs of blanks are not repeated before what is added: a file must not grow by a megabyte for every number.
 constexpr std::size_t kMostBlanks = 256;
 

@@ -27,6 +27,9 @@
 
 namespace chronormal::inline internal {
 
+/// What some editors write before the text of a file: U+FEFF in UTF-8. JSON does not know it.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// The text of a string: "\u00e9" without its quotation marks, in UTF-8. quoted must be a valid JSON string.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 

@@ -16,7 +16,6 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kLanes = 4;
 constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements or faces
 constexpr std::size_t kBlockOfVertices = 16384;
 
@@ -48,17 +47,17 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
 }
 
 // The weights of the four lanes of a coefficient.
-std::array<double, kLanes> lane_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
+std::array<double, kBlendLanes> lane_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
 // Adds the terms of one target to the sums of the elements of a range.
 void add_target(const StoredTerm& term, double weight, IndexRange range, double* sums) {
   const auto a = lane_weights(weight * term.scale), c = lane_weights(weight * weight * term.scale);
   const IndexRange part = part_of(term.elements, range);
   for (std::size_t i = part.first; i < part.end(); ++i) {
-    const float* const lanes = term.lanes.data() + 2 * kLanes * i;
-    double* const sum = sums + kLanes * term.elements[i];
-    for (std::size_t k = 0; k < kLanes; ++k)
-      sum[k] += a[k] * static_cast<double>(lanes[k]) + c[k] * static_cast<double>(lanes[kLanes + k]);
+    const float* const lanes = term.lanes.data() + 2 * kBlendLanes * i;
+    double* const sum = sums + kBlendLanes * term.elements[i];
+    for (std::size_t k = 0; k < kBlendLanes; ++k)
+      sum[k] += a[k] * static_cast<double>(lanes[k]) + c[k] * static_cast<double>(lanes[kBlendLanes + k]);
   }
 }
 
@@ -66,9 +65,9 @@ void add_pair(const StoredTerm& term, double weight, IndexRange range, double* s
   const auto c = lane_weights(weight * term.scale);
   const IndexRange part = part_of(term.elements, range);
   for (std::size_t i = part.first; i < part.end(); ++i) {
-    const float* const lanes = term.lanes.data() + kLanes * i;
-    double* const sum = sums + kLanes * term.elements[i];
-    for (std::size_t k = 0; k < kLanes; ++k) sum[k] += c[k] * static_cast<double>(lanes[k]);
+    const float* const lanes = term.lanes.data() + kBlendLanes * i;
+    double* const sum = sums + kBlendLanes * term.elements[i];
+    for (std::size_t k = 0; k < kBlendLanes; ++k) sum[k] += c[k] * static_cast<double>(lanes[k]);
   }
 }
 
@@ -158,7 +157,7 @@ class Call {
     if (left == 0) return;
     double* const sums = scratch_.sums.data();
     for_bits(touched, words, [&](std::size_t e) {
-      std::memcpy(sums + kLanes * e, source_.base.sums.data() + kLanes * e, kLanes * sizeof(double));
+      std::memcpy(sums + kBlendLanes * e, source_.base.sums.data() + kBlendLanes * e, kBlendLanes * sizeof(double));
     });
     for (const std::uint32_t i : scratch_.active) {
       const StoredTarget& target = source_.storage.targets()[i];
@@ -171,7 +170,7 @@ class Call {
     }
     Finish finish(result_, again);
     for (std::size_t i = words.first; i < words.end(); ++i)
-      for_bits(touched[i] & ~again[i], i, [&](std::size_t e) { finish.add(e, sums + kLanes * e); });
+      for_bits(touched[i] & ~again[i], i, [&](std::size_t e) { finish.add(e, sums + kBlendLanes * e); });
     finish.flush();
   }
 

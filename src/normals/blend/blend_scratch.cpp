@@ -10,8 +10,6 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kLanes = 4;
-
 std::size_t bits_bytes(std::size_t count) { return words_of(count) * sizeof(std::uint64_t); }
 
 }  // namespace
@@ -19,13 +17,13 @@ std::size_t bits_bytes(std::size_t count) { return words_of(count) * sizeof(std:
 BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms) {
   BlendBase base;
   const std::size_t count = terms.size();
-  base.sums.resize(kLanes * count);
+  base.sums.resize(kBlendLanes * count);
   base.units.resize(3 * count);
   base.zeros = IndexBits(count);
   const BlendTerm normals = terms.base_term();
   for (std::size_t e = 0; e < count; ++e) {
     const Vec3d n = normals.values[e];
-    double* const sum = base.sums.data() + kLanes * e;
+    double* const sum = base.sums.data() + kBlendLanes * e;
     sum[0] = n.x, sum[1] = n.y, sum[2] = n.z, sum[3] = normals.noise[e] / kFloatUnitRoundoff;
     const Vec3f u = to_float(unit(n));
     float* const to = base.units.data() + 3 * e;
@@ -37,11 +35,11 @@ BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms) {
 }
 
 std::size_t base_bytes(const BlendShape& shape) noexcept {
-  return shape.elements * (kLanes * sizeof(double) + 3 * sizeof(float)) + bits_bytes(shape.elements);
+  return shape.elements * (kBlendLanes * sizeof(double) + 3 * sizeof(float)) + bits_bytes(shape.elements);
 }
 
 BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
-    : sums(kLanes * shape.elements),
+    : sums(kBlendLanes * shape.elements),
       positions(set.base.begin(), set.base.end()),
       normals(shape.faces),
       touched(shape.elements),
@@ -52,7 +50,7 @@ BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
 }
 
 std::size_t scratch_bytes(const BlendShape& shape) noexcept {
-  return shape.elements * kLanes * sizeof(double) + shape.vertices * 3 * sizeof(double) +
+  return shape.elements * kBlendLanes * sizeof(double) + shape.vertices * 3 * sizeof(double) +
          shape.faces * sizeof(BlendedFace) + 2 * bits_bytes(shape.elements) + bits_bytes(shape.faces) +
          shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }

@@ -11,9 +11,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kLanes = 4;
-constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kLanes * sizeof(float);  // of an element
-constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kLanes * sizeof(float);
+constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // of an element
+constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
 // A little more than enough, so that the rounding of a bound to float32, and values near the end of its range, are in
 // it.
@@ -150,9 +149,9 @@ void BlendStorage::fill_target(std::size_t i) {
   }
   const BlendTerm linear = terms_.linear(i), square = terms_.pair(i, i);
   stored.scale = scale_of(std::max(largest_of(linear), largest_of(square)));
-  stored.lanes.resize(2 * kLanes * stored.elements.size());
-  put_all(linear, 0, 2 * kLanes, stored);
-  put_all(square, kLanes, 2 * kLanes, stored);
+  stored.lanes.resize(2 * kBlendLanes * stored.elements.size());
+  put_all(linear, 0, 2 * kBlendLanes, stored);
+  put_all(square, kBlendLanes, 2 * kBlendLanes, stored);
 }
 
 void BlendStorage::fill_pair(std::size_t i, StoredPair& pair) {
@@ -160,8 +159,8 @@ void BlendStorage::fill_pair(std::size_t i, StoredPair& pair) {
   StoredTerm& stored = pair.term;
   stored.elements.assign(term.elements.begin(), term.elements.end());
   stored.scale = scale_of(largest_of(term));
-  stored.lanes.resize(kLanes * stored.elements.size());
-  put_all(term, 0, kLanes, stored);
+  stored.lanes.resize(kBlendLanes * stored.elements.size());
+  put_all(term, 0, kBlendLanes, stored);
 }
 
 void BlendStorage::target_added() {

@@ -29,8 +29,6 @@ std::size_t part_size(std::size_t size) {
   return std::clamp<std::size_t>(chunks, 16, 128) * kChunk;
 }
 
-// Positions of both ends that a cache near the core holds in any order; looking at the order would take longer.
-constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 constexpr std::size_t kBlockOfRows = 16384;  // faces
 // Up to here the control normals of all faces may be held for a while: half a gigabyte.
 constexpr std::size_t kMostRows = std::size_t{4} << 20;

@@ -22,9 +22,9 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kPiece = 8192;   // elements that a thread takes at a time, a multiple of a block
-constexpr double kLongestRatio = 2.6;  // r
-constexpr double kSmallest = 0x1p-40;  // of the largest control normal: |n|^2 stays in the range of float32
+constexpr std::size_t kPathPiece = 8192;  // elements that a thread takes at a time, a multiple of a block
+constexpr double kLongestRatio = 2.6;     // r
+constexpr double kSmallest = 0x1p-40;     // of the largest control normal: |n|^2 stays in the range of float32
 
 using Controls = PolynomialNormals<3>;
 static_assert(std::tuple_size_v<Controls> == kPathControls);
@@ -103,7 +103,7 @@ struct PathCurves::Data {
 
 std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment) {
   std::vector<Controls> result(segment.topology->face_count());
-  parallel_blocks(result.size(), kPiece, [&](IndexRange range) {
+  parallel_blocks(result.size(), kPathPiece, [&](IndexRange range) {
     polynomial_face_normals(segment, range, std::span(result).subspan(range.first, range.count));
   });
   return result;
@@ -112,7 +112,7 @@ std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& s
 std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment, const NormalGroups& groups) {
   const std::vector<Controls> of_faces = all_path_normals(segment);
   std::vector<Controls> result(groups.size());
-  parallel_blocks(result.size(), kPiece, [&](IndexRange range) {
+  parallel_blocks(result.size(), kPathPiece, [&](IndexRange range) {
     polynomial_group_normals<3>(groups, of_faces, range, std::span(result).subspan(range.first, range.count));
   });
   return result;
@@ -129,7 +129,7 @@ PathCurves::PathCurves(std::span<const PolynomialNormals<3>> normals, Threads th
   const std::size_t count = block_count(normals.size(), kTile);
   data_->blocks = AlignedArray<float>(count * kPathBlock);
   std::vector<char> carries(count * kTile);
-  blocks_on(threads, count * kTile, kPiece, [&](IndexRange range) {
+  blocks_on(threads, count * kTile, kPathPiece, [&](IndexRange range) {
     for (std::size_t i = range.first; i < range.end(); ++i)
       carries[i] = data_->pack(i, i < normals.size() ? normals[i] : Controls{}) ? 1 : 0;
   });
@@ -149,7 +149,7 @@ std::size_t PathCurves::unit_normals(double time, VectorView<float> result, Thre
   const double t = local_time(time);
   std::atomic<std::size_t> without_direction = 0;
   const MemoryAccess pass = access_of_pass(bytes(), size() * 3 * sizeof(float));
-  blocks_on(threads, size(), kPiece, [&](IndexRange range) {
+  blocks_on(threads, size(), kPathPiece, [&](IndexRange range) {
     without_direction += data_->evaluate(range, t, result, pass);
     flush_stream();
   });

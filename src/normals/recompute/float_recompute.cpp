@@ -26,11 +26,7 @@ namespace {
 constexpr std::size_t kBlockOfPoints = 16384;
 constexpr std::size_t kBlockOfElements = 4096;  // a multiple of kRingLanes
 constexpr std::size_t kMostSearched = 64;       // pieces of a path; in longer paths, nothing looks for the next piece
-// Points that fit here may be read in any order.
-constexpr std::size_t kNearBytes = std::size_t{1} << 20;
-constexpr double kMostLinesPerFace = 1;
-
-using Path = std::vector<std::uint32_t>;  // the first point is the centre
+using Path = std::vector<std::uint32_t>;        // the first point is the centre
 
 // The paths around elements, one after the other.
 class PathMaker {

@@ -36,10 +36,6 @@ constexpr std::size_t kWindowSamples = 64;
 constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
 constexpr std::size_t kMostParts = 64;
 
-// Positions that fit here may be read in any order.
-constexpr std::size_t kNearBytes = std::size_t{1} << 20;
-constexpr double kMostLinesPerFace = 1;
-
 // n(t) in double from the positions, and what it may be off by.
 struct NormalAtTime {
   Vec3d n;

@@ -19,7 +19,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kFitBlock = 64;
 
 constexpr std::size_t kSamples = 16;      // of the error, to compare the bound with
 constexpr double kTightness = 2;          // times the largest sample is close enough
@@ -297,7 +297,7 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
   std::vector<IntervalNormals> intervals(face_count);
   std::vector<std::vector<Vec3d>> of_faces(kSamples + 1, std::vector<Vec3d>(face_count));
   const auto sample_time = [](std::size_t i) { return static_cast<double>(i) / kSamples; };
-  parallel_blocks(face_count, kBlock, [&](IndexRange faces) {
+  parallel_blocks(face_count, kFitBlock, [&](IndexRange faces) {
     for (std::size_t f = faces.first; f < faces.end(); ++f) {
       ControlNormals n;
       face_control_normals(segment, {f, 1}, {&n, 1});
@@ -308,7 +308,7 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
       face_normals_at(segment, sample_time(i), faces, std::span(of_faces[i]).subspan(faces.first, faces.count));
   });
 
-  parallel_blocks(groups.size(), kBlock, [&](IndexRange elements) {
+  parallel_blocks(groups.size(), kFitBlock, [&](IndexRange elements) {
     for (std::size_t e = elements.first; e < elements.end(); ++e) {
       if (is_direction_of_one_face(segment, groups.faces(e), weighting)) {
         face_control_normals(segment, {groups.faces(e).front(), 1}, {&fit.normals[e], 1});

@@ -18,7 +18,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlockSize = 1024;
+constexpr std::size_t kTruthBlock = 1024;
 
 VectorView<const float> positions_of(const Motion::Keyframe& keyframe) {
   return VectorView<const float>::packed(std::span(keyframe.positions));
@@ -51,9 +51,9 @@ class KeptKeys {
 };
 
 // The faces of a motion, or groups of their corners, and the control normals of either on a path of any degree.
-class Elements {
+class TruthElements {
  public:
-  Elements(const Topology& topology, std::optional<NormalGroups> groups)
+  TruthElements(const Topology& topology, std::optional<NormalGroups> groups)
       : groups_(std::move(groups)), count_(groups_ ? groups_->size() : topology.face_count()) {}
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
@@ -82,8 +82,8 @@ class Elements {
 
   template <class Body>
   static void parallel_blocks_of(std::size_t count, const Body& body) {
-    parallel_for((count + kBlockSize - 1) / kBlockSize, [&](std::size_t b) {
-      body(IndexRange{b * kBlockSize, std::min(kBlockSize, count - b * kBlockSize)});
+    parallel_for((count + kTruthBlock - 1) / kTruthBlock, [&](std::size_t b) {
+      body(IndexRange{b * kTruthBlock, std::min(kTruthBlock, count - b * kTruthBlock)});
     });
   }
 
@@ -105,7 +105,7 @@ struct Piece {
 };
 
 // The errors of all rows on one block of elements, curved paths last.
-std::vector<Quality> errors_of_block(const Piece& piece, const Elements& elements, IndexRange range,
+std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& elements, IndexRange range,
                                      const std::vector<std::string>& names) {
   std::vector<std::unique_ptr<Scheme>> schemes;
   for (const std::string& name : names) {
@@ -170,7 +170,7 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
     if (!made) return made.error();
     groups = std::move(made).value();
   }
-  const Elements elements(motion.topology, std::move(groups));
+  const TruthElements elements(motion.topology, std::move(groups));
   const KeptKeys keys(motion, options.every);
   std::vector<PathKind> curves;
   if (keys.count() >= 3) curves.push_back(PathKind::kCatmullRom);
@@ -187,14 +187,14 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   for (const std::string& name : names) result.rows.push_back({std::string(path_name(PathKind::kLinear)), name, {}});
   for (const PathKind curve : curves) result.rows.push_back({std::string(path_name(curve)), "exact", {}});
 
-  const std::size_t blocks = (elements.count() + kBlockSize - 1) / kBlockSize;
+  const std::size_t blocks = (elements.count() + kTruthBlock - 1) / kTruthBlock;
   std::vector<std::vector<Quality>> found(blocks);
   for (std::size_t i = 0; i + 1 < keys.count(); ++i) {
     Piece piece{keys.segment(i), keys.between(i), elements.control_normals(keys.segment(i)), {}};
     for (const PathKind curve : curves)
       piece.curved.push_back(elements.control_normals(path_segment(motion.topology, keys.all(), i, curve)));
-    Elements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
-      found[range.first / kBlockSize] = errors_of_block(piece, elements, range, names);
+    TruthElements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
+      found[range.first / kTruthBlock] = errors_of_block(piece, elements, range, names);
     });
     for (const std::vector<Quality>& block : found)
       for (std::size_t r = 0; r < result.rows.size(); ++r) result.rows[r].quality.add(block[r]);

@@ -111,7 +111,7 @@ MotionError read_error(const JsonView& list) {
   return error;
 }
 
-Json offset_json(const AuthoredOffset& offset) {
+Json authored_offset_json(const AuthoredOffset& offset) {
   return {static_cast<int>(offset.weighting),
           offset.is_detected ? 1 : 0,
           offset.vertices,
@@ -342,7 +342,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
   json["stored"] = shard.stored;
   json["still"] = shard.still;
   json["span"] = shard.span;
-  for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(offset_json(offset));
+  for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(authored_offset_json(offset));
   json["subjects"] = shard.subjects.size();
   for (const AuditSubject& subject : shard.subjects) {
     json["segment_count"] = subject.segments;

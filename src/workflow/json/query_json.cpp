@@ -30,8 +30,8 @@ Json column_json(const QueryColumn& column) {
 
 // Counts are integers.
 Json fact_json(double value) {
-  constexpr double kMostCount = 0x1p53;
-  if (value == std::floor(value) && std::fabs(value) < kMostCount) return static_cast<std::int64_t>(value);
+  constexpr double kEveryInteger = 0x1p53;
+  if (value == std::floor(value) && std::fabs(value) < kEveryInteger) return static_cast<std::int64_t>(value);
   return value;
 }
 

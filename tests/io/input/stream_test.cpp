@@ -190,13 +190,16 @@ TEST(InputStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_not
   const auto inputs = write_all(folder, wave(9));
   Result<Input> input = open_input(streamed(test::files(inputs[1])));
   ASSERT_TRUE(input.ok());
-  std::filesystem::resize_file(folder / "walk.pc2", 32 + 12 * kSide * kSide * 6 + 100);
+  constexpr std::size_t kEnd = 32 + 12 * kSide * kSide * 6 + 100;
+  std::filesystem::resize_file(folder / "walk.pc2", kEnd);
   const std::size_t before = folder.entry_count();
   Result<SampleSummary> written =
       write_samples(*input.value().stream().value(), {}, {{0.5, 1.5, 6.5}, {}}, {folder / "n.npy", SampleFormat::kNpy});
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().code, ErrorCode::kFailed);
   EXPECT_EQ(written.error().place, folder / "walk.pc2");
+  EXPECT_EQ(written.error().message.find("the file ends at byte " + std::to_string(kEnd) + ", but had "), 0U)
+      << written.error().message;
   EXPECT_NE(written.error().message.find("it was cut while it was read"), std::string::npos);
   EXPECT_EQ(folder.entry_count(), before);
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kZeros{"\0\0\0\0\0\0\0", 7};
 // What is moved into the BIN chunk begins at a multiple of this, which suits numbers of every size.
-constexpr std::size_t kAlignment = 8;
+constexpr std::size_t kViewAlignment = 8;
 
 std::string item_pointer(const char* array, std::size_t index) {
   return std::string("/").append(array).append("/").append(std::to_string(index));
@@ -216,7 +216,7 @@ Status EditLayout::lay_out_glb() {
   std::size_t view = document_.model.views.size() + document_.arrays.view_count();
   for (const Image& image : images_) {
     JsonObject of_image, of_view;
-    of_view.add("buffer", 0).add("byteOffset", add_to_bin(image.bytes, kAlignment));
+    of_view.add("buffer", 0).add("byteOffset", add_to_bin(image.bytes, kViewAlignment));
     of_view.add("byteLength", image.bytes.size());
     if (Status status = append("/bufferViews", of_view.text()); !status) return status;
     const std::string pointer = item_pointer("images", image.index);
@@ -230,7 +230,7 @@ Status EditLayout::lay_out_glb() {
   buffer.add("byteLength", bin_size_);
   if (must_move) {
     add_other_members(first_buffer_, {"uri", "byteLength"}, buffer);
-    return set("/buffers", "[" + buffer.text() + other_buffers_ + "]");
+    return set("/buffers", std::string("[").append(buffer.text()).append(other_buffers_).append("]"));
   }
   if (!grows && unused_bytes_ == 0) return Success{};
   if (!buffers.empty()) return set("/buffers/0/byteLength", std::to_string(bin_size_));
@@ -252,7 +252,7 @@ Status EditLayout::move_buffers() {
     }
     const Result<std::string_view> bytes = declared_bytes(i);
     if (!bytes) return bytes.error();
-    moved.push_back({0, is_bin(i) ? 0 : add_to_bin(bytes.value(), kAlignment)});
+    moved.push_back({0, is_bin(i) ? 0 : add_to_bin(bytes.value(), kViewAlignment)});
     if (i == 0) first_buffer_ = document_.source.members(pointer);
   }
   for (std::size_t i = 0; i < document_.model.views.size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::json;
 using Range = UnusedArrays::Range;
 
-constexpr std::size_t kAlignment = 4;
+constexpr std::size_t kRangeAlignment = 4;
 
 // Extensions whose objects refer to textures, nodes and materials, but neither to accessors nor to buffer views.
 constexpr std::string_view kKnownExtensions[] = {"KHR_materials_",
@@ -104,7 +104,8 @@ std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std:
 // Nothing where a part is not inside its view.
 std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& accessor) {
   std::vector<Part> parts;
-  if (accessor.is_matrix && component_size(accessor.component) < kAlignment) return std::nullopt;  // padded columns
+  if (accessor.is_matrix && component_size(accessor.component) < kRangeAlignment)
+    return std::nullopt;  // padded columns
   const auto add = [&](std::size_t view, std::size_t offset, std::size_t count, std::size_t size, bool strides) {
     if (view >= model.views.size()) return false;
     const BufferView& of = model.views[view];
@@ -139,12 +140,12 @@ std::vector<Range> joined(std::vector<Range> ranges) {
   return result;
 }
 
-// Takes some ranges out of others. The result has ranges whose sizes are multiples of kAlignment.
+// Takes some ranges out of others. The result has ranges whose sizes are multiples of kRangeAlignment.
 std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const std::vector<Range>& without) {
   std::vector<Range> result;
   auto other = without.begin();
   const auto add = [&](std::size_t begin, std::size_t end) {
-    if (begin < end && end - begin >= kAlignment) result.push_back({begin, end - (end - begin) % kAlignment});
+    if (begin < end && end - begin >= kRangeAlignment) result.push_back({begin, end - (end - begin) % kRangeAlignment});
   };
   for (const Range& range : ranges) {
     std::size_t begin = range.begin;

@@ -23,7 +23,7 @@ constexpr double kStandstill = 0.99;
 // What points away from the right normal is asked to have this much of its length along it.
 constexpr double kLeastPart = 0.1;
 // Below this part of the terms that it is made of the direction of a normal is not judged.
-constexpr double kLeastLength = 1e-4;
+constexpr double kLeastLine = 1e-4;
 // What pulls to the best of each target alone: relative to what the weights tell on average, so that those which differ
 // by a thousandth of themselves tell no deltas apart, and to weights of a thousandth, which tell nothing.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
@@ -35,7 +35,7 @@ constexpr std::size_t kMostTargets = 64;
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
 // Poses to state the error at: all keys, where elements are few.
 constexpr std::size_t kMostStated = 100000;
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kLineBlock = 64;
 
 using Matrix = std::vector<std::vector<double>>;  // weights: a row for each pose
 
@@ -217,7 +217,7 @@ class Together {
     }
     for (const std::size_t i : active_) {
       const NormalTerms::Term linear = terms_.linear_by_element(i), square = terms_.pair_by_element(i, i);
-      parallel_each(result.size(), kBlock, [&](std::size_t n) { add(i, linear, square, result[n]); });
+      parallel_each(result.size(), kLineBlock, [&](std::size_t n) { add(i, linear, square, result[n]); });
     }
     return result;
   }
@@ -264,9 +264,9 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
     const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();
     const std::vector<Vec3d>& exact = terms.is_fitted() ? weighted : by_area;
-    parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+    parallel_each(elements.size(), kLineBlock, [&](std::size_t n) {
       const std::uint32_t e = elements[n].index;
-      const double least = kLeastLength * std::fmax(length(terms.base_of(e)), largest[e]);
+      const double least = kLeastLine * std::fmax(length(terms.base_of(e)), largest[e]);
       if (length(by_area[e]) > least && max_abs(exact[e]) > 0) body(n, unit(exact[e]));
     });
   };
@@ -280,7 +280,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     judge(poses[p], [&](std::size_t n, const Vec3d& unit) { right[n * poses.size() + p] = rounded(unit); });
   std::vector<char> is_fitted(elements.size());
   std::vector<double> errors(elements.size());
-  parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+  parallel_each(elements.size(), kLineBlock, [&](std::size_t n) {
     std::vector<Vec3d> deltas = elements[n].deltas;
     Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
     is_fitted[n] = fit.improve(deltas) ? 1 : 0;

@@ -22,7 +22,7 @@ constexpr std::size_t kHeldEntries = 1000000;
 constexpr double kLeastLength = 1e-4;
 // By more than this part rounding takes no bound below what it bounds.
 constexpr double kSlack = 1 + 1e-9;
-constexpr std::size_t kBlock = 1024, kElements = 16;
+constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
 // The extra target of a pair. That of a target with itself only takes away what its end point has too much on the way,
 // so that weight 1 is right without it.
@@ -79,7 +79,7 @@ double longest_base_normal(const GltfShading& shading, const NormalTerms& terms)
   const auto look = [&](std::size_t e, double& longest) {
     longest = std::fmax(longest, length(terms.base_of(static_cast<std::uint32_t>(e))));
   };
-  return parallel_fold<double>(shading.groups.size(), kBlock, look,
+  return parallel_fold<double>(shading.groups.size(), kPairBlock, look,
                                [](double& all, double each) { all = std::fmax(all, each); });
 }
 

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
 // Poses to measure at: all of them on small meshes.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
@@ -82,7 +82,7 @@ void note_length(const Vec3d& value, double& largest) { largest = std::fmax(larg
 std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<bool>& is_line) {
   std::vector<double> largest(mesh.shading.groups.size(), 0.0);
   const auto note_lengths = [&](const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
-    parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+    parallel_each(elements.size(), kPlanBlock, [&](std::size_t n) {
       Vec3d value;
       if (term.find(elements[n], value)) note_length(value, largest[elements[n]]);
     });

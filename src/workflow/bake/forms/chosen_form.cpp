@@ -11,8 +11,6 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Of the tolerance: what straight pieces may leave of it.
-constexpr double kPartOfTracks = 0.25;
 // Of the errors: what twice as many targets must leave at most.
 constexpr double kBetterByFar = 0.6;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2, kRigSeed = 4;

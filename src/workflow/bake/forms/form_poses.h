@@ -68,6 +68,9 @@ struct Sampling {
 /// How many poses may be looked at, with these forms.
 [[nodiscard]] std::size_t enough_poses(const GltfShading& shading, std::span<const VertexColumns> forms);
 
+/// Of the tolerance: what straight pieces may leave of it.
+inline constexpr double kPartOfTracks = 0.25;
+
 /// Cuts the gaps of a LINEAR track until straight pieces of extra weights turn no normal by more than the tolerance
 /// (radians), as far as a limit of pieces allows; `left` becomes no less than what they turn.
 [[nodiscard]] std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track,

@@ -17,7 +17,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kHarmlessFormBlock = 64;
 // Lengths of a sum of unit normals that are tried.
 constexpr double kLongestSum = 2.5, kShortestSum = 0.1, kNextSum = 0.9;
 // Of the tolerance: what one extra target of a pair may leave half-way, and in squares how little worse it may be.
@@ -31,7 +31,7 @@ constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 // A pair that is never stronger would need weights beyond 1 elsewhere.
 constexpr double kMostScale = 4, kLeastProduct = 1e-6, kStrongest = 0.95;
 // Targets of which all pairs are looked at, pairs that are kept in mind, and poses at which they are measured.
-constexpr std::size_t kMostActive = 512, kMostPairs = 6000, kMostPoses = 96, kMeasured = 6000000;
+constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmlessPoses = 96, kMeasured = 6000000;
 
 // Which vertices show an element.
 class VerticesOfElements {
@@ -77,7 +77,7 @@ std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNo
 template <class VectorOf>
 VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
   std::vector<Vec3f> all(asked.size());
-  parallel_each(asked.size(), kBlock, [&](std::size_t n) { all[n] = to_float(vector_of(asked[n])); });
+  parallel_each(asked.size(), kHarmlessFormBlock, [&](std::size_t n) { all[n] = to_float(vector_of(asked[n])); });
   VertexVectors result;
   for (std::size_t n = 0; n < asked.size(); ++n) {
     if (all[n] == Vec3f{}) continue;
@@ -119,7 +119,7 @@ class Corrector {
     if (elements.empty()) return;
     const std::vector<Asked> asked = asked_vertices(shown_, rights_, pose, elements);
     std::vector<std::array<Vec3d, 2>> vectors(asked.size());
-    parallel_each(asked.size(), kBlock, [&](std::size_t n) {
+    parallel_each(asked.size(), kHarmlessFormBlock, [&](std::size_t n) {
       const Vec3d right = unit(rights_.of_vertex(asked[n].vertex, asked[n].of_element));
       const BaseNormal base(rights_.stored(asked[n].vertex));
       const Vec3d shown = (1 / base.length) * (base.stored + sum_of(i, asked[n].vertex, pose));
@@ -144,7 +144,7 @@ class Corrector {
     const std::vector<Asked> asked = asked_vertices(shown_, rights_, pose, elements);
     const std::vector<Asked> on_the_way = asked_vertices(shown_, rights_, half, elements);
     std::vector<PairCorrection> vectors(asked.size());
-    parallel_each(asked.size(), kBlock, [&](std::size_t n) {
+    parallel_each(asked.size(), kHarmlessFormBlock, [&](std::size_t n) {
       vectors[n] = pair_correction(asked[n], on_the_way[n].of_element, weight, pose, half);
     });
     double of_one = 0, of_two = 0, enough = 0;
@@ -321,7 +321,7 @@ std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
   of_all.erase(std::remove_if(of_all.begin(), of_all.end(), [](const Pair& p) { return p.product < kLeastProduct; }),
                of_all.end());
   std::stable_sort(of_all.begin(), of_all.end(), [](const Pair& a, const Pair& b) { return a.product > b.product; });
-  if (of_all.size() > kMostPairs) of_all.resize(kMostPairs);
+  if (of_all.size() > kMostHarmlessPairs) of_all.resize(kMostHarmlessPairs);
   return of_all;
 }
 
@@ -334,7 +334,7 @@ struct Worth {
 // Measures at poses, and at vertices that have need.
 std::vector<Worth> worths(const RightNormals& rights, const HarmlessForm& form, std::span<const std::uint32_t> vertices,
                           const PoseList& all_poses) {
-  const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostPoses);
+  const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostHarmlessPoses);
   PoseList poses;
   const std::size_t count = std::min(most, all_poses.size());
   for (std::size_t n = 0; n < count; ++n) poses.push_back(all_poses[n * all_poses.size() / count]);

@@ -21,13 +21,13 @@ namespace chronormal::inline internal {
 namespace {
 
 // Of the tolerance: what straight pieces may leave of it.
-constexpr double kPartOfTracks = 0.2;
+constexpr double kSmallestPartOfTracks = 0.2;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
 // Poses that a choice is made by, and how often the limit of bytes is tried.
 constexpr std::size_t kMostPlayed = 200;
 // Pairs of the targets of a rig that are worth a look.
-constexpr std::size_t kMostPairs = 48;
+constexpr std::size_t kMostSmallestPairs = 48;
 constexpr int kTries = 4;
 constexpr double kPartOfBytes = 0.95;
 // Means that differ by no more of themselves are alike.
@@ -42,8 +42,8 @@ enum VertexForm : std::uint8_t { kStored, kOwn, kLowRank };
 std::size_t pairs_of_rig(const DeltaSource& source) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i)
-    for (std::size_t j = i; moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostPairs;
-         ++j)
+    for (std::size_t j = i;
+         moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostSmallestPairs; ++j)
       if (moves(source.shading, j) && (i == j || source.terms.overlap(i, j))) ++count;
   return count;
 }
@@ -328,8 +328,9 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
       const auto extras_at = [&](std::size_t key, double part, std::span<const double>, std::span<double> of_extras) {
         curves.at(nodes, key, part, of_extras);
       };
-      drivers.pieces[weights.names[t]] = pieces_of(rights, track, shares.size(), extras_at, vertices, forms.back(),
-                                                   kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
+      drivers.pieces[weights.names[t]] =
+          pieces_of(rights, track, shares.size(), extras_at, vertices, forms.back(),
+                    kSmallestPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
     }
   }
   const std::vector<bool> is_new = new_bases(source);
@@ -360,7 +361,8 @@ ChosenForm keep_stored(const DeltaSource& source) {
 void look_at_rig(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, FormLengths lengths,
                  const ChosenForm& own, Choice& choice) {
   const std::size_t targets = source.shading.set.targets.size();
-  if (pairs_of_rig(source) <= kMostPairs) choice.look_at("pairs", choose_of_lengths(source, weights, options, lengths));
+  if (pairs_of_rig(source) <= kMostSmallestPairs)
+    choice.look_at("pairs", choose_of_lengths(source, weights, options, lengths));
   const ShownErrors without =
       played_errors(choice.rights(), own.judged(), source.shading.element_of_vertex, own.columns(source.shading),
                     played_poses(weights, own.drivers, targets, kMostPlayed));

@@ -15,10 +15,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Of the tolerance: what straight pieces may leave of it.
-constexpr double kPartOfTracks = 0.25;
 // Vectors of all products that are looked at, pairs of a vertex and a pose, and poses of one kind.
-constexpr std::size_t kMostVectors = 3000000, kMostPairs = 6000000;
+constexpr std::size_t kMostVectors = 3000000, kMostComparedPairs = 6000000;
 constexpr std::size_t kFewestPoses = 24, kMostPoses = 400, kFewestSteps = 3, kMostSteps = 16;
 constexpr unsigned kSeed = 2;
 
@@ -199,7 +197,7 @@ class WorthwhileForms {
   // What the file shows, and its targets alone.
   [[nodiscard]] std::vector<AskedPose> asked_poses() const {
     const std::size_t most =
-        std::clamp(kMostPairs / std::max<std::size_t>(1, vertices_.size()), kFewestPoses, kMostPoses);
+        std::clamp(kMostComparedPairs / std::max<std::size_t>(1, vertices_.size()), kFewestPoses, kMostPoses);
     std::vector<AskedPose> poses;
     const auto add_poses = [&](const PoseList& list, bool must_be_near, std::size_t limit) {
       const std::size_t count = std::min(limit, list.size());

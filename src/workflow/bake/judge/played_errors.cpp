@@ -11,17 +11,17 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256, kPosesAtOnce = 8, kBetweenKeys = 3, kSteps = 8;
+constexpr std::size_t kPlayedBlock = 256, kPosesAtOnce = 8, kBetweenKeys = 3, kSteps = 8;
 constexpr unsigned kRigSeed = 3;
 constexpr double kPhase = 0.61, kLeastLength = 1e-3;
 // Errors are counted in bins of a tenth of themselves.
-constexpr std::size_t kBins = 400;
+constexpr std::size_t kPlayedBins = 400;
 constexpr double kLeast = 1e-12, kBinsPerUnit = 10;
 
 struct Found {
   std::size_t count = 0;
   double sum = 0, worst = 0;
-  std::array<std::uint32_t, kBins> bins{};
+  std::array<std::uint32_t, kPlayedBins> bins{};
 };
 
 // Some poses at once, and the right normals there.
@@ -96,7 +96,7 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
     to.count += each.count;
     to.sum += each.sum;
     to.worst = std::fmax(to.worst, each.worst);
-    for (std::size_t b = 0; b < kBins; ++b) to.bins[b] += each.bins[b];
+    for (std::size_t b = 0; b < kPlayedBins; ++b) to.bins[b] += each.bins[b];
   };
   Found all;
   for_batches(rights, poses, [&](const Batch& batch) {
@@ -106,13 +106,13 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
         found.sum += error;
         found.worst = std::fmax(found.worst, error);
         const double bin = kBinsPerUnit * portable::log(std::fmax(error, kLeast) / kLeast);
-        ++found.bins[std::min(kBins - 1, static_cast<std::size_t>(bin))];
+        ++found.bins[std::min(kPlayedBins - 1, static_cast<std::size_t>(bin))];
       });
     };
-    add(all, parallel_fold<Found>(vertices.size(), kBlock, look, add));
+    add(all, parallel_fold<Found>(vertices.size(), kPlayedBlock, look, add));
   });
   ShownErrors result{all.count, all.count > 0 ? all.sum / static_cast<double>(all.count) : 0, 0, all.worst};
-  std::size_t beyond = all.count / 1000, b = kBins - 1;
+  std::size_t beyond = all.count / 1000, b = kPlayedBins - 1;
   while (b > 0 && all.bins[b] <= beyond) beyond -= all.bins[b--];
   if (b > 0) result.most = std::fmin(kLeast * portable::exp(static_cast<double>(b + 1) / kBinsPerUnit), all.worst);
   return result;
@@ -123,7 +123,7 @@ double least_worst(const RightNormals& rights, std::span<const std::uint32_t> ve
                    const PoseList& poses) {
   std::vector<double> worst(vertices.size() * forms.size(), 0.0);
   for_batches(rights, poses, [&](const Batch& batch) {
-    parallel_each(vertices.size(), kBlock, [&](std::size_t n) {
+    parallel_each(vertices.size(), kPlayedBlock, [&](std::size_t n) {
       for (std::size_t f = 0; f < forms.size(); ++f) {
         double& most = worst[n * forms.size() + f];
         batch.visit(vertices[n], element_of_vertex[vertices[n]], forms[f].of(n),

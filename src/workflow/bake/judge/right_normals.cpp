@@ -7,10 +7,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kRightBlock = 256;
 // Below this part of the terms that it is made of the direction of a normal is not judged. An audit draws the line at
 // five times that.
-constexpr double kLeastLength = 2e-5;
+constexpr double kLeastTerms = 2e-5;
 
 }  // namespace
 
@@ -24,12 +24,12 @@ RightNormals::RightNormals(const GltfShading& shading, const NormalTerms& terms,
       base_lengths_(base_.size()),
       all_elements_(base_.size()),
       turns_(shading.element_of_vertex.size()) {
-  parallel_each(base_.size(), kBlock, [&](std::size_t e) {
+  parallel_each(base_.size(), kRightBlock, [&](std::size_t e) {
     base_[e] = terms_.base_of(static_cast<std::uint32_t>(e));
     base_lengths_[e] = length(base_[e]);
     all_elements_[e] = static_cast<std::uint32_t>(e);
   });
-  parallel_each(turns_.size(), kBlock, [&](std::size_t v) {
+  parallel_each(turns_.size(), kRightBlock, [&](std::size_t v) {
     const std::uint32_t element = shading_.element_of_vertex[v];
     if (element != GltfShading::kNoElement) turns_[v] = ShownTurn(stored(v), base_[element]);
   });
@@ -53,7 +53,7 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
 
 Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept {
   const double of_base = base_lengths_[element], size = length(by_area);
-  if (!(size > kLeastLength * std::max(of_base, largest_[element]))) return {};
+  if (!(size > kLeastTerms * std::max(of_base, largest_[element]))) return {};
   return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(direction);
 }
 
@@ -68,7 +68,7 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
   blend_positions(shading_.set, pose, positions);
   const std::vector<Vec3d> weighted =
       terms_.is_fitted() ? terms_.weighted_at(positions, elements) : std::vector<Vec3d>();
-  parallel_each(elements.size(), kBlock, [&](std::size_t n) {
+  parallel_each(elements.size(), kRightBlock, [&](std::size_t n) {
     const Vec3d normal = normal_from_positions(shading_, positions, elements[n]);
     result[n] = judged(elements[n], normal, weighted.empty() ? normal : weighted[n]);
   });

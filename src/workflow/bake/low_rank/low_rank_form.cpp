@@ -21,7 +21,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
-constexpr std::size_t kRowsAtOnce = 64, kBlock = 16;
+constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
 // Of the tolerance: what needs nothing, what singular vectors alone should leave in 99.9 % of all pairs, and what least
 // squares should then leave at worst.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
@@ -104,7 +104,7 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   for (std::size_t i = 0; i < targets; ++i) matrix[i * targets + i] += ridge;
   const Cholesky factors(std::move(matrix), targets, ridge);
   std::vector<float> result(missing.points() * 3 * targets);
-  parallel_each(missing.points(), kBlock, [&](std::size_t p) {
+  parallel_each(missing.points(), kFormBlock, [&](std::size_t p) {
     std::vector<Vec3d> of(targets);
     const std::size_t stride = missing.stride();
     const float* const lack = missing.missing(p);

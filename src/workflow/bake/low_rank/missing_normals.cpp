@@ -15,9 +15,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 64;
-constexpr std::size_t kPosesAtOnce = 16;  // whose normals are held
-constexpr std::size_t kPadding = 16;      // floats: the widest vector
+constexpr std::size_t kMissingBlock = 64;
+constexpr std::size_t kPosesAtOnce = 16;    // whose normals are held
+constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
 
 }  // namespace
 
@@ -59,7 +59,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
                                std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own,
                                PoseList poses)
     : poses_(std::move(poses)),
-      stride_((poses_.size() + kPadding - 1) / kPadding * kPadding),
+      stride_((poses_.size() + kStridePadding - 1) / kPadding * kPadding),
       numbers_(points.size()),
       shown_(points.size() * 3 * stride_),
       missing_(points.size() * 3 * stride_) {
@@ -70,7 +70,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
     parallel_for(count, [&](std::size_t r) {
       normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
     });
-    parallel_each(points.size(), kBlock, [&](std::size_t p) {
+    parallel_each(points.size(), kMissingBlock, [&](std::size_t p) {
       const std::uint32_t vertex = points[p].front();
       const BaseNormal base(rights.stored(vertex));
       float* const shown = shown_.data() + 3 * stride_ * p + first;
@@ -136,7 +136,7 @@ void MissingNormals::show_more(std::size_t point, std::span<const float> more) {
 
 void MissingNormals::keep_beyond(double degrees) {
   std::vector<char> is_kept(points(), 0);
-  parallel_each(points(), kBlock, [&](std::size_t p) {
+  parallel_each(points(), kMissingBlock, [&](std::size_t p) {
     const float *s = shown(p), *m = missing(p);
     for (std::size_t r = 0; r < rows() && is_kept[p] == 0; ++r) {
       const Vec3f now = {s[r], s[stride_ + r], s[2 * stride_ + r]};

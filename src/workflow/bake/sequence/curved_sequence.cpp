@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kCurvedBlock = 256;
 constexpr double kEven = 4, kOdd = 10;  // so that the weights are about 1 at most
 
 double even_weight(double t) { return kEven * t * (1 - t); }
@@ -122,7 +122,7 @@ void take_keys(const Motion& motion, const NormalGroups& groups, PathKind path, 
   std::vector<std::vector<Vec3d>> directions(segments + 1, std::vector<Vec3d>(count));
   for (std::size_t s = 0; s < segments; ++s) {
     const std::vector<Controls> normals = all_path_normals(path_segment(motion, s, path), groups);
-    parallel_each(count, kBlock, [&](std::size_t e) {
+    parallel_each(count, kCurvedBlock, [&](std::size_t e) {
       if (directions[s][e] == Vec3d{}) directions[s][e] = unit_normal_at(normals[e], 0).vector;
       directions[s + 1][e] = unit_normal_at(normals[e], 1).vector;
       SequenceElement& element = result.elements[e];
@@ -134,7 +134,7 @@ void take_keys(const Motion& motion, const NormalGroups& groups, PathKind path, 
     });
   }
   result.keys.assign(segments + 1, std::vector<Vec3d>(count));
-  parallel_each(count, kBlock, [&](std::size_t e) {
+  parallel_each(count, kCurvedBlock, [&](std::size_t e) {
     SequenceElement& element = result.elements[e];
     if (element.has_none) element.normal = kAnyNormal;
     for (std::size_t k = 1; k <= segments; ++k) {
@@ -166,7 +166,7 @@ CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, P
     const SegmentShares shares = shares_of(times, s, {is_given.get(), times.size()});
     CurveBend even{s, false, std::vector<Vec3d>(groups.size())}, odd{s, true, std::vector<Vec3d>(groups.size())};
     const double error = parallel_fold<double>(
-        groups.size(), kBlock,
+        groups.size(), kCurvedBlock,
         [&](std::size_t e, double& worst) {
           if (result.elements[e].has_none) return;
           const ElementBend bend = bend_of_element(shown_by_keys(result, shares, e), normals[e], tolerance);

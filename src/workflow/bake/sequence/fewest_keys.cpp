@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 128;
+constexpr std::size_t kKeyBlock = 128;
 
 // An instant: the segment it lies in, or at the end of which, and local t.
 struct Instant {
@@ -24,7 +24,7 @@ struct Instant {
 std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std::size_t segment) {
   const SegmentForm form{normals.at_key(segment), normals.at_key(segment + 1), normals.bends(segment)};
   std::vector<ControlNormals> result(normals.elements());
-  parallel_each(result.size(), kBlock, [&](std::size_t e) { result[e] = form.control_normals(e); });
+  parallel_each(result.size(), kKeyBlock, [&](std::size_t e) { result[e] = form.control_normals(e); });
   return result;
 }
 
@@ -40,7 +40,7 @@ template <class OfSegment>
 std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
   const std::vector<ControlNormals>& normals = of_segment(at.segment);
   std::vector<Vec3d> result(normals.size());
-  parallel_each(result.size(), kBlock, [&](std::size_t e) { result[e] = unit_normal_at(normals[e], at.t).vector; });
+  parallel_each(result.size(), kKeyBlock, [&](std::size_t e) { result[e] = unit_normal_at(normals[e], at.t).vector; });
   if (at.t > 0 || at.segment == 0 || std::find(result.begin(), result.end(), Vec3d{}) == result.end()) return result;
   const std::vector<ControlNormals>& before = of_segment(at.segment - 1);
   for (std::size_t e = 0; e < result.size(); ++e)
@@ -76,7 +76,7 @@ class LineJudge {
       const std::vector<char>& left_out = left_out_[s];
       std::atomic<bool> is_over = false;
       const double most = parallel_fold<double>(
-          normals.size(), kBlock,
+          normals.size(), kKeyBlock,
           [&](std::size_t e, double& worst) {
             if (is_over.load(std::memory_order_relaxed) || (!left_out.empty() && left_out[e] != 0)) return;
             const double off = error_of(normals[e], part, from[e], to[e]);
@@ -97,7 +97,7 @@ class LineJudge {
     std::vector<char>& left_out = left_out_[start.segment];
     left_out.resize(normals.size());
     const auto part = part_of(start.segment, a, b);
-    parallel_each(normals.size(), kBlock, [&](std::size_t e) {
+    parallel_each(normals.size(), kKeyBlock, [&](std::size_t e) {
       if (!(error_of(normals[e], part, from[e], to[e]) <= tolerance_)) left_out[e] = 1;
     });
   }

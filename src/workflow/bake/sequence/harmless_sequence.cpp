@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kHarmlessBlock = 256;
 constexpr double kWorthIt = 2e-3;    // radians: a smaller gain would only fill the file
 constexpr std::size_t kJudged = 40;  // a segment is judged at so many instants, less the first key
 
@@ -40,7 +40,7 @@ HarmlessElements harmless_elements(const SequenceNormals& normals) {
   HarmlessElements result{std::vector<SequenceElement>(normals.elements()), 0};
   std::vector<char> has_room(normals.elements(), 1);
   (void)each_segment(normals, [&](std::size_t, const SegmentForm& form) -> Status {
-    parallel_each(has_room.size(), kBlock, [&](std::size_t e) {
+    parallel_each(has_room.size(), kHarmlessBlock, [&](std::size_t e) {
       SequenceElement& element = result.elements[e];
       const ControlNormals n = form.control_normals(e);
       if (element.has_none) {
@@ -61,7 +61,7 @@ SegmentEnds segment_ends(std::span<const SequenceElement> elements, const Segmen
                          const std::vector<Vec3d>& before) {
   SegmentEnds ends{before, std::vector<Vec3d>(elements.size())};
   ends.from.resize(elements.size());
-  parallel_each(elements.size(), kBlock, [&](std::size_t e) {
+  parallel_each(elements.size(), kHarmlessBlock, [&](std::size_t e) {
     const ControlNormals n = form.control_normals(e);
     const auto direction = [&](double t, const Vec3d& otherwise) {
       const Vec3d found = unit_normal_at(n, t).vector;
@@ -104,7 +104,7 @@ UnitBends unit_bends(std::span<const SequenceElement> elements, const SegmentFor
     }
     angles = {angles.gain + straight - error, std::max(angles.error, error), std::max(angles.straight, straight)};
   };
-  const Angles all = parallel_fold<Angles>(elements.size(), kBlock, bend, [](Angles& sum, const Angles& each) {
+  const Angles all = parallel_fold<Angles>(elements.size(), kHarmlessBlock, bend, [](Angles& sum, const Angles& each) {
     sum = {sum.gain + each.gain, std::max(sum.error, each.error), std::max(sum.straight, each.straight)};
   });
   result.gain = all.gain;

@@ -16,7 +16,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // faces or elements that one task takes
+constexpr std::size_t kTaskBlock = 1024;  // faces or elements that one task takes
 
 // The normal of a polygon, with components that are nothing but the rounding of its products set to zero.
 Vec3d polygon_normal(std::span<const std::uint32_t> face, const std::vector<Vec3d>& positions) {
@@ -87,8 +87,9 @@ std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
 std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
   const Topology& topology = motion_->topology;
   std::vector<Vec3d> faces(topology.face_count()), result(elements());
-  parallel_each(faces.size(), kBlock, [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
-  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+  parallel_each(faces.size(), kTaskBlock,
+                [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
+  parallel_each(result.size(), kTaskBlock, [&](std::size_t e) {
     VectorSum sum;
     for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
     result[e] = sum.without_rounding();

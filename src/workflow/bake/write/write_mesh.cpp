@@ -14,8 +14,8 @@ namespace {
 
 // A weight as JSON. What is beyond float32, which JSON has no word for, becomes the largest float.
 std::string weight_text(double weight) {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return json_number(static_cast<float>(std::clamp(weight, -kMost, kMost)));
+  constexpr auto kMostWeight = static_cast<double>(std::numeric_limits<float>::max());
+  return json_number(static_cast<float>(std::clamp(weight, -kMostWeight, kMostWeight)));
 }
 
 }  // namespace

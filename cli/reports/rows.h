@@ -1,0 +1,21 @@
+/// What the tables of all reports have in common: how long a name and a table may be, and angles in degrees.
+#ifndef CLI_REPORTS_ROWS_H_
+#define CLI_REPORTS_ROWS_H_
+
+#include <cstddef>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal::cli {
+
+/// How many characters a table shows of a name that comes from a file.
+inline constexpr std::size_t kLongestName = 32;
+
+/// How many rows a table has for people; --json has all of them.
+inline constexpr std::size_t kMostRows = 16;
+
+[[nodiscard]] constexpr double in_degrees(double radians) noexcept { return radians * kDegreesPerRadian; }
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_ROWS_H_
