@@ -16,7 +16,7 @@ int main(int argument_count, char** arguments) {
                         merge_command(), query_command(), report_command(), sample_command()},
                        argument_count, arguments);
   } catch (const std::bad_alloc&) {
-    say_raw("chronormal: out of memory\n");
+    say_ending("out of memory");
   } catch (const std::exception& error) {
     say("", std::string("internal error: ").append(error.what()), Tone::kError);
   }

@@ -34,6 +34,13 @@ set(kernel_sources ${library_sources})
 list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
 file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.cpp)
+if(CHRONORMAL_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)  # the bindings for C are enough
+  find_package(MPI REQUIRED COMPONENTS CXX)
+  list(FILTER cli_sources EXCLUDE REGEX "/ranks/alone\\.cpp$")
+else()
+  list(FILTER cli_sources EXCLUDE REGEX "/ranks/mpi\\.cpp$")
+endif()
 set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/json.cpp
                             PROPERTIES COMPILE_DEFINITIONS CHRONORMAL_VERSION="${PROJECT_VERSION}")
 # What the parser of the command line makes of options compiles four times as fast when it is not optimised.
@@ -126,6 +133,9 @@ function(chronormal_add_product suffix flags)
   target_compile_definitions(chronormal_cli${suffix} PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
                                                         nlohmann_json::nlohmann_json)
+  if(CHRONORMAL_MPI)
+    target_link_libraries(chronormal_cli${suffix} PRIVATE MPI::MPI_CXX)
+  endif()
 endfunction()
 
 chronormal_add_product("" chronormal_product_flags)

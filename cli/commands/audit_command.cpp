@@ -14,6 +14,7 @@
 #include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
 #include "cli/options/resume.h"
+#include "cli/ranks/ranks.h"
 #include "cli/reports/audit_files.h"
 #include "cli/reports/audit_report.h"
 #include "cli/terminal/format.h"
@@ -124,7 +125,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   const GltfDocument* const document = input.document();
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   if (document != nullptr && how.shard)
-    return misuse("--shard", "it divides the segments of a sequence, and a glTF file is none");
+    return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path(input, how.path); !known) return known.error();
   if (resumed != nullptr) {
     if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
@@ -161,7 +162,8 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
-  how.shard = shard.value();
+  how.shard = has_ranks() ? own_shard() : shard.value();
+  how.peers = ranks_as_peers();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   if (how.shard && options.json)
     return misuse("--json", "OUT of a shard is a part, of which chronormal merge makes the JSON");
@@ -170,7 +172,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
-  how.progress = progress.callback("auditing", "segments");
+  how.progress = watching_ranks(progress.callback("auditing", "segments"));
   return how;
 }
 
@@ -213,7 +215,14 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   Result<Audited> audited = audit_input(options, how, progress, resumed.value().get());
   progress.clear();
   if (!audited) return audited.error();
-  const Audited& found = audited.value();
+  Audited& found = audited.value();
+  if (has_ranks()) {
+    const std::vector<Part> parts = gather_parts(audit_part(found.name(), found.audit, found.tolerance));
+    if (parts.empty()) return kExitDone;  // the first rank prints
+    Result<Audit> all = merge_audit_parts(parts);
+    if (!all) return all.error();
+    found.audit = std::move(all).value();
+  }
   if (options.errors) {
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
     if (!written) return written.error();
@@ -267,6 +276,12 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
 }
 
 Result<int> run(const AuditArguments& options) {
+  if (const Status divisible = check_ranks(options.shard.text     ? "--shard"
+                                           : options.errors       ? "--errors"
+                                           : options.resume.asked ? "--resume"
+                                                                  : "");
+      !divisible)
+    return divisible.error();
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
   if (!how) return how.error();
@@ -274,6 +289,8 @@ Result<int> run(const AuditArguments& options) {
   if (!options.input.base.empty() || !options.input.samples.empty()) return run_one(options, how.value(), progress);
   const Result<std::vector<std::string>> files = find_gltf_files(options.input.files);
   if (!files) return files.error();
+  if (has_ranks() && !files.value().empty())
+    return misuse("mpirun", "it divides the segments of a sequence, and a glTF file is none");
   const bool is_one = files.value().empty() || files.value() == options.input.files;
   return is_one && files.value().size() < 2 ? run_one(options, how.value(), progress)
                                             : run_several(options, how.value(), files.value(), progress);
@@ -299,7 +316,8 @@ Command audit_command() {
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); },
-      kRefusedByAudit};
+      kRefusedByAudit,
+      true};
 }
 
 }  // namespace chronormal::cli

@@ -11,6 +11,7 @@
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
 #include "cli/options/resume.h"
+#include "cli/ranks/ranks.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
@@ -69,6 +70,7 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
+  if (options.resume.asked) return "--resume";
   if (options.resume.asked) return "--resume";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
@@ -141,11 +143,11 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
                                  options.errors.has_value()};
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
-  compare_options.shard = options.shard.read().value();
+  compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
   compare_options.path = options.path.read().value();
   const std::size_t segments =
       compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
-  compare_options.progress = progress.callback("comparing", "segments", segments);
+  compare_options.progress = watching_ranks(progress.callback("comparing", "segments", segments));
   if (const Status status = check_path(input, compare_options.path); !status) return status.error();
   if (resumed != nullptr) {
     if (input.document() != nullptr || motion.value()->motion().kind != MotionKind::kSequence)
@@ -163,6 +165,16 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   progress.clear();
   if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
   return comparison;
+}
+
+// An option that was given, and has no meaning where several ranks divide one motion.
+std::string option_of_one_process(const CompareArguments& options) {
+  if (options.shard.text) return "--shard";
+  if (options.resume.asked) return "--resume";
+  if (options.errors) return "--errors";
+  if (options.blend.rows) return "--blend";
+  if (options.truth.every) return "--truth";
+  return options.each ? "--each" : "";
 }
 
 // One motion at a time is in memory.
@@ -235,6 +247,7 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
   if (options.resume.asked) return "--resume";
+  if (options.resume.asked) return "--resume";
   if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";
 }
@@ -256,6 +269,7 @@ Result<int> run_truth(const CompareArguments& options) {
 }
 
 Result<int> run(const CompareArguments& options) {
+  if (const Status divisible = check_ranks(option_of_one_process(options)); !divisible) return divisible.error();
   if (options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (options.blend.rows) return run_blend(options);
@@ -295,15 +309,23 @@ Result<int> run(const CompareArguments& options) {
   CompareArguments same = options;
   const auto resumed = options.resume.begin("compare", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
-  const auto comparisons = compare_inputs(options, progress, resumed.value().get());
+  auto comparisons = compare_inputs(options, progress, resumed.value().get());
   if (!comparisons) return comparisons.error();
+  if (has_ranks()) {
+    NamedComparison& own = comparisons.value().front();
+    const std::vector<Part> parts = gather_parts(compare_part(own));
+    if (parts.empty()) return kExitDone;  // the first rank prints
+    Result<NamedComparison> all = merge_compare_parts(parts);
+    if (!all) return all.error();
+    own.comparison = std::move(all.value().comparison);
+  }
 
   if (options.errors) {
     const Status written =
         write_errors(comparisons.value().front().comparison.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const bool with_times = !options.no_times && !options.resume.asked;
+  const bool with_times = !options.no_times && !options.resume.asked && !has_ranks();
   std::string text;
   if (options.shard.text)
     text = compare_part(comparisons.value().front());
@@ -334,8 +356,13 @@ Result<int> run(const CompareArguments& options) {
 
 Command compare_command() {
   auto options = std::make_shared<CompareArguments>();
-  return {"compare", "Compare ways to interpolate normals with the exact normals, on your mesh", tables(*options),
-          compare_footer(), [options] { return run(*options); }};
+  return {"compare",
+          "Compare ways to interpolate normals with the exact normals, on your mesh",
+          tables(*options),
+          compare_footer(),
+          [options] { return run(*options); },
+          {},
+          true};
 }
 
 }  // namespace chronormal::cli

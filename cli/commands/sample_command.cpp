@@ -7,6 +7,7 @@
 #include "cli/options/command.h"
 #include "cli/options/moments.h"
 #include "cli/options/resume.h"
+#include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
@@ -121,9 +122,15 @@ Result<Request> understand(const SampleArguments& options) {
   if (!asked) return asked.error();
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
+  if (const Status divisible = check_ranks(options.shard.text     ? "--shard"
+                                           : options.resume.asked ? "--resume"
+                                                                  : "");
+      !divisible)
+    return divisible.error();
   Request request{sample.value(),
                   std::move(asked).value(),
-                  {options.common.output, format.value(), options.common.force, shard.value().value_or(Shard{})}};
+                  {options.common.output, format.value(), options.common.force, shard.value().value_or(own_shard())}};
+  request.output.peers = ranks_as_peers();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.resume.asked) {
     if (format.value() != SampleFormat::kNpy)
@@ -177,7 +184,7 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
 // resumed is nullptr where the run does not go on.
 Result<SampleSummary> write_or_go_on(MotionStream& stream, const Request& request, const Moments& moments,
                                      Progress& progress, bool quiet, ResumedRun* resumed) {
-  const auto show = progress.callback("sampling", "times");
+  const auto show = watching_ranks(progress.callback("sampling", "times"));
   if (resumed == nullptr) return write_samples(stream, request.sample, moments, request.output, show);
   if (stream.motion().kind != MotionKind::kSequence)
     return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
@@ -217,7 +224,7 @@ Result<int> run(const SampleArguments& options) {
   const auto resumed = options.resume.begin("sample", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
   const auto written =
-      write(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
+      write_or_go_on(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
   progress.clear();
   if (!written) return written.error();
   if (const Status done = resumed.value() ? resumed.value()->finish() : Success{}; !done) return done.error();
@@ -233,8 +240,13 @@ Result<int> run(const SampleArguments& options) {
 
 Command sample_command() {
   auto options = std::make_shared<SampleArguments>();
-  return {"sample", "Write the normals of a motion at chosen times, or of targets at chosen weights", tables(*options),
-          sample_footer(), [options] { return run(*options); }};
+  return {"sample",
+          "Write the normals of a motion at chosen times, or of targets at chosen weights",
+          tables(*options),
+          sample_footer(),
+          [options] { return run(*options); },
+          {},
+          true};
 }
 
 }  // namespace chronormal::cli

@@ -1,12 +1,14 @@
 // Parses the options that commands share, and opens inputs for them.
 #include "cli/options/command.h"
 
+#include <algorithm>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/workflow/audit.h"
+#include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "core/charconv.h"
@@ -66,6 +68,18 @@ Result<std::optional<Shard>> ShardArgument::read() const {
                         is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
   if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
   return std::optional(Shard{index - 1, count});
+}
+
+std::vector<Part> gather_parts(const std::string& own) {
+  std::vector<Part> parts;
+  for (std::string& text : gather_texts(own))
+    parts.push_back({formatted("what rank {} has found", parts.size()), std::move(text)});
+  return parts;
+}
+
+Status check_ranks(const std::string& option) {
+  if (!has_ranks() || option.empty()) return Success{};
+  return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
 }
 
 std::vector<Option> PathArgument::table(const std::string& what) {
@@ -185,7 +199,9 @@ Result<ElementOptions> ElementArguments::options() const {
 }
 
 Result<Input> open_input(InputOptions options, Progress& progress) {
-  options.progress = progress.callback("reading");
+  if (has_ranks() && std::find(options.files.begin(), options.files.end(), "-") != options.files.end())
+    return misuse("-", "only one rank of MPI has the standard input: name a file");
+  options.progress = watching_ranks(progress.callback("reading"));
   Result<Input> input = chronormal::open_input(options);
   progress.clear();
   return input;

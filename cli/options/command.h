@@ -14,6 +14,7 @@
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
 #include "chronormal/workflow/shard.h"
 #include "cli/options/options.h"
@@ -74,6 +75,11 @@ struct ShardArgument {
   /// Errors: kUsage where the text is no share I/N.
   [[nodiscard]] Result<std::optional<Shard>> read() const;
 };
+
+/// Gathers what the ranks have written as shards (cli/ranks/ranks.h); nothing but on the first.
+[[nodiscard]] std::vector<Part> gather_parts(const std::string& own);
+/// Errors: kUsage where there are several ranks and option, which divides no task, was given. An empty one was not.
+[[nodiscard]] Status check_ranks(const std::string& option);
 
 /// The option --path: how vertices move between the keyframes of a sequence.
 struct PathArgument {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cli/options/help.h"
+#include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/process.h"
@@ -180,27 +181,11 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
   return std::nullopt;
 }
 
-}  // namespace
-
-Check check_whole(std::size_t least, std::size_t most) {
-  const std::string range = most == static_cast<std::size_t>(-1)
-                                ? formatted("of {} or more", grouped(least))
-                                : formatted("from {} to {}", grouped(least), grouped(most));
-  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
-    std::size_t number = 0;
-    const char* const last = value.data() + value.size();
-    const auto [end, code] = from_chars(value.data(), last, number);
-    return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
-  };
-}
-
-Check check_given(std::string message) {
-  return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
-}
-
-int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
+// `running` gets the name of the command that runs. What the parser refuses was said by the time that this returns.
+Result<int> understand_and_run(const std::vector<Command>& commands, int argument_count, char** arguments,
+                               std::string& running) {
   CLI::App program("", "chronormal");
-  const std::string version = formatted("chronormal {}\n", kVersion);
+  const std::string version = formatted("chronormal {}{}\n", kVersion, has_mpi() ? " with MPI" : "");
   program.set_version_flag("-V,--version", version);
   program.require_subcommand(1);
   for (const Command& command : commands) add_command(command, program);
@@ -242,9 +227,35 @@ int run_program(const std::vector<Command>& commands, int argument_count, char**
   }
   const auto chosen = std::find_if(commands.begin(), commands.end(),
                                    [&](const Command& command) { return program.got_subcommand(command.name); });
+  running = chosen->name;
+  if (has_ranks() && !chosen->shares)
+    return Error{ErrorCode::kUsage, "mpirun", "it divides compare, audit and sample: run this on one rank"};
   prepare_threads();
-  const Result<int> result = chosen->run();
-  return result ? result.value() : report(chosen->name, result.error());
+  return chosen->run();
+}
+
+}  // namespace
+
+Check check_whole(std::size_t least, std::size_t most) {
+  const std::string range = most == static_cast<std::size_t>(-1)
+                                ? formatted("of {} or more", grouped(least))
+                                : formatted("from {} to {}", grouped(least), grouped(most));
+  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
+    std::size_t number = 0;
+    const char* const last = value.data() + value.size();
+    const auto [end, code] = from_chars(value.data(), last, number);
+    return code == std::errc{} && end == last && number >= least && number <= most ? "" : message;
+  };
+}
+
+Check check_given(std::string message) {
+  return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
+}
+
+int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
+  std::string name;  // of the command, once it is known
+  start_ranks([&name](const Error& error) { return report(name, error); });
+  return end_ranks(understand_and_run(commands, argument_count, arguments, name));
 }
 
 }  // namespace chronormal::cli

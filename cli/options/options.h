@@ -50,6 +50,7 @@ struct Command {
   std::string footer;
   std::function<Result<int>()> run;  ///< returns the exit code; the targets of the options have their values by then
   std::vector<RefusedOption> refused = {};
+  bool shares = false;  ///< whether several ranks divide the task (cli/ranks/ranks.h)
 };
 
 /// A check that the value is a whole number in a range, in digits alone.

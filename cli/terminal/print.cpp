@@ -3,24 +3,23 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <string>
 
 #include "chronormal/io/output.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/text.h"
 
 namespace chronormal::cli {
+namespace {
 
-Status print(std::string_view text) { return print_to("-", text, false); }
+constexpr std::size_t kLongestEnding = 256;
+std::string who_ends = "chronormal: ";
+bool is_rank = false, is_silent = false;
 
-Status print_to(const std::string& path, std::string_view text, bool force) {
-  if (path == "-" && shows_colour(STDOUT_FILENO)) return write_output(path, text, force);
-  return write_output(path, plain(text), force);
-}
-
-void say_text(std::string_view text) { say_raw(shows_colour(STDERR_FILENO) ? std::string(text) : plain(text)); }
-
-void say_raw(std::string_view text) noexcept {
+void write_to_stderr(std::string_view text) noexcept {
   const int system_error = errno;
   while (!text.empty()) {
     const ssize_t count = ::write(STDERR_FILENO, text.data(), text.size());
@@ -35,6 +34,42 @@ void say_raw(std::string_view text) noexcept {
   }
   errno = system_error;
 }
+
+}  // namespace
+
+Status print(std::string_view text) { return print_to("-", text, false); }
+
+Status print_to(const std::string& path, std::string_view text, bool force) {
+  if (path == "-" && is_silent) return Success{};
+  if (path == "-" && !is_rank && shows_colour(STDOUT_FILENO)) return write_output(path, text, force);
+  return write_output(path, plain(text), force);
+}
+
+void say_text(std::string_view text) {
+  say_raw(!is_rank && shows_colour(STDERR_FILENO) ? std::string(text) : plain(text));
+}
+
+void say_raw(std::string_view text) noexcept {
+  if (!is_silent) write_to_stderr(text);
+}
+
+// One call to the system, so that lines of several ranks do not mix.
+void say_ending(std::string_view message) noexcept {
+  std::array<char, kLongestEnding> line{};
+  auto end = line.begin();
+  for (const std::string_view part : {std::string_view(who_ends), message, std::string_view("\n")})
+    end =
+        std::copy_n(part.begin(), std::min<std::size_t>(part.size(), static_cast<std::size_t>(line.end() - end)), end);
+  write_to_stderr({line.data(), static_cast<std::size_t>(end - line.begin())});
+}
+
+void speak_as_rank(int rank) {
+  who_ends = "chronormal: rank " + std::to_string(rank) + ": ";
+  is_rank = true;
+  is_silent = rank != 0;
+}
+
+bool speaks_as_rank() noexcept { return is_rank; }
 
 void say(std::string_view command, std::string_view message, Tone tone) {
   std::string who = "chronormal";

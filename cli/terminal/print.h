@@ -26,6 +26,15 @@ void say_text(std::string_view text);
 /// Writes to stderr as it is, as much as it takes. Safe to call from the handler of a signal.
 void say_raw(std::string_view text) noexcept;
 
+/// Says "chronormal: message" as it is, of at most 200 bytes: why the process ends now. Safe to call from the handler of a
+/// signal.
+void say_ending(std::string_view message) noexcept;
+
+/// Makes this process one of several that share a task: only the first of them, rank 0, says anything, and none shows
+/// colours. But every rank says why it ends, with its number.
+void speak_as_rank(int rank);
+[[nodiscard]] bool speaks_as_rank() noexcept;
+
 /// Says "chronormal COMMAND: message" on stderr, in one line; command may be empty. An error is what the exit code tells,
 /// too.
 enum class Tone { kWarning, kError };

@@ -25,11 +25,11 @@ struct Ending {
 };
 
 constexpr Ending kEndings[] = {
-    {SIGHUP, "chronormal: ended, since its terminal is gone (SIGHUP)\n"},
-    {SIGINT, "chronormal: interrupted (SIGINT)\n"},
-    {SIGQUIT, "chronormal: ended (SIGQUIT)\n"},
-    {SIGTERM, "chronormal: ended (SIGTERM)\n"},
-    {SIGXCPU, "chronormal: ended, since it took more time than allowed (SIGXCPU)\n"},
+    {SIGHUP, "ended, since its terminal is gone (SIGHUP)"},
+    {SIGINT, "interrupted (SIGINT)"},
+    {SIGQUIT, "ended (SIGQUIT)"},
+    {SIGTERM, "ended (SIGTERM)"},
+    {SIGXCPU, "ended, since it took more time than allowed (SIGXCPU)"},
 };
 
 volatile std::sig_atomic_t stderr_is_terminal = 0;
@@ -37,16 +37,17 @@ std::atomic<const char*> last_words{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
 
 // A progress bar may stand in the line.
-void say_ending(const char* message) {
+void end_line_and_say(const char* message) {
   if (stderr_is_terminal != 0) say_raw("\r\033[K");
-  say_raw(message);
+  say_ending(message);
   if (const char* const text = last_words; text != nullptr) say_raw(text);
 }
 
 extern "C" void end_by_signal(int signal) {
   remove_temporaries();
   for (const Ending& ending : kEndings) {
-    if (ending.signal == signal) say_ending(ending.message);
+    // Of ranks, mpirun says which one a signal has ended, and sends SIGTERM to all others.
+    if (ending.signal == signal && !speaks_as_rank()) end_line_and_say(ending.message);
   }
   // The default action is there again (SA_RESETHAND), and comes when the handler returns.
   (void)std::raise(signal);
@@ -54,14 +55,14 @@ extern "C" void end_by_signal(int signal) {
 
 extern "C" void end_by_lost_input(int /*signal*/) {
   remove_temporaries();
-  say_ending("chronormal: an input became shorter while it was read, or can not be read any more\n");
+  end_line_and_say("an input became shorter while it was read, or can not be read any more");
   ::_exit(kExitFailed);
 }
 
 // Where memory runs out, no destructor runs any more: not every library that JSON or threads come from survives that.
 void end_for_want_of_memory() {
   remove_temporaries();
-  say_ending("chronormal: out of memory\n");
+  end_line_and_say("out of memory");
   ::_exit(kExitFailed);
 }
 
@@ -69,14 +70,14 @@ void end_for_want_of_memory() {
 #ifdef NDEBUG
 extern "C" void end_by_abort(int /*signal*/) {
   remove_temporaries();
-  say_ending("chronormal: out of memory, or an internal error\n");
+  end_line_and_say("out of memory, or an internal error");
   ::_exit(kExitFailed);
 }
 #endif
 
 void end_by_exception() {
   remove_temporaries();
-  say_ending("chronormal: out of memory, or an internal error\n");
+  end_line_and_say("out of memory, or an internal error");
   ::_exit(kExitFailed);
 }
 

@@ -34,7 +34,7 @@ const std::vector<Floor> kFloors = {
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow",
      {"hosts", "shading", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json", "report"}},
-    {"cli", {"terminal", "options", "reports", "commands"}},
+    {"cli", {"terminal", "ranks", "options", "reports", "commands"}},
 };
 
 const fs::path kRoot = chronormal::kSourceFolder;

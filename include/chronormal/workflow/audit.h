@@ -44,6 +44,7 @@
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/motion_error.h"
+#include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
 
 namespace chronormal {
@@ -87,6 +88,9 @@ struct AuditOptions {
   /// an error that it returns ends the audit.
   std::vector<SegmentErrors> known = {};
   std::function<Status(const SegmentErrors&)> keep = {};
+  /// With these the shards find out together, by maximize(), which vertices move and how long normals get, so that each
+  /// of them looks at its own segments alone.
+  const Peers* peers = nullptr;
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };

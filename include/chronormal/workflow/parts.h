@@ -54,6 +54,11 @@ struct MergedParts {
 /// There must be at least one part
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
+/// The same of parts of comparisons alone, as what one run would have returned, without times and names of targets.
+[[nodiscard]] Result<NamedComparison> merge_compare_parts(std::span<const Part> parts);
+/// The same of parts of audits alone.
+[[nodiscard]] Result<Audit> merge_audit_parts(std::span<const Part> parts);
+
 /// Writes the array of which the files have the rows, in any order. Memory: a megabyte. Errors: kFailed for files that
 /// cannot be read; kInvalidInput for those that no shard of samples has left; kUsage for shards of different samples, and
 /// unless each row is in exactly one of them; those of write_output() in io/output.h.

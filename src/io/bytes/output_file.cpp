@@ -114,6 +114,7 @@ struct internal::OutputFile::State {
   bool replaces = false;    // whether target exists already, as:
   struct stat old {};
   std::unique_ptr<TemporaryFile> file = {};
+  bool is_joined = false;  // whether another process gives the file its name
   bool is_sealed = false;
   std::string gathered = {};  // what a stream or a device gets when it is finished
 
@@ -189,6 +190,19 @@ Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::u
 
 std::string OutputFile::partial_name(const std::string& path) { return follow_links(path) + ".partial"; }
 
+Result<OutputFile> OutputFile::join(const std::string& path, const std::string& name) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->is_joined = true;
+  state->file = TemporaryFile::of_peer(name);
+  if (state->file->is_open()) return OutputFile(std::move(state));
+  Error error = failure(path, errno);
+  error.message = "can not open what the first process has begun to write: " + error.message;
+  return error;
+}
+
+std::string OutputFile::temporary_name() const { return state_->file == nullptr ? "" : state_->file->name(); }
+
 Status OutputFile::append(std::span<const std::string_view> pieces) {
   if (!write_all(state_->descriptor(), pieces)) return state_->error();
   return Success{};
@@ -217,6 +231,11 @@ Status OutputFile::finish() {
     const bool closed =
         write_all(state.descriptor(), std::string_view(state.gathered)) && (state.stream || state.device.close());
     if (!closed) return state.error();
+    return Success{};
+  }
+  if (state.is_joined) {
+    if (Status status = seal(); !status) return status;
+    state.file->forget();
     return Success{};
   }
   if (!state.seal() || !state.file->rename_to(state.target, state.force)) {

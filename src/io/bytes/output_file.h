@@ -33,6 +33,12 @@ class OutputFile {
   /// create(); kUsage for a path that is no file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
   [[nodiscard]] static std::string partial_name(const std::string& path);
+  /// Opens the file that another process has begun, whose temporary_name() is the name, to write other parts of it by
+  /// put(). That process must call finish() after the others have called seal(), and these call finish() after it, or
+  /// destroy the file to remove it. Both need the same file system. Errors: kFailed with path as the place.
+  [[nodiscard]] static Result<OutputFile> join(const std::string& path, const std::string& name);
+  /// The name that the file has until it is whole; empty for what is no new file.
+  [[nodiscard]] std::string temporary_name() const;
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;

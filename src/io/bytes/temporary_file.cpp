@@ -59,11 +59,20 @@ inline namespace internal {
 // The name is free of anything that target has, so that it is never too long.
 TemporaryFile::TemporaryFile(const std::string& target, mode_t mode) {
   const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-  const std::string name = (folder / (".chronormal-" + random_digits() + ".tmp")).string();
+  open((folder / (".chronormal-" + random_digits() + ".tmp")).string(), O_CREAT | O_EXCL, mode);
+}
+
+std::unique_ptr<TemporaryFile> TemporaryFile::of_peer(const std::string& name) {
+  std::unique_ptr<TemporaryFile> file(new TemporaryFile());
+  file->open(name, 0, 0);
+  return file;
+}
+
+void TemporaryFile::open(const std::string& name, int flags, mode_t mode) {
   name_ = ::strdup(name.c_str());
   if (name_ == nullptr) return;  // errno says so
   place_ = enter(name_);
-  file_ = Descriptor(open_descriptor(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, mode));
+  file_ = Descriptor(open_descriptor(name, O_WRONLY | O_NOFOLLOW | flags, mode));
   if (!file_.is_open()) forget();
 }
 

@@ -11,6 +11,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 
 #include "io/bytes/descriptor.h"
@@ -27,6 +28,8 @@ class TemporaryFile {
     std::string name;
   };
   TemporaryFile(const Kept& kept, mode_t mode);
+  /// Opens the temporary file that another process has opened, by the name that it has there. Each of the two removes it.
+  [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   /// Removes the file, unless it was renamed or is one that stays.
@@ -34,6 +37,7 @@ class TemporaryFile {
 
   [[nodiscard]] bool is_open() const noexcept { return file_.is_open(); }
   [[nodiscard]] int descriptor() const noexcept { return file_.number(); }
+  [[nodiscard]] const char* name() const noexcept { return name_; }
   /// As Descriptor has it.
   [[nodiscard]] bool close() noexcept { return file_.close(); }
 
@@ -41,8 +45,12 @@ class TemporaryFile {
   /// EEXIST where something has that name and must not be replaced.
   [[nodiscard]] bool rename_to(const std::string& target, bool replace) noexcept;
 
- private:
+  /// Leaves the file to the other process, which has renamed it.
   void forget() noexcept;
+
+ private:
+  TemporaryFile() noexcept = default;
+  void open(const std::string& name, int flags, mode_t mode);
 
   char* name_ = nullptr;   // on the heap, for the list; nullptr where there is no file
   std::size_t place_ = 0;  // in the list

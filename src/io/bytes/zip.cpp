@@ -120,6 +120,10 @@ std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far) {
   return static_cast<std::uint32_t>(::crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
+std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
+  return static_cast<std::uint32_t>(::crc32_combine(first, second, static_cast<z_off_t>(second_size)));
+}
+
 Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name) {
   const std::optional<std::size_t> end = find_end(file);
   if (!end) return invalid_input(binary::place(name, file.size()), "this is no zip file, or its end is missing");

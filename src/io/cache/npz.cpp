@@ -427,6 +427,15 @@ Status NpzOutput::append(std::size_t array, std::string_view bytes) {
   return status;
 }
 
+void NpzOutput::join() {
+  const zip::Frame zip = frame();
+  for (std::size_t i = 0; i < members_.size(); ++i) members_[i].end = zip.headers[i].end() + members_[i].start.size();
+}
+
+void NpzOutput::add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes) {
+  members_[array].checksum = zip::joined_checksum(members_[array].checksum, checksum, bytes);
+}
+
 Status NpzOutput::finish() {
   const zip::Frame zip = frame();
   for (const zip::Frame::Header& header : zip.headers)

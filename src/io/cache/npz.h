@@ -121,10 +121,19 @@ class NpzOutput {
   /// Adds an array of float32 in C order that grows, and returns its number for append().
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape);
 
-  /// Writes the headers; call it once all arrays are added.
+  /// Writes the headers and the arrays that are whole; call it once all arrays are added.
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
+  /// Goes on with a file that another process has begun (OutputFile::join()), after the same arrays were added. skip()
+  /// passes over the bytes of a growing array that others write. The process that has called begin() calls finish(), after
+  /// add_checksum() for what each of the others, in their order, has appended to each growing array.
+  void join();
+  void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
+  /// The checksum of what was appended to an array.
+  [[nodiscard]] std::uint32_t checksum(std::size_t array) const noexcept { return members_[array].checksum; }
+  void add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes);
+
   /// Ends the file; call it once the growing arrays have all bytes of their shapes.
   [[nodiscard]] Status finish();
 

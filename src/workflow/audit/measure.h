@@ -86,11 +86,11 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element. The control normals of a quadratic follow from its ends
+/// The length of the largest control normal of each element in some of the segments. The control normals of a quadratic follow from its ends
 /// and its middle. (On curved paths they are those of the parabola through these three, which is near enough for a
 /// scale.)
 template <class Source>
-[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, std::size_t segments,
+[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, IndexRange segments,
                                                                   PlacedPart& placed) {
   std::vector<double> largest(placed.part.elements().size(), 0.0);
   const auto normals_at = [&](std::size_t s, double t) {
@@ -98,7 +98,7 @@ template <class Source>
     return placed.normals.elements;
   };
   source.forget();
-  for (std::size_t s = 0; s < segments; ++s) {
+  for (std::size_t s = segments.first; s < segments.end(); ++s) {
     if (const Status status = source.enter(s); !status) return status.error();
     const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
     placed.place(source, s, 1);
@@ -156,7 +156,12 @@ struct KeptErrors {
   std::span<const SegmentErrors> known = {};  ///< of the first segments of the share, which are not measured
   /// Is told of the errors of each segment, known or measured, while the segment is held; may be empty.
   std::function<Status(SegmentErrors& found, bool is_known)> tell_segment = {};
+  const Peers* peers = nullptr;  ///< that measure the other shares; nullptr: nobody is known to
 
+  /// The segments that this process looks at to find what follows from all of them.
+  [[nodiscard]] IndexRange looked_at(std::size_t all) const noexcept {
+    return peers != nullptr ? shard.of(all) : IndexRange{0, all};
+  }
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
@@ -197,8 +202,9 @@ template <class Source, class EachSample>
                              const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,
                              const EachSample& each_sample) {
   PlacedPart placed(part);
-  const Result<std::vector<double>> all_largest = largest_control_normals(source, subject.segments, placed);
+  Result<std::vector<double>> all_largest = largest_control_normals(source, kept.looked_at(subject.segments), placed);
   if (!all_largest) return all_largest.error();
+  if (kept.peers != nullptr) kept.peers->maximize(all_largest.value());
   const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;

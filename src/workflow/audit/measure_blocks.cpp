@@ -94,7 +94,6 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
 // Does what largest_control_normals() in measure.h does: enlarges the lengths where they are larger in these segments.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
-  largest.resize(block.elements.count);
   Scratch scratch;
   std::optional<std::size_t> keyframe;  // that scratch.end belongs to
   for (const std::size_t s : segments) {
@@ -112,6 +111,19 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
       const Vec3d m = 2.0 * normal_of(scratch.between, e) - 0.5 * (start + end);
       largest[e] = std::max({largest[e], length(start), length(m), length(end)});
     }
+  }
+}
+
+// Makes each number the largest that a peer has there, all of them in one go.
+void maximize(const Peers& peers, std::vector<std::vector<double>>& numbers) {
+  std::vector<double> all;
+  for (const std::vector<double>& some : numbers) all.insert(all.end(), some.begin(), some.end());
+  peers.maximize(all);
+  auto from = all.begin();
+  for (std::vector<double>& some : numbers) {
+    const auto end = from + static_cast<std::ptrdiff_t>(some.size());
+    std::copy(from, end, some.begin());
+    from = end;
   }
 }
 
@@ -202,14 +214,17 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
                       const KeptErrors& kept) {
   const Motion& motion = stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
-  std::vector<std::vector<double>> largest(blocks.size());
+  std::vector<std::vector<double>> largest;  // an element at the border of two blocks is in both
+  for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
+  const IndexRange looked_at = kept.looked_at(segments.size());
   // Segments that are held together share the normals at the keyframes between them.
-  const std::size_t at_once = stream.keeps_all() ? segments.size() : 1;
-  for (std::size_t s = 0; s < segments.size(); s += at_once) {
+  const std::size_t at_once = stream.keeps_all() ? looked_at.count : 1;
+  for (std::size_t s = looked_at.first; s < looked_at.end(); s += at_once) {
     const std::span<const std::size_t> held = segments.subspan(s, at_once);
     if (Status status = stream.hold_segments(held.front(), held.back()); !status) return status;
     parallel_for(blocks.size(), [&](std::size_t b) { keep_largest_normals(motion, held, blocks[b], largest[b]); });
   }
+  if (kept.peers != nullptr) maximize(*kept.peers, largest);
 
   const std::size_t per_wave = std::min(blocks.size(), kBlocksPerWaveAndThread * thread_count());
   std::vector<std::vector<MotionError>> wave(per_wave, std::vector<MotionError>(subject.samples));

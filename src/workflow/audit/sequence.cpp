@@ -188,7 +188,9 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const std::size_t> segments) {
+// Looks at these segments alone where peers look at the others.
+Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const std::size_t> segments,
+                                          const Peers* peers) {
   const Motion& motion = stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
   std::size_t still = moves.size();
@@ -202,6 +204,10 @@ Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const 
       --still;
     }
   }
+  if (peers == nullptr) return moves;
+  std::vector<double> of_all(moves.begin(), moves.end());
+  peers->maximize(of_all);
+  std::transform(of_all.begin(), of_all.end(), moves.begin(), [](double one) { return one != 0; });
   return moves;
 }
 
@@ -324,7 +330,9 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     subject.weighting = weighting;
     subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const Result<std::vector<bool>> moves = moving_vertices(stream, segments);
+    const IndexRange own = share.of(segments.size());
+    const Result<std::vector<bool>> moves = moving_vertices(
+        stream, options.peers ? std::span(segments).subspan(own.first, own.count) : std::span(segments), options.peers);
     if (!moves) return moves.error();
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
     if (!is_targets) groups = NormalGroups();  // the part has all that is needed of the groups
@@ -342,7 +350,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
                           static_cast<bool>(watch),
                           share,
                           options.known,
-                          tell_segment};
+                          tell_segment,
+                          options.peers};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;

@@ -324,7 +324,7 @@ Error of_other_inputs(const std::string& one, const std::string& other) {
   return Error{ErrorCode::kUsage, "", "these are shards of different inputs: " + one + " and " + other};
 }
 
-Result<MergedParts> merge_comparisons(std::vector<NamedComparison> named) {
+Result<NamedComparison> merge_comparisons(std::vector<NamedComparison> named) {
   std::vector<Comparison> shards;
   for (NamedComparison& one : named) {
     if (one.name != named.front().name) return of_other_inputs(named.front().name, one.name);
@@ -332,11 +332,10 @@ Result<MergedParts> merge_comparisons(std::vector<NamedComparison> named) {
   }
   Result<Comparison> all = merge(std::move(shards));
   if (!all) return all.error();
-  const bool is_within = !all.value().tolerance || all.value().cheapest;
-  return MergedParts{compare_json({{named.front().name, std::move(all).value()}}, false, false), is_within};
+  return NamedComparison{named.front().name, std::move(all).value(), {}};
 }
 
-Result<MergedParts> merge_audits(std::vector<NamedAudit> named) {
+Result<NamedAudit> merge_audits(std::vector<NamedAudit> named) {
   const std::optional<double> tolerance = named.front().tolerance;
   std::vector<Audit> shards;
   for (NamedAudit& one : named) {
@@ -344,10 +343,40 @@ Result<MergedParts> merge_audits(std::vector<NamedAudit> named) {
     if (one.tolerance != tolerance) return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
     shards.push_back(std::move(one.audit));
   }
-  const Result<Audit> all = merge(std::move(shards));
+  Result<Audit> all = merge(std::move(shards));
   if (!all) return all.error();
-  return MergedParts{audit_json(named.front().name, all.value(), tolerance),
-                     !tolerance || all.value().is_within(*tolerance)};
+  return NamedAudit{named.front().name, std::move(all).value(), tolerance};
+}
+
+// The parts that were read, of which one list is empty.
+struct ReadParts {
+  std::vector<NamedComparison> comparisons;
+  std::vector<NamedAudit> audits;
+};
+
+Result<ReadParts> read_parts(std::span<const Part> parts) {
+  ReadParts read;
+  for (const Part& part : parts) {
+    const Result<nlohmann::json> json = parse_json(part.text, part.name, 0, {});
+    if (!json) return json.error();
+    JsonComplaint complaint(part.name);
+    const JsonView view(json.value(), "", complaint);
+    if (!view.is_object() || !view.has("chronormal_part"))
+      return invalid_input(part.name, "this is no part that a --shard has left");
+    if (view.required_count("chronormal_part", kMost) != kVersion)
+      view.complain("chronormal_part", "the part is of another version");
+    const std::string command = view.required_text("command");
+    if (command == "compare")
+      read.comparisons.push_back(read_comparison(view));
+    else if (command == "audit")
+      read.audits.push_back(read_audit(view));
+    else
+      view.complain("command", "there are parts of compare and of audit");
+    if (complaint.first()) return *complaint.first();
+  }
+  if (!read.comparisons.empty() && !read.audits.empty())
+    return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
+  return read;
 }
 
 }  // namespace
@@ -401,30 +430,36 @@ Result<SegmentErrors> read_measured_segment(std::string_view text, const std::st
   return read_segment(text, name, read_measured);
 }
 
+Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
+  Result<ReadParts> read = read_parts(parts);
+  if (!read) return read.error();
+  if (read.value().comparisons.empty()) return Error{ErrorCode::kUsage, "", "these are parts of an audit"};
+  return merge_comparisons(std::move(read.value().comparisons));
+}
+
+Result<Audit> merge_audit_parts(std::span<const Part> parts) {
+  Result<ReadParts> read = read_parts(parts);
+  if (!read) return read.error();
+  if (read.value().audits.empty()) return Error{ErrorCode::kUsage, "", "these are parts of a comparison"};
+  Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
+  if (!all) return all.error();
+  return std::move(all.value().audit);
+}
+
 Result<MergedParts> merge_parts(std::span<const Part> parts) {
-  std::vector<NamedComparison> comparisons;
-  std::vector<NamedAudit> audits;
-  for (const Part& part : parts) {
-    const Result<nlohmann::json> json = parse_json(part.text, part.name, 0, {});
-    if (!json) return json.error();
-    JsonComplaint complaint(part.name);
-    const JsonView view(json.value(), "", complaint);
-    if (!view.is_object() || !view.has("chronormal_part"))
-      return invalid_input(part.name, "this is no part that a --shard has left");
-    if (view.required_count("chronormal_part", kMost) != kVersion)
-      view.complain("chronormal_part", "the part is of another version");
-    const std::string command = view.required_text("command");
-    if (command == "compare")
-      comparisons.push_back(read_comparison(view));
-    else if (command == "audit")
-      audits.push_back(read_audit(view));
-    else
-      view.complain("command", "there are parts of compare and of audit");
-    if (complaint.first()) return *complaint.first();
+  Result<ReadParts> read = read_parts(parts);
+  if (!read) return read.error();
+  if (read.value().audits.empty()) {
+    const Result<NamedComparison> all = merge_comparisons(std::move(read.value().comparisons));
+    if (!all) return all.error();
+    const Comparison& comparison = all.value().comparison;
+    return MergedParts{compare_json({all.value()}, false, false),
+                       !comparison.tolerance || comparison.cheapest.has_value()};
   }
-  if (!comparisons.empty() && !audits.empty())
-    return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
-  return audits.empty() ? merge_comparisons(std::move(comparisons)) : merge_audits(std::move(audits));
+  const Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
+  if (!all) return all.error();
+  const auto& [name, audit, tolerance] = all.value();
+  return MergedParts{audit_json(name, audit, tolerance), !tolerance || audit.is_within(*tolerance)};
 }
 
 Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force) {

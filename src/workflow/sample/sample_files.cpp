@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/output_file.h"
 #include "io/cache/npy.h"
@@ -80,11 +81,19 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
+  // Begins with the row at the first moment of a share: of a file of its own, or, with peers, of the file of all.
   // header is that of a .npy file.
-  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, std::size_t outputs,
-                             std::string_view header) {
-    if (!npz_) return file_->append(header);
-    const std::vector<std::uint64_t> shape = {moments.count(), outputs, 3};
+  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SampleOutput& output,
+                             std::size_t outputs, std::string_view header) {
+    const IndexRange share = output.shard.of(moments.count());
+    const bool is_first = output.shard.index == 0;
+    const std::vector<std::uint64_t> shape = {output.peers ? moments.count() : share.count, outputs, 3};
+    const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);  // bytes, of each output
+    if (!npz_) {
+      if (output.peers == nullptr) return file_->append(header);
+      at_ = header.size() + before * outputs;
+      return is_first ? file_->put(0, header) : Status(Success{});
+    }
     std::vector<double> values = moments.times;
     std::vector<std::uint64_t> when_shape = {moments.count()};
     if (moments.weights.empty() && values.empty()) values = {motion.keyframes[0].time};
@@ -96,7 +105,11 @@ class ArrayFile {
     npz_->add({moments.weights.empty() ? "times" : "weights", when.bytes()});
     positions_ = npz_->add_growing("positions", {moments.count(), motion.topology.vertex_count(), 3});
     if (faces) npz_->add({"faces", faces.value()});
-    return npz_->begin();
+    if (output.peers == nullptr || is_first) return npz_->begin();
+    npz_->join();
+    npz_->skip(normals_, before * outputs);
+    npz_->skip(positions_, before * motion.topology.vertex_count());
+    return Success{};
   }
 
   // A row of a .npy file gets a record of the journal, where there is one.
@@ -104,12 +117,28 @@ class ArrayFile {
                               Journal* journal) {
     if (!npz_) {
       const std::string_view bytes = bytes_of(normals);
+      if (at_) return file_->put(std::exchange(*at_, *at_ + bytes.size()), bytes);
       if (Status status = file_->append(bytes); !status || journal == nullptr) return status;
       return journal->append(WrittenRow::of(bytes, zeros).text());
     }
     const Status status = npz_->append(normals_, bytes_of(normals));
     return status ? npz_->append(positions_, bytes_of(pose.positions)) : status;
   }
+
+  // The checksums of the rows that this process has written; the first process adds those of each of the others.
+  [[nodiscard]] std::array<std::uint32_t, 2> checksums() const {
+    if (!npz_) return {};
+    return {npz_->checksum(normals_), npz_->checksum(positions_)};
+  }
+  void add(const std::array<std::uint32_t, 2>& checksums, std::uint64_t normals, std::uint64_t positions) {
+    if (!npz_) return;
+    npz_->add_checksum(normals_, checksums[0], normals * 3 * sizeof(float));
+    npz_->add_checksum(positions_, checksums[1], positions * 3 * sizeof(float));
+  }
+
+  // Ends what a process has written that is not the first.
+  [[nodiscard]] Status seal() { return file_->seal(); }
+  [[nodiscard]] Status finish_joined() { return file_->finish(); }
 
   [[nodiscard]] Status finish() {
     const Status status = npz_ ? npz_->finish() : Status(Success{});
@@ -124,6 +153,7 @@ class ArrayFile {
   std::unique_ptr<OutputFile> file_;  // on the heap, where npz_ finds it
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // numbers of arrays in npz_
+  std::optional<std::uint64_t> at_;          // where the next row goes in the .npy file of all peers
   std::string storage_;
 };
 
@@ -159,6 +189,72 @@ std::string mesh_file(const Topology& topology, const NormalSampler& sampler, co
   return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner);
 }
 
+// Begins a file; of peers, the first begins it, and the others open what the first has begun.
+Result<OutputFile> begin_file(const SampleOutput& output) {
+  if (output.peers != nullptr && output.shard.index > 0)
+    return OutputFile::join(output.path, output.peers->broadcast(""));
+  Result<OutputFile> file = OutputFile::create(output.path, output.force);
+  if (file && output.peers != nullptr) (void)output.peers->broadcast(file.value().temporary_name());
+  return file;
+}
+
+Status finish_all(std::vector<OutputFile>& meshes) {
+  for (OutputFile& mesh : meshes) {
+    if (Status status = mesh.finish(); !status) return status;
+  }
+  return Success{};
+}
+
+// What a process tells the first when it has written all of its rows.
+struct Written {
+  SampleSummary summary;
+  std::uint64_t positions = 0;
+  std::array<std::uint32_t, 2> checksums{};
+
+  [[nodiscard]] std::string text() const {
+    std::string numbers;
+    for (const std::uint64_t number : {std::uint64_t{summary.normals}, std::uint64_t{summary.zeros}, positions,
+                                       std::uint64_t{checksums[0]}, std::uint64_t{checksums[1]}})
+      numbers += std::to_string(number) + ' ';
+    return numbers;
+  }
+  [[nodiscard]] static Written read(const std::string& text) {
+    std::array<std::uint64_t, 5> numbers{};
+    const char* at = text.data();
+    for (std::uint64_t& number : numbers) at = from_chars(at, text.data() + text.size(), number).ptr + 1;
+    return {{static_cast<std::size_t>(numbers[0]), static_cast<std::size_t>(numbers[1])},
+            numbers[2],
+            {static_cast<std::uint32_t>(numbers[3]), static_cast<std::uint32_t>(numbers[4])}};
+  }
+};
+
+// Gives files their names once all peers have written theirs, and returns in the first process once all have done that.
+Result<SampleSummary> finish_with_peers(const SampleOutput& output, Written own, ArrayFile* arrays,
+                                        std::vector<OutputFile>& meshes) {
+  const bool is_first = output.shard.index == 0;
+  if (arrays != nullptr) {
+    own.checksums = arrays->checksums();
+    if (Status status = is_first ? Status(Success{}) : arrays->seal(); !status) return status.error();
+  }
+  const std::vector<std::string> all = output.peers->gather(own.text());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const Written other = Written::read(all[i]);
+    own.summary.normals += other.summary.normals;
+    own.summary.zeros += other.summary.zeros;
+    if (arrays != nullptr) arrays->add(other.checksums, other.summary.normals, other.positions);
+  }
+  if (arrays != nullptr && is_first) {
+    if (Status status = arrays->finish(); !status) return status.error();
+  }
+  (void)output.peers->broadcast("");
+  if (Status status = finish_all(meshes); !status) return status.error();
+  if (arrays != nullptr && !is_first) {
+    if (Status status = arrays->finish_joined(); !status) return status.error();
+  }
+  (void)output.peers->gather("");
+  return own.summary;
+}
+
 // Writes all moments of the share, but for rows that an earlier run wrote, as the journal has it.
 Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                 const SampleOutput& output, Journal* journal,
@@ -190,8 +286,9 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
                    "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
     const std::size_t outputs = sampler.output_count(), row_bytes = 3 * sizeof(float) * outputs;
     const ArrayPlace place{share.first, count, checksum_of(motion.topology, options, moments)};
+    const bool is_whole = output.peers != nullptr || output.shard.is_all();
     const std::string header =
-        npy::write_header("<f4", {share.count, outputs, 3}, output.shard.is_all() ? "" : place.text());
+        npy::write_header("<f4", {is_whole ? count : share.count, outputs, 3}, is_whole ? "" : place.text());
     if (journal != nullptr) {
       const auto found = find_written_rows(output.path, header, row_bytes, share.count, *journal);
       if (!found) return found.error();
@@ -201,15 +298,15 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
       if (found.value().is_whole) return summary;
     }
     const std::uint64_t kept = written > 0 ? header.size() + std::uint64_t{row_bytes} * written : 0;
-    Result<OutputFile> file = journal != nullptr ? OutputFile::go_on(output.path, output.force, kept)
-                                                 : OutputFile::create(output.path, output.force);
+    Result<OutputFile> file =
+        journal != nullptr ? OutputFile::go_on(output.path, output.force, kept) : begin_file(output);
     if (!file) return file.error();
     if (journal != nullptr) {
       partial.journal = journal;
       partial.name = OutputFile::partial_name(output.path);
     }
     arrays.emplace(std::move(file).value(), output.format);
-    if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, outputs, header); !status)
+    if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, output, outputs, header); !status)
       return status.error();
   }
 
@@ -233,9 +330,11 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     }
     if (progress) progress(i + 1 - share.first, share.count);
   }
-  for (OutputFile& mesh : meshes) {
-    if (Status status = mesh.finish(); !status) return status.error();
+  if (output.peers != nullptr) {
+    const Written own{summary, std::uint64_t{share.count} * vertices, {}};
+    return finish_with_peers(output, own, arrays ? &*arrays : nullptr, meshes);
   }
+  if (Status status = finish_all(meshes); !status) return status.error();
   if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;
 }
@@ -279,8 +378,10 @@ std::optional<SampleFormat> find_sample_format(std::string_view path) {
 Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind, std::size_t count) {
   if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
     return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
-  if (output.format == SampleFormat::kNpz && !output.shard.is_all())
+  if (output.format == SampleFormat::kNpz && !output.shard.is_all() && output.peers == nullptr)
     return Error{ErrorCode::kUsage, output.path, "a shard is an array of its own: write .npy"};
+  if (output.peers != nullptr && is_stream(output.path))
+    return Error{ErrorCode::kUsage, output.path, "several processes can not write to one stream: name a file"};
   std::vector<std::string> names = {output.path};
   if (!is_array(output.format) && output.path != "-") {
     Result<std::vector<std::string>> numbered = numbered_names(output.path, count);

@@ -261,6 +261,23 @@ TEST(MergeParts, refuses_parts_that_no_shard_writes) {
   EXPECT_NE(merged({{"a", text}}).find("a tolerance without certificates"), std::string::npos);
 }
 
+TEST(MergeParts, merged_values_are_those_of_one_run_and_of_the_kind_that_was_asked_for) {
+  const Motion motion = bending();
+  const std::vector<Part> compared = compare_parts(motion, {}, 3), audited = audit_parts(motion, {}, {}, 3);
+  const Result<NamedComparison> comparison = merge_compare_parts(compared);
+  ASSERT_TRUE(comparison.ok());
+  EXPECT_EQ(compare_json({comparison.value()}, false, false),
+            compare_json({{"walk", compare(motion, {}).value()}}, false, false));
+  const Result<Audit> all = merge_audit_parts(audited);
+  ASSERT_TRUE(all.ok());
+  EXPECT_EQ(audit_json("walk", all.value(), 1), audit_json("walk", audit(motion, {}, {}).value(), 1));
+  EXPECT_EQ(merge_compare_parts(audited).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(merge_audit_parts(compared).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(merge_audit_parts(std::vector<Part>{audited[0]}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(merge_compare_parts(std::vector<Part>{{"a", "{}"}}).error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(merge_audit_parts(std::vector<Part>{{"a", "{}"}}).error().code, ErrorCode::kInvalidInput);
+}
+
 TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   const Motion motion = bending();
   for (const std::string& text : {compare_parts(motion, {}, 1)[0].text, audit_parts(motion, {}, {}, 2)[0].text}) {
