@@ -24,7 +24,8 @@
 ///            claimed: `upper` is pi, and [from, to] holds the place.
 /// Units      radians; local t.
 /// Threads    pure. Allocates a little, once for each call.
-/// Cost       some 10 pieces an element: 1.5 to 5 microseconds, on curved paths 5 to 10; schemes of slerps of slerps take 50 times as long.
+/// Cost       some 10 pieces an element: 1.5 to 5 microseconds, on curved paths 5 to 10; schemes of slerps of slerps
+///            take 50 times as long.
 /// Limits     Normals at random access: playback drifts, and is not covered. Bounds are of scheme and control normals
 ///            that are prepared from the same block.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFY_H_

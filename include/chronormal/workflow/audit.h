@@ -220,8 +220,9 @@ struct Audit {
 /// kInvalidInput for normals that do not fit.
 /// Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is read once more up to where
-/// all vertices have moved, and once more up to where none coincide any more. Errors: also those of the stream.
+/// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is
+/// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also
+/// those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 /// Joins the shards of one audit, which may come in any order, into the audit that one run would have made. Errors:

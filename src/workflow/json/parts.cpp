@@ -5,18 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "chronormal/schemes/scheme.h"
-#include "io/bytes/output_file.h"
-#include "io/bytes/positioned_file.h"
-#include "io/cache/npy.h"
 #include "io/json/json.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/json/object.h"
-#include "workflow/sample/array_place.h"
 
 namespace chronormal {
 namespace {
@@ -460,63 +455,6 @@ Result<MergedParts> merge_parts(std::span<const Part> parts) {
   if (!all) return all.error();
   const auto& [name, audit, tolerance] = all.value();
   return MergedParts{audit_json(name, audit, tolerance), !tolerance || audit.is_within(*tolerance)};
-}
-
-Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force) {
-  struct Rows {
-    PositionedFile file;
-    npy::Array array;
-    ArrayPlace place;
-
-    [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
-  };
-  std::vector<Rows> all;
-  for (const std::string& path : paths) {
-    std::optional<PositionedFile> file = PositionedFile::open(path);
-    if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
-    std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
-    if (Status status = file->read(0, start); !status) return status;
-    Result<npy::Array> array = npy::read_header(start, file->size(), path);
-    if (!array) return array.error();
-    const npy::Array& found = array.value();
-    const std::optional<ArrayPlace> place = ArrayPlace::read(found.comment);
-    const bool is_part = place && !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
-                         found.item_size == sizeof(float) && found.order == std::endian::little &&
-                         place->first <= place->total && found.shape.front() <= place->total - place->first;
-    if (!is_part) return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
-    const bool is_alike =
-        all.empty() || (place->samples == all.front().place.samples && place->total == all.front().place.total &&
-                        std::equal(found.shape.begin() + 1, found.shape.end(), all.front().array.shape.begin() + 1));
-    if (!is_alike) return Error{ErrorCode::kUsage, path, "it is a shard of other samples than the first part"};
-    all.push_back({std::move(*file), std::move(array).value(), *place});
-  }
-  std::stable_sort(all.begin(), all.end(), [](const Rows& a, const Rows& b) {
-    return std::pair(a.place.first, a.end()) < std::pair(b.place.first, b.end());
-  });
-  const std::uint64_t count = all.front().place.total;
-  std::uint64_t next = 0;
-  for (std::size_t i = 0; i <= all.size(); ++i) {
-    const std::uint64_t first = i < all.size() ? all[i].place.first : count;
-    if (first != next)
-      return Error{ErrorCode::kUsage, "",
-                   "row " + std::to_string(std::min(first, next)) +
-                       (first < next ? " is in two of the shards" : " is in none of the shards")};
-    if (i < all.size()) next = all[i].end();
-  }
-  std::vector<std::uint64_t> shape = all.front().array.shape;
-  shape.front() = count;
-  Result<OutputFile> file = OutputFile::create(output, force);
-  if (!file) return file.error();
-  if (Status status = file.value().append(npy::write_header("<f4", shape)); !status) return status;
-  std::string block(std::size_t{1} << 20, '\0');
-  for (const Rows& rows : all) {
-    for (std::uint64_t at = rows.array.data_begin; at < rows.file.size(); at += block.size()) {
-      const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), rows.file.size() - at));
-      if (Status status = rows.file.read(at, std::span(block).first(size)); !status) return status;
-      if (Status status = file.value().append(std::string_view(block).substr(0, size)); !status) return status;
-    }
-  }
-  return file.value().finish();
 }
 
 }  // namespace chronormal

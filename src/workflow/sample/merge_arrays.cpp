@@ -1,0 +1,95 @@
+// Puts the rows of arrays that shards of samples have left into one array, and finds out which rows are missing.
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/workflow/parts.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/positioned_file.h"
+#include "io/cache/npy.h"
+#include "workflow/sample/array_place.h"
+
+namespace chronormal {
+namespace {
+
+// The rows of one shard, and where they stand among all.
+struct ShardRows {
+  PositionedFile file;
+  npy::Array array;
+  ArrayPlace place;
+
+  [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
+
+  [[nodiscard]] bool is_of_the_samples_of(const ShardRows& other) const {
+    return place.samples == other.place.samples && place.total == other.place.total &&
+           std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
+  }
+};
+
+Result<ShardRows> open_rows(const std::string& path) {
+  std::optional<PositionedFile> file = PositionedFile::open(path);
+  if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
+  std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
+  if (Status status = file->read(0, start); !status) return status.error();
+  Result<npy::Array> array = npy::read_header(start, file->size(), path);
+  if (!array) return array.error();
+  const npy::Array& found = array.value();
+  const std::optional<ArrayPlace> place = ArrayPlace::read(found.comment);
+  const bool is_part = place && !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
+                       found.item_size == sizeof(float) && found.order == std::endian::little &&
+                       place->first <= place->total && found.shape.front() <= place->total - place->first;
+  if (!is_part) return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
+  return ShardRows{std::move(*file), std::move(array).value(), *place};
+}
+
+// Whether every row is in exactly one of the shards, which are in order.
+Status check_rows(const std::vector<ShardRows>& all) {
+  const std::uint64_t count = all.front().place.total;
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i <= all.size(); ++i) {
+    const std::uint64_t first = i < all.size() ? all[i].place.first : count;
+    if (first != next)
+      return Error{ErrorCode::kUsage, "",
+                   "row " + std::to_string(std::min(first, next)) +
+                       (first < next ? " is in two of the shards" : " is in none of the shards")};
+    if (i < all.size()) next = all[i].end();
+  }
+  return Success{};
+}
+
+}  // namespace
+
+Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force) {
+  std::vector<ShardRows> all;
+  for (const std::string& path : paths) {
+    Result<ShardRows> rows = open_rows(path);
+    if (!rows) return rows.error();
+    if (!all.empty() && !rows.value().is_of_the_samples_of(all.front()))
+      return Error{ErrorCode::kUsage, path, "it is a shard of other samples than the first part"};
+    all.push_back(std::move(rows).value());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const ShardRows& a, const ShardRows& b) {
+    return std::pair(a.place.first, a.end()) < std::pair(b.place.first, b.end());
+  });
+  if (Status status = check_rows(all); !status) return status;
+
+  std::vector<std::uint64_t> shape = all.front().array.shape;
+  shape.front() = all.front().place.total;
+  Result<OutputFile> file = OutputFile::create(output, force);
+  if (!file) return file.error();
+  if (Status status = file.value().append(npy::write_header("<f4", shape)); !status) return status;
+  std::string block(std::size_t{1} << 20, '\0');
+  for (const ShardRows& rows : all) {
+    for (std::uint64_t at = rows.array.data_begin; at < rows.file.size(); at += block.size()) {
+      const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), rows.file.size() - at));
+      if (Status status = rows.file.read(at, std::span(block).first(size)); !status) return status;
+      if (Status status = file.value().append(std::string_view(block).substr(0, size)); !status) return status;
+    }
+  }
+  return file.value().finish();
+}
+
+}  // namespace chronormal
