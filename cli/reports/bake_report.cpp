@@ -274,11 +274,11 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
     text += "exact at every instant\n";
   else
-    text +=
-        formatted("{}: at most {} degrees from the right normals, {}\n",
-                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
-                  encoding == BakeEncoding::kHarmless || bake.path != PathKind::kLinear ? "at 40 instants of each segment"
-                                                                        : "as far as can be proven");
+    text += formatted(
+        "{}: at most {} degrees from the right normals, {}\n",
+        encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
+        encoding == BakeEncoding::kHarmless || bake.path != PathKind::kLinear ? "at 40 instants of each segment"
+                                                                              : "as far as can be proven");
   return text + lines_after(report);
 }
 
