@@ -216,7 +216,7 @@ Result<int> run(const SampleArguments& options) {
   const auto resumed = options.resume.begin("sample", tables(same), options.input, options.common);
   if (!resumed) return resumed.error();
   const auto written =
-      write(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
+      write_or_go_on(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
   progress.clear();
   if (!written) return written.error();
   if (const Status done = resumed.value() ? resumed.value()->finish() : Success{}; !done) return done.error();
