@@ -156,17 +156,17 @@ def large(folder, gigabytes):
     def add(title, found):
         clock, processor, memory = found[:3]
         print(title, found, flush=True)
-        rows.append([title, f"{clock:.0f}", f"{processor:.0f}", f"{size / clock:.2f}", f"{memory:.0f}"])
+        rows.append([title, seconds(clock), seconds(processor), f"{memory:.0f}"])
 
     add("`cat FILE >/dev/null`", measure(["cat", cache]))
     add("`cat FILE >COPY`", measure(["sh", "-c", f"cat {cache} >{folder / 'copy'}"]))
     (folder / "copy").unlink()
-    add("`sample --times 0:7:LAST`", run(folder, ["sample", "--times", f"0:7:{frames - 1}", "--format", "npy"], mesh, cache, limit))
+    add("`sample --times 0:7:LAST` (every 7th keyframe)", run(folder, ["sample", "--times", f"0:7:{frames - 1}", "--format", "npy"], mesh, cache, limit))
     add("`sample --times keys`", run(folder, ["sample", "--times", "keys", "--format", "npy"], mesh, cache, limit))
     add("`compare --schemes linear --samples 2`", run(folder, ["compare", "--schemes", "linear", "--samples", "2"], mesh, cache, limit))
     add("`audit --samples 2`", run(folder, ["audit", "--samples", "2"], mesh, cache, limit))
     cache.unlink()
-    head = [f"{frames:,} frames, {size:.1f} GB", "clock, s", "processor, s", "GB/s of the file", "memory, MB"]
+    head = [f"{frames:,} frames, {size:.1f} GB", "clock, s", "processor, s", "memory, MB"]
     return table(head, rows)
 
 
