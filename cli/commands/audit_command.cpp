@@ -110,14 +110,15 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
-  how.shard = has_ranks() ? own_shard() : shard.value();
-  how.peers = ranks_as_peers();
+  how.shard = shard.value();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
   how.progress = watching_ranks(progress.callback("auditing"));
+  if (has_ranks()) how.shard = own_shard();
+  how.peers = ranks_as_peers();
   return how;
 }
 
