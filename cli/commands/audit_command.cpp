@@ -162,8 +162,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
-  how.shard = has_ranks() ? own_shard() : shard.value();
-  how.peers = ranks_as_peers();
+  how.shard = shard.value();
   if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
   if (how.shard && options.json)
     return misuse("--json", "OUT of a shard is a part, of which chronormal merge makes the JSON");
@@ -173,6 +172,8 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
   how.progress = watching_ranks(progress.callback("auditing", "segments"));
+  if (has_ranks()) how.shard = own_shard();
+  how.peers = ranks_as_peers();
   return how;
 }
 
