@@ -71,7 +71,6 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
   if (options.resume.asked) return "--resume";
-  if (options.resume.asked) return "--resume";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.path.name != "linear") return "--path";
@@ -246,7 +245,6 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
-  if (options.resume.asked) return "--resume";
   if (options.resume.asked) return "--resume";
   if (options.path.name != "linear") return "--path";
   return options.each ? "--each" : "";

@@ -78,6 +78,11 @@ std::vector<Part> gather_parts(const std::string& own) {
 }
 
 Status check_ranks(const std::string& option) {
+  if (const std::size_t copies = count_of_copies(); copies > 1 && option != "--shard")
+    return misuse("mpirun",
+                  formatted("{} copies of this program were started, which was built without MPI: each of them would "
+                            "do all of the work. Build it with -DCHRONORMAL_MPI=ON, or give each copy its --shard",
+                            copies));
   if (!has_ranks() || option.empty()) return Success{};
   return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
 }

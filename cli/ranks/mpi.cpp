@@ -138,6 +138,7 @@ void look_for_errors() {
 }  // namespace
 
 bool has_mpi() noexcept { return true; }
+std::size_t count_of_copies() noexcept { return 1; }
 
 void start_ranks(std::function<int(const Error&)> report) {
   state().report = std::move(report);

@@ -28,6 +28,10 @@ namespace chronormal::cli {
 /// Whether the program was built with MPI.
 [[nodiscard]] bool has_mpi() noexcept;
 
+/// How many copies of this program mpirun has started that know nothing of each other: more than 1 only in a build
+/// without MPI.
+[[nodiscard]] std::size_t count_of_copies() noexcept;
+
 /// Joins the other ranks, if there are any. `report` says an error, and returns its exit code. To be called once, before
 /// anything else here.
 void start_ranks(std::function<int(const Error&)> report);

@@ -74,6 +74,22 @@ TEST_F(Merge, shards_are_refused_where_they_divide_nothing) {
   }
 }
 
+TEST_F(Merge, copies_that_know_nothing_of_each_other_do_not_all_do_the_same_work) {
+  if (run("--version").out.find("with MPI") != std::string::npos) GTEST_SKIP() << "ranks know of each other";
+  const auto run_copy = [&](const std::string& arguments) {
+    return run_shell("OMPI_COMM_WORLD_SIZE=3 " + std::string(kProgram) + " " + arguments, folder_.path());
+  };
+  for (const char* const command : {"compare 'w_*.obj'", "audit 'w_*.obj'", "sample 'w_*.obj' --times 1 -o x.npy"}) {
+    const ProcessResult result = run_copy(command);
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_NE(result.err.find("3 copies of this program were started, which was built without MPI"), std::string::npos)
+        << result.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
+  EXPECT_EQ(run_copy("sample 'w_*.obj' --times 1,2,3 --shard 2/3 -o x.npy").exit_code, 0);
+  EXPECT_EQ(run_copy("convert 'w_*.obj' -o x.pc2").exit_code, 0);
+}
+
 TEST_F(Merge, chosen_keyframes_are_those_of_the_files_named_one_by_one) {
   ASSERT_EQ(run("convert 'w_*.obj' --from 1 --to 5 --every 2 -o chosen.npz").exit_code, 0);
   ASSERT_EQ(run("sample 'w_*.obj' --from 1 --to 5 --every 2 --times keys -o chosen.npy").exit_code, 0);
