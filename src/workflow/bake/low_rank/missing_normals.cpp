@@ -59,7 +59,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
                                std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own,
                                PoseList poses)
     : poses_(std::move(poses)),
-      stride_((poses_.size() + kStridePadding - 1) / kPadding * kPadding),
+      stride_((poses_.size() + kStridePadding - 1) / kStridePadding * kStridePadding),
       numbers_(points.size()),
       shown_(points.size() * 3 * stride_),
       missing_(points.size() * 3 * stride_) {
