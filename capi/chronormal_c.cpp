@@ -1,5 +1,5 @@
-// The C interface: each function checks what C cannot express, calls its counterpart of the library, and turns errors and
-// exceptions into a status with a message.
+// The C interface: each function checks what C cannot express, calls its counterpart of the library, and turns errors
+// and exceptions into a status with a message.
 #include "chronormal_c.h"
 
 #include <algorithm>

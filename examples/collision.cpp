@@ -1,10 +1,10 @@
 // Collision response with the normal at the contact time: balls thrown at a sheet that waves.
 //
 // A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
-// where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes alone, so
-// that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the velocity
-// relative to the sheet is mirrored, and the normal decides where the ball goes. A normal that is off by an angle sends
-// it off by up to twice that.
+// where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes
+// alone, so that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the
+// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. A normal that is off by an
+// angle sends it off by up to twice that.
 
 #include <array>
 #include <cmath>
@@ -144,7 +144,8 @@ int main() {
     ++hits;
     outside = std::fmax(outside, area_outside(segment, ball, contact));
 
-    // In the frame of the surface the collision is a mirror; adding the velocity of the surface leads back to the world.
+    // In the frame of the surface the collision is a mirror; adding the velocity of the surface leads back to the
+    // world.
     const double t = contact.t;
     ControlNormals n;
     face_control_normals(segment, {contact.face, 1}, {&n, 1});

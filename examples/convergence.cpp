@@ -2,9 +2,9 @@
 // paths once the motion between keyframes is curved. docs/theory.md shows the output and proves the orders.
 //
 // Two smooth motions are sampled at the ends of 1, 2, 4, 8 and 16 segments: the built-in column, in which each layer
-// now truly turns, and a sheet that waves of random direction and speed run through. The first rows hold schemes against
-// the exact normals of straight segments, as everywhere; the last two hold normals of straight segments against those of
-// the motion itself. Fails where a measured order is not the proven one, or the error
+// now truly turns, and a sheet that waves of random direction and speed run through. The first rows hold schemes
+// against the exact normals of straight segments, as everywhere; the last two hold normals of straight segments against
+// those of the motion itself. Fails where a measured order is not the proven one, or the error
 // of order 2 in 16 segments not what eq. 55 makes of the control normals.
 
 #include <array>

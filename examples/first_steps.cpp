@@ -11,8 +11,8 @@ int main() {
   const Topology topology = Topology::triangles(4, {0, 1, 2, 1, 3, 2}).value();
   const std::vector<float> start = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, end = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0.5, 0.5, 1};
 
-  // Once: the normals of all vertices, exact for every t between. Options choose faces, corners with hard edges, another
-  // weighting. What can be wrong with the data is told here, with its place.
+  // Once: the normals of all vertices, exact for every t between. Options choose faces, corners with hard edges,
+  // another weighting. What can be wrong with the data is told here, with its place.
   Result<ElementCurves> made =
       ElementCurves::make(topology, VectorView<const float>::packed(start), VectorView<const float>::packed(end));
   if (!made) {
@@ -29,8 +29,8 @@ int main() {
                 normals[1], normals[2], normals[3], normals[4], normals[5]);
   }
 
-  // Many keyframes with times in seconds are a Motion, which open_input() reads from files, too. For a time or two there
-  // is one call, which finds the segment and keeps nothing: here the normals of faces.
+  // Many keyframes with times in seconds are a Motion, which open_input() reads from files, too. For a time or two
+  // there is one call, which finds the segment and keeps nothing: here the normals of faces.
   Motion motion;
   motion.topology = topology;
   motion.keyframes = {{start, 0.0, "start"}, {end, 2.0, "end"}, {start, 3.0, "start again"}};

@@ -1,5 +1,5 @@
-// What holds over a whole segment, from control normals in memory: when faces collapse, and from which side they are seen;
-// beside evaluating the same control normals at one t, and beside what others do for such an answer.
+// What holds over a whole segment, from control normals in memory: when faces collapse, and from which side they are
+// seen; beside evaluating the same control normals at one t, and beside what others do for such an answer.
 
 #include <fmt/core.h>
 
@@ -50,8 +50,8 @@ ShutterSide side_by_samples(const Question& q, std::size_t face, const View& vie
   return is_back ? ShutterSide::kBoth : ShutterSide::kFront;
 }
 
-// Munkberg and Akenine-Moller: cull where no Bernstein coefficient of the cubic is positive; here from control normals, and
-// without a thought of rounding, as published.
+// Munkberg and Akenine-Moller: cull where no Bernstein coefficient of the cubic is positive; here from control normals,
+// and without a thought of rounding, as published.
 ShutterSide side_by_coefficients(const Question& q, std::size_t face, const View& view) {
   const ControlNormals& c = q.normals[face];
   const Vec3d from = way_at(q.segment, face, view, 0), to = way_at(q.segment, face, view, 1);

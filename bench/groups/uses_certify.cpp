@@ -1,5 +1,5 @@
-// Certificates of the largest error over a segment, beside what people do instead: evaluate the scheme at 64 moments, hold
-// each against the exact normal, and hope that none is worse between them.
+// Certificates of the largest error over a segment, beside what people do instead: evaluate the scheme at 64 moments,
+// hold each against the exact normal, and hope that none is worse between them.
 
 #include <algorithm>
 #include <cmath>

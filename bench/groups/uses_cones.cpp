@@ -1,5 +1,5 @@
-// Cones, bounds of clusters and mean normals over a whole segment, beside what people do instead: cones of the two ends,
-// meshoptimizer's bounds at some instants, and means of many samples.
+// Cones, bounds of clusters and mean normals over a whole segment, beside what people do instead: cones of the two
+// ends, meshoptimizer's bounds at some instants, and means of many samples.
 
 #include <fmt/core.h>
 #include <meshoptimizer.h>

@@ -1,5 +1,5 @@
-// Points that move through a closed mesh that deforms, over a whole segment: all crossings, beside what people do with a
-// test for single instants, which is to ask at many of them. An element is a point.
+// Points that move through a closed mesh that deforms, over a whole segment: all crossings, beside what people do with
+// a test for single instants, which is to ask at many of them. An element is a point.
 
 #include <fmt/core.h>
 

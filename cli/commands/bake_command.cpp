@@ -129,9 +129,10 @@ void warn_if_worse(const BakeReport& report) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit)});
 }
 
-// Audits the input, by audit_before, and the file that was written. A track that got keys is looked at more often than it
-// was, and may show what was there before: the input is looked at as often before the result is called worse. The result is
-// empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be read.
+// Audits the input, by audit_before, and the file that was written. A track that got keys is looked at more often than
+// it was, and may show what was there before: the input is looked at as often before the result is called worse. The
+// result is empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be
+// read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const AuditBefore& audit_before) {

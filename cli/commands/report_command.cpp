@@ -31,8 +31,8 @@ struct ReportArguments {
 
 bool is_container(const ReportArguments& options) { return lower_extension(options.common.output) == ".bin"; }
 
-// The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not say
-// where that is.
+// The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not
+// say where that is.
 std::optional<std::string> usual_template() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);

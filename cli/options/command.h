@@ -78,8 +78,8 @@ struct ShardArgument {
 
 /// Gathers what the ranks have written as shards (cli/ranks/ranks.h); nothing but on the first.
 [[nodiscard]] std::vector<Part> gather_parts(const std::string& own);
-/// Errors: kUsage where there are several ranks and option, which divides no task, was given (an empty one was not), and
-/// where several copies that know nothing of each other would do the same work.
+/// Errors: kUsage where there are several ranks and option, which divides no task, was given (an empty one was not),
+/// and where several copies that know nothing of each other would do the same work.
 [[nodiscard]] Status check_ranks(const std::string& option);
 
 /// The option --path: how vertices move between the keyframes of a sequence.

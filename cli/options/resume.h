@@ -52,9 +52,9 @@ struct ResumeArgument {
   /// for --resume without a file.
   [[nodiscard]] Status check_output(const CommonOptions& common) const;
 
-  /// Begins a run or goes on with one, whose options are those of the tables; nullptr where nobody asked. Errors: kUsage
-  /// where the journal is of another run, with what differs, and for inputs that cannot be read again; those of the
-  /// journal and of finding the files.
+  /// Begins a run or goes on with one, whose options are those of the tables; nullptr where nobody asked. Errors:
+  /// kUsage where the journal is of another run, with what differs, and for inputs that cannot be read again; those of
+  /// the journal and of finding the files.
   [[nodiscard]] Result<std::unique_ptr<ResumedRun>> begin(const std::string& command,
                                                           const std::vector<std::vector<Option>>& tables,
                                                           const InputOptions& input, const CommonOptions& common) const;

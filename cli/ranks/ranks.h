@@ -32,8 +32,8 @@ namespace chronormal::cli {
 /// without MPI.
 [[nodiscard]] std::size_t count_of_copies() noexcept;
 
-/// Joins the other ranks, if there are any. `report` says an error, and returns its exit code. To be called once, before
-/// anything else here.
+/// Joins the other ranks, if there are any. `report` says an error, and returns its exit code. To be called once,
+/// before anything else here.
 void start_ranks(std::function<int(const Error&)> report);
 
 /// The share of this rank.

@@ -86,8 +86,8 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.worst = std::max(all.worst, of_mesh.worst);
 }
 
-// Prints a row for each named host: the errors that it shows before and after, over all meshes, in the animations of the
-// file and for each target alone.
+// Prints a row for each named host: the errors that it shows before and after, over all meshes, in the animations of
+// the file and for each target alone.
 std::string hosts_text(const GltfBake& bake) {
   Table table;
   table.add_column("host", "", Table::Align::kLeft);

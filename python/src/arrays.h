@@ -1,5 +1,5 @@
-// NumPy arrays as the library sees memory. An array that C++ reads was checked for its type by python/chronormal; its shape
-// is checked here, where it is read.
+// NumPy arrays as the library sees memory. An array that C++ reads was checked for its type by python/chronormal; its
+// shape is checked here, where it is read.
 #ifndef CHRONORMAL_PYTHON_ARRAYS_H_
 #define CHRONORMAL_PYTHON_ARRAYS_H_
 
@@ -20,7 +20,8 @@ namespace chronormal::python {
 
 namespace py = pybind11;
 
-// A C-contiguous array. pybind11 makes one of what has another layout or a narrower type; python/chronormal does so before.
+// A C-contiguous array. pybind11 makes one of what has another layout or a narrower type; python/chronormal does so
+// before.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
 // The same, of any type of number.
@@ -86,7 +87,8 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
-// Where (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it fits, or a new array for None.
+// Where (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it fits, or a new array for
+// None.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
 // Which threads a number asks for: 1 is the calling one, 0 all cores, and others are so many.
@@ -103,8 +105,8 @@ class ChosenThreads {
   std::optional<ThreadLimit> limit_;
 };
 
-// Memory of zeros for objects of Python. `Curves.__new__(Curves)` makes one without calling its constructor, and what pybind11
-// then hands to a method is this memory: members that mean "not made" where they are zero can be asked.
+// Memory of zeros for objects of Python. `Curves.__new__(Curves)` makes one without calling its constructor, and what
+// pybind11 then hands to a method is this memory: members that mean "not made" where they are zero can be asked.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);

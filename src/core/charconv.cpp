@@ -26,8 +26,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// fmt finds the digits; where the point stands, and whether there is an exponent, is what the standard says of to_chars():
-// the shorter, and fixed where both are as long.
+// fmt finds the digits; where the point stands, and whether there is an exponent, is what the standard says of
+// to_chars(): the shorter, and fixed where both are as long.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);

@@ -1,9 +1,9 @@
-/// Numbers from text and to text, as <charconv> has them, also where the standard library has none for floating point yet
-/// (libc++ 13, with which the wasm module is built): then the first comes from fast_float and the second from fmt, with
-/// the same characters. Private.
+/// Numbers from text and to text, as <charconv> has them, also where the standard library has none for floating point
+/// yet (libc++ 13, with which the wasm module is built): then the first comes from fast_float and the second from fmt,
+/// with the same characters. Private.
 ///
-/// Where a number is out of range, from_chars() of some libraries returns result_out_of_range, and that of others an infinite
-/// number or 0: callers expect both.
+/// Where a number is out of range, from_chars() of some libraries returns result_out_of_range, and that of others an
+/// infinite number or 0: callers expect both.
 #ifndef CHRONORMAL_CORE_CHARCONV_H_
 #define CHRONORMAL_CORE_CHARCONV_H_
 

@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// How many letters have to be put in, left out, replaced, or swapped with their neighbour to make one word of the other,
-/// each at most once (optimal string alignment). O(product of lengths).
+/// How many letters have to be put in, left out, replaced, or swapped with their neighbour to make one word of the
+/// other, each at most once (optimal string alignment). O(product of lengths).
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The name that is nearest to a word, the first of equals; "" where none is within two letters, or a third of the

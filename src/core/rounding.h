@@ -2,8 +2,8 @@
 ///
 /// Terms that cancel leave their rounding errors behind, and those have a length but no direction that means anything:
 /// three collinear corners would get a random normal. Each error is at most a multiple of the unit roundoff u times the
-/// sum of the absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to 4),
-/// so that sum is kept beside the value, and what is not above the error counts as zero.
+/// sum of the absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to
+/// 4), so that sum is kept beside the value, and what is not above the error counts as zero.
 #ifndef CHRONORMAL_CORE_ROUNDING_H_
 #define CHRONORMAL_CORE_ROUNDING_H_
 

@@ -1,11 +1,12 @@
 /// The vector area of a polygon: its normal, whose length is twice the area.
 ///
-/// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of theirs,
+/// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of
+/// theirs,
 ///
 ///     n = sum over c = 2 ... n of (p[c-1] - p0) x (p[c] - p0)
 ///
-/// which is the same for every way to cut it, convex or not, flat or not. Edges from one corner, and not the products of
-/// positions as in Newell's form, since a small polygon far from the origin would lose its digits in those.
+/// which is the same for every way to cut it, convex or not, flat or not. Edges from one corner, and not the products
+/// of positions as in Newell's form, since a small polygon far from the origin would lose its digits in those.
 ///
 /// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t go through the same
 /// fan, and whoever bounds the error of n adds up what the bound needs beside it.
@@ -19,8 +20,8 @@
 
 namespace chronormal::inline internal {
 
-/// Calls body(e, f) for each triangle of the fan of a polygon, with its edges from the first corner, in the order of the
-/// corners. edge_to(c) makes the edge to corner c, once for each c = 1 ... corners - 1.
+/// Calls body(e, f) for each triangle of the fan of a polygon, with its edges from the first corner, in the order of
+/// the corners. edge_to(c) makes the edge to corner c, once for each c = 1 ... corners - 1.
 template <class EdgeTo, class Body>
 constexpr void for_fan(std::size_t corners, const EdgeTo& edge_to, const Body& body) {
   auto e = edge_to(std::size_t{1});

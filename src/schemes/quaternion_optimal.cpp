@@ -2,8 +2,8 @@
 //
 // All pairs of frames are one angle phi (eq. 6), so the best is a search over one variable per face. Where a face turns
 // mildly, it starts from the circle through the exact normal in the middle (kernels/optimal_arcs.h). Elsewhere it is a
-// grid, the frames that are known by construction, and golden section in the lowest valleys. The result has the smallest
-// mean angular error over t that any quaternion slerp on the shorter arc can have, within 0.2 percent.
+// grid, the frames that are known by construction, and golden section in the lowest valleys. The result has the
+// smallest mean angular error over t that any quaternion slerp on the shorter arc can have, within 0.2 percent.
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
-// The special cases of instruction sets: every raw intrinsic of the library stands here, beside the operations of Highway
-// that give the same bits on all other targets. Today those are of AVX-512, whose permutations and masked loads need
-// fewer instructions than what Highway makes of general shuffles.
+// The special cases of instruction sets: every raw intrinsic of the library stands here, beside the operations of
+// Highway that give the same bits on all other targets. Today those are of AVX-512, whose permutations and masked loads
+// need fewer instructions than what Highway makes of general shuffles.
 //
 // Included once for each instruction set, as lanes-inl.h.
 

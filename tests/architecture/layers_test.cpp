@@ -245,8 +245,8 @@ TEST(Layers, raw_intrinsics_stand_in_one_file) {
   }
 }
 
-// The lines by which a private header declares names where public ones live. An inline namespace keeps the two apart for
-// the linker and the compiler, and needs no word where the names are used.
+// The lines by which a private header declares names where public ones live. An inline namespace keeps the two apart
+// for the linker and the compiler, and needs no word where the names are used.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {

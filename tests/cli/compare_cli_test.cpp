@@ -1,4 +1,5 @@
-// Each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV: against figures by hand.
+// Each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV: against figures by
+// hand.
 
 #include <gtest/gtest.h>
 

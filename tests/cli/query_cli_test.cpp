@@ -101,8 +101,8 @@ TEST_F(QueryCli, faces_show_their_front_in_intervals) {
 }
 
 TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
-  // It passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 is seen from its front in the
-  // first quarter and the second.
+  // It passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 is seen from its front in
+  // the first quarter and the second.
   const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
   EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));

@@ -1,4 +1,5 @@
-// What scripts and people get from `report`: the page, its data, the table, the JSON, and what is said where there is no page.
+// What scripts and people get from `report`: the page, its data, the table, the JSON, and what is said where there is
+// no page.
 
 #include <gtest/gtest.h>
 

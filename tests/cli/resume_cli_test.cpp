@@ -1,5 +1,5 @@
-// `--resume`: a run that failed goes on where it stopped, with the same bytes; a journal of another run is refused. Runs
-// that are killed stand in tests/faults/killed_test.cpp. Here it is a limit of the size of files that ends them.
+// `--resume`: a run that failed goes on where it stopped, with the same bytes; a journal of another run is refused.
+// Runs that are killed stand in tests/faults/killed_test.cpp. Here it is a limit of the size of files that ends them.
 #include <gtest/gtest.h>
 
 #include <filesystem>

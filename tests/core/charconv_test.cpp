@@ -1,5 +1,5 @@
-// Numbers as text: what <charconv> or its stand-in writes is what the C library writes, and reads back as the same number.
-// It is run under Node.js too (wasm_bits), where the stand-in is what runs.
+// Numbers as text: what <charconv> or its stand-in writes is what the C library writes, and reads back as the same
+// number. It is run under Node.js too (wasm_bits), where the stand-in is what runs.
 #include "core/charconv.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Every call of the program to the system fails once, and memory runs out at every place: whatever the command, its
-// output is the old one or the new one, nothing else remains, and the exit code is a documented one. The faults come from
-// a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
+// output is the old one or the new one, nothing else remains, and the exit code is a documented one. The faults come
+// from a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
 //
 // ./test runs a sample of the faults, `./test --full faults` (CHRONORMAL_FULL=1) all of them.
 

@@ -1,5 +1,5 @@
-// Every direction that is made from positions, against whole numbers of any size: 100,000 cases from a fixed seed, and as
-// many as the variable CHRONORMAL_FULL_CASES asks for (./test --full exact). A case is one element at one t.
+// Every direction that is made from positions, against whole numbers of any size: 100,000 cases from a fixed seed, and
+// as many as the variable CHRONORMAL_FULL_CASES asks for (./test --full exact). A case is one element at one t.
 
 #include <gtest/gtest.h>
 

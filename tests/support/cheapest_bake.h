@@ -1,16 +1,17 @@
-/// The fewest bytes that a mesh with a few targets can be right in, by trying everything: what a host that adds up deltas
-/// shows of each combination of candidates, against cross products of the blended positions. Shares no code with the product.
+/// The fewest bytes that a mesh with a few targets can be right in, by trying everything: what a host that adds up
+/// deltas shows of each combination of candidates, against cross products of the blended positions. Shares no code with
+/// the product.
 ///
 ///     of each target    its stored deltas | the best of all deltas that are right at weight 1 | the delta of n(1), and with it
 ///                       nothing | a delta driven by w (1 - w)
 ///     of each pair      nothing | a delta driven by w_i w_j
 ///
-/// Bytes are those of deltas other than the stored ones, 12 for each vertex or 16 for each that has one, whichever is less; and
-/// those by which the track grows. A LINEAR track is cut into equal pieces for each gap, as many as keep what straight lines
-/// turn in its middle within a quarter of the tolerance.
+/// Bytes are those of deltas other than the stored ones, 12 for each vertex or 16 for each that has one, whichever is
+/// less; and those by which the track grows. A LINEAR track is cut into equal pieces for each gap, as many as keep what
+/// straight lines turn in its middle within a quarter of the tolerance.
 ///
-/// A combination does no harm where no normal is off by more than it was, or than the tolerance, along the track and with each
-/// target alone; nor in random poses, by the mean, or beyond half of the worst that there was.
+/// A combination does no harm where no normal is off by more than it was, or than the tolerance, along the track and
+/// with each target alone; nor in random poses, by the mean, or beyond half of the worst that there was.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CHEAPEST_BAKE_H_
 #define CHRONORMAL_TESTS_SUPPORT_CHEAPEST_BAKE_H_
 
@@ -105,8 +106,8 @@ class CheapestBake {
     return best;
   }
 
-  /// The worst error of what is shown along the track, where shown(v, part of the track from 0 to 1 by gap) is given by columns
-  /// with weights(gap, part) of their own.
+  /// The worst error of what is shown along the track, where shown(v, part of the track from 0 to 1 by gap) is given by
+  /// columns with weights(gap, part) of their own.
   template <class Weights>
   [[nodiscard]] double error_along(const std::vector<Field>& columns, const Weights& weights) const {
     double worst = 0;

@@ -18,8 +18,8 @@ struct ChildRun {
 /// Whether a sanitizer watches: then memory is not what the program itself takes.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process that is stopped after most_seconds of a processor, and, unless a sanitizer watches, may not take
-/// a GiB of address space more than it has at the start.
+/// Does the work in a forked process that is stopped after most_seconds of a processor, and, unless a sanitizer
+/// watches, may not take a GiB of address space more than it has at the start.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work);
 
 }  // namespace chronormal::test

@@ -91,8 +91,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// The corners shrink to a point at t = 1 / (1 + r) and grow out of it again: n(t) has a double zero there. Half of them
-/// only nearly so.
+/// The corners shrink to a point at t = 1 / (1 + r) and grow out of it again: n(t) has a double zero there. Half of
+/// them only nearly so.
 [[nodiscard]] inline MovingTriangle double_zero(Random& random) {
   constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // 1.5 and 1/4: no double is 1 / (1 + r)
   const double r = kRatios[random.below(kRatios.size())];

@@ -69,8 +69,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({x, y, z});
 }
 
-/// Filament: of a normal without texture coordinates a frame by Frisvad's rule, of its matrix (t, n x t, n) a quaternion by
-/// the four cases of Shepperd's method, of that four integers of 16 bits, and of these the third axis.
+/// Filament: of a normal without texture coordinates a frame by Frisvad's rule, of its matrix (t, n x t, n) a
+/// quaternion by the four cases of Shepperd's method, of that four integers of 16 bits, and of these the third axis.
 [[nodiscard]] inline Triple through_filament(const Triple& n) {
   if (n == Triple{}) return {};
   const double a = 1 / (1 + n[1]);

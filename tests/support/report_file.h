@@ -1,5 +1,5 @@
-/// A report as a page reads it: the container, and the number that a page computes at a vertex of a sample, in double and
-/// from the container alone. Nothing here includes code of src/.
+/// A report as a page reads it: the container, and the number that a page computes at a vertex of a sample, in double
+/// and from the container alone. Nothing here includes code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 

@@ -1,7 +1,8 @@
-/// Polynomials with whole coefficients of any size: the judge of roots and signs that the product claims to know exactly.
+/// Polynomials with whole coefficients of any size: the judge of roots and signs that the product claims to know
+/// exactly.
 ///
-/// Positions in float32 are whole numbers times 2^-149, and a whole t needs no fractions, so values at t = -1, 0, 1 and 2
-/// are whole, and the polynomial is that through them. Roots are counted by Descartes' rule and halving, on the
+/// Positions in float32 are whole numbers times 2^-149, and a whole t needs no fractions, so values at t = -1, 0, 1 and
+/// 2 are whole, and the polynomial is that through them. Roots are counted by Descartes' rule and halving, on the
 /// polynomial without its multiple roots.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_

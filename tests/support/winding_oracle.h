@@ -1,8 +1,9 @@
 /// Winding numbers and crossings of moving points, in whole numbers and rationals: what containment is held against.
 ///
 /// A winding number is counted along a slanted half-line, and not an upright one, with signs of determinants of whole
-/// numbers. Where one of them is zero because the point is on something, the point is really moved, by a small step along x,
-/// one that is smaller by far along y, and one that is smaller still along z, and asked again. Roots are isolated by Sturm's theorem in rationals.
+/// numbers. Where one of them is zero because the point is on something, the point is really moved, by a small step
+/// along x, one that is smaller by far along y, and one that is smaller still along z, and asked again. Roots are
+/// isolated by Sturm's theorem in rationals.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 

@@ -1,5 +1,5 @@
-// chronormal_hosts [--partial] FOLDER: writes FOLDER/hosts.md (tools/make_hosts). With --partial it leaves out the files
-// where CHRONORMAL_DATA does not say where they are.
+// chronormal_hosts [--partial] FOLDER: writes FOLDER/hosts.md (tools/make_hosts). With --partial it leaves out the
+// files where CHRONORMAL_DATA does not say where they are.
 
 #include <fmt/core.h>
 

@@ -1,5 +1,6 @@
-// chronormal_rigs [--partial | --quick] FOLDER: writes FOLDER/rigs.md (tools/make_rigs). With --quick it leaves out the captured
-// face, which takes minutes; with --partial that and the other files, where CHRONORMAL_DATA does not say where they are.
+// chronormal_rigs [--partial | --quick] FOLDER: writes FOLDER/rigs.md (tools/make_rigs). With --quick it leaves out the
+// captured face, which takes minutes; with --partial that and the other files, where CHRONORMAL_DATA does not say where
+// they are.
 
 #include <fmt/core.h>
 

@@ -1,8 +1,9 @@
 /// Exact normals between two steps of a vtkPolyData.
 ///
-/// Both steps have the same cells, and every point moves on a straight line between them, or on a curve through more steps. The normal of a cell is the
-/// vector area of its polygon, or of the triangles of its strip; that of a point is the sum over the faces that use it,
-/// with area weights as in vtkTriangleMeshPointNormals. Vertices, lines, and points without faces have (0, 0, 0).
+/// Both steps have the same cells, and every point moves on a straight line between them, or on a curve through more
+/// steps. The normal of a cell is the vector area of its polygon, or of the triangles of its strip; that of a point is
+/// the sum over the faces that use it, with area weights as in vtkTriangleMeshPointNormals. Vertices, lines, and points
+/// without faces have (0, 0, 0).
 ///
 /// Bits       The normal of a point follows from the faces around it alone, and not from the order of points and cells
 ///            or from what else is in the mesh. So a piece has the bits of the whole, wherever it has all these faces.

@@ -1,16 +1,16 @@
 /// A vtkTemporalInterpolator whose normals are right.
 ///
-/// It takes the place of vtkTemporalInterpolator in a pipeline: positions and all other arrays are interpolated as there,
-/// and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at the
-/// requested time, and not mixtures of stored ones. See docs/vtk.md.
+/// It takes the place of vtkTemporalInterpolator in a pipeline: positions and all other arrays are interpolated as
+/// there, and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at
+/// the requested time, and not mixtures of stored ones. See docs/vtk.md.
 ///
 /// Normals    Point normals are sums over the faces around a point, weighted by area, and cell normals those of the
 ///            cell; both are of length 1, or (0, 0, 0) where there is no face. Normals that the input has are replaced;
 ///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
 ///            double where the points are.
-/// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four steps:
-///            SetPathToCatmullRom(). On curves the positions of points and the normals are those of the curve; all other
-///            arrays are interpolated as before.
+/// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four
+///            steps: SetPathToCatmullRom(). On curves the positions of points and the normals are those of the curve;
+///            all other arrays are interpolated as before.
 /// Time       Any time: outside the range of the input it is that of the nearer end.
 /// Arrays     Ids, ghost flags and texts are those of the earlier step, since they are names and not amounts.
 /// Pieces     Where a piece is asked for, the filter asks its input for one more ghost level, so that the normals along

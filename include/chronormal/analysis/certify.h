@@ -18,8 +18,8 @@
 /// Rounding   is included: coefficients are taken as float32 has them, the ball has a proven bound of what evaluating
 ///            them in float32 adds, and control normals count as off by what their errors say. `polynomial` and
 ///            `recompute` have the bound that they promise, kExactTolerance.
-/// Curves     On curved paths (normals/paths.h) the normal has degree 6, and the rest is the same. Exact are then the normals
-///            of the control positions as PolynomialSegment has them in double.
+/// Curves     On curved paths (normals/paths.h) the normal has degree 6, and the rest is the same. Exact are then the
+///            normals of the control positions as PolynomialSegment has them in double.
 /// Collapses  Where n(t) vanishes inside the segment, or what the scheme normalises does, no bound below half a turn is
 ///            claimed: `upper` is pi, and [from, to] holds the place.
 /// Units      radians; local t.
@@ -55,8 +55,8 @@ struct ErrorBounds {
 };
 
 struct CertifyOptions {
-  /// An element is done as soon as its bounds are closer than this share of the upper one and `gap`, beside what rounding
-  /// may be,
+  /// An element is done as soon as its bounds are closer than this share of the upper one and `gap`, beside what
+  /// rounding may be,
   double relative_gap = 1e-3;
   double gap = 1e-6;  ///< radians
   /// or as soon as the upper one is not above this,
@@ -96,8 +96,8 @@ struct PathTruth {
 [[nodiscard]] PathTruth path_truth(const NormalGroups& groups, const PathTruth& of_faces, IndexRange elements);
 
 /// Bounds the errors of a block against the normals of a curved path; the block is that of the straight one, from which
-/// schemes are prepared. `polynomial` and `recompute`, which are exact on the straight path, get bounds like the others.
-/// Preconditions: those of certify(); truth must have the elements of the block
+/// schemes are prepared. `polynomial` and `recompute`, which are exact on the straight path, get bounds like the
+/// others. Preconditions: those of certify(); truth must have the elements of the block
 void certify(const Scheme& scheme, const ElementBlock& block, const PathTruth& truth, std::span<ErrorBounds> result,
              const CertifyOptions& options = {}, std::span<const ControlErrors> errors = {});
 

@@ -48,8 +48,8 @@ struct Collapses {
   void instants() && = delete;  ///< a loop over a temporary would outlive it
 };
 
-/// Decides for one face, from its positions. Cost: three dot products for most faces; where those do not prove that n(t)
-/// stays away from zero, a few microseconds of integers.
+/// Decides for one face, from its positions. Cost: three dot products for most faces; where those do not prove that
+/// n(t) stays away from zero, a few microseconds of integers.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face) noexcept;
 
 /// The same where the control normals of the face, as face_control_normals() makes them of this segment, are at hand.
@@ -61,7 +61,8 @@ struct FaceCollapses {
   Collapses collapses;
 };
 
-/// Finds those of a range of faces that collapse, ascending; normals are those of the range. Allocates the result alone.
+/// Finds those of a range of faces that collapse, ascending; normals are those of the range. Allocates the result
+/// alone.
 [[nodiscard]] std::vector<FaceCollapses> find_collapses(const Segment& segment, IndexRange faces,
                                                         std::span<const ControlNormals> normals);
 

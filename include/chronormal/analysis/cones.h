@@ -1,19 +1,22 @@
 /// Normal cones: circular cones that contain the normals of an element over a whole interval of time.
 ///
-/// Over [t0, t1] the curve n(t) has three control normals of its own (eq. 5 of docs/theory.md, restricted), and every n(t)
-/// is a convex combination of them. A circular cone of at most 90 degrees around its axis is convex, so one that contains
-/// the three contains every normal between. (A cone of the two end normals does not.)
+/// Over [t0, t1] the curve n(t) has three control normals of its own (eq. 5 of docs/theory.md, restricted), and every
+/// n(t) is a convex combination of them. A circular cone of at most 90 degrees around its axis is convex, so one that
+/// contains the three contains every normal between. (A cone of the two end normals does not.)
 ///
-/// A cone is four floats, made for the test of back-face culling. With d a direction of view, from the eye into the scene,
+/// A cone is four floats, made for the test of back-face culling. With d a direction of view, from the eye into the
+/// scene,
 ///
 ///     dot(d, axis) >= sine * length(d)   ->   every normal n of the cone has dot(d, n) >= 0: no front face is in it
 ///
-/// The whole sphere is the axis 0 with the sine 1, which never passes that test; the empty cone, of an element that has no
-/// normal at any time, is the axis 0 with the sine 0, which always does. Wider cones than 90 degrees are the whole sphere.
+/// The whole sphere is the axis 0 with the sine 1, which never passes that test; the empty cone, of an element that has
+/// no normal at any time, is the axis 0 with the sine 0, which always does. Wider cones than 90 degrees are the whole
+/// sphere.
 ///
-/// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are taken to be within 2^-26
-///            of their length, as face_control_normals() makes them, and all rounding of the cone itself is added. What
-///            this adds to the half-angle is about 3e-7 rad, and 1e-6 of its sine. (docs/theory.md, section 20)
+/// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are taken to be within
+///            2^-26 of their length, as face_control_normals() makes them, and all rounding of the cone itself is
+///            added. What this adds to the half-angle is about 3e-7 rad, and 1e-6 of its sine. (docs/theory.md, section
+///            20)
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Tong, Wang, Manocha: Fast continuous collision detection using deforming non-penetration filters
@@ -46,9 +49,9 @@ struct NormalCone {
 /// The half-angle in radians: up to pi / 2, pi for the whole sphere, and 0 for the empty cone.
 [[nodiscard]] double half_angle(const NormalCone& cone) noexcept;
 
-/// Writes the cone of each element over [t0, t1]. Where a control normal of a part of the segment nearly vanishes, so that
-/// double cannot say where it points, the cone of the whole segment is written. Cost: a few nanoseconds an element.
-/// result must have as many elements as normals; 0 <= t0 <= t1 <= 1
+/// Writes the cone of each element over [t0, t1]. Where a control normal of a part of the segment nearly vanishes, so
+/// that double cannot say where it points, the cone of the whole segment is written. Cost: a few nanoseconds an
+/// element. result must have as many elements as normals; 0 <= t0 <= t1 <= 1
 void normal_cones(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result) noexcept;
 
 /// Writes the cones of a range of faces over [t0, t1], from positions: where double cannot say where a control normal

@@ -1,18 +1,21 @@
-/// From which side a face is seen, at every instant of a segment: for culling, silhouettes and visibility over a shutter.
+/// From which side a face is seen, at every instant of a segment: for culling, silhouettes and visibility over a
+/// shutter.
 ///
 /// A face shows its front where
 ///     f(t) = n(t) . w(t) > 0,   w(t) the way to the viewer
-/// and its back where f(t) < 0. For a viewer infinitely far away w is a direction and f a quadratic; for an eye that stands
-/// still or moves on a straight line w(t) = eye(t) - a(t), with a the first corner of the face, and f is a cubic. So a face
-/// changes sides at most three times, and "back-facing at both ends" does not mean "back-facing between".
+/// and its back where f(t) < 0. For a viewer infinitely far away w is a direction and f a quadratic; for an eye that
+/// stands still or moves on a straight line w(t) = eye(t) - a(t), with a the first corner of the face, and f is a
+/// cubic. So a face changes sides at most three times, and "back-facing at both ends" does not mean "back-facing
+/// between".
 ///
 ///     const Facing facing = find_facing(segment, face, View::of_eye({4, -5, 2}));
 ///     for (const FacingChange& change : facing.changes()) ...    // seen edge-on at a t in [change.lower, change.upper]
 ///
-/// Certain    the order of all sides, and that each root of f lies in its bracket and nowhere else: decided from the float32
-///            positions and the viewer as given, by floating point with a proven bound, and where that is not enough in
-///            integers. A bracket is about 1e-15 / (how fast f changes) wide, or two doubles beside each other, or one that
-///            is the root. Roots without a double between them count as one. Below 2^-200 a root cannot be told from 0.
+/// Certain    the order of all sides, and that each root of f lies in its bracket and nowhere else: decided from the
+///            float32 positions and the viewer as given, by floating point with a proven bound, and where that is not
+///            enough in integers. A bracket is about 1e-15 / (how fast f changes) wide, or two doubles beside each
+///            other, or one that is the root. Roots without a double between them count as one. Below 2^-200 a root
+///            cannot be told from 0.
 /// Polygons   the side of a polygon that is not flat is that of its vector area, seen from its first corner.
 /// Units      t: fraction of the segment; directions: of any length but 0.
 /// Threads    pure; find_silhouettes() allocates, nothing else does or throws.
@@ -83,22 +86,22 @@ enum class ShutterSide : std::int8_t {
   kFront = 1,  ///< never its back
 };
 
-/// Decides it for a range of faces: kBack and kFront are certain, and kBoth is right but for changes within a bracket of t0
-/// and t1. A face that is edge-on or without area throughout is kBack. normals are those of the range. Cost: as above, and
-/// nearly always the cheap case. result has an element for each face; 0 <= t0 <= t1 <= 1
+/// Decides it for a range of faces: kBack and kFront are certain, and kBoth is right but for changes within a bracket
+/// of t0 and t1. A face that is edge-on or without area throughout is kBack. normals are those of the range. Cost: as
+/// above, and nearly always the cheap case. result has an element for each face; 0 <= t0 <= t1 <= 1
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept;
 
-/// A part of the segment in which the two faces at an edge show different sides: from an instant in the first bracket to
-/// one in the second. Both ends of a bracket are 0 or 1 where it begins or ends with the segment.
+/// A part of the segment in which the two faces at an edge show different sides: from an instant in the first bracket
+/// to one in the second. Both ends of a bracket are 0 or 1 where it begins or ends with the segment.
 struct Silhouette {
   std::array<std::uint32_t, 2> vertices{}, faces{};
   std::array<double, 2> from{}, to{};
 };
 
-/// Finds all silhouette edges over time: of the edges that exactly two faces share, by their vertices. Ordered by vertices,
-/// then by time. Where the two faces change so close to each other that their brackets meet, both changes count as one.
-/// normals are those of all faces. Memory: 88 bytes a face, 12 a corner, and the result.
+/// Finds all silhouette edges over time: of the edges that exactly two faces share, by their vertices. Ordered by
+/// vertices, then by time. Where the two faces change so close to each other that their brackets meet, both changes
+/// count as one. normals are those of all faces. Memory: 88 bytes a face, 12 a corner, and the result.
 [[nodiscard]] std::vector<Silhouette> find_silhouettes(const Segment& segment, std::span<const ControlNormals> normals,
                                                        const View& view);
 

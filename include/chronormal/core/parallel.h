@@ -8,8 +8,8 @@
 namespace chronormal {
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
-/// done. The first exception that body throws is thrown here. Over oneTBB; one after the other in a build without it, and
-/// where the system gives this process no threads (found out once, when it is first asked).
+/// done. The first exception that body throws is thrown here. Over oneTBB; one after the other in a build without it,
+/// and where the system gives this process no threads (found out once, when it is first asked).
 /// A result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 

@@ -4,8 +4,8 @@
 /// for, so that the cost is that of what is asked for. All of the format that concerns normals over time is understood:
 /// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
 /// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression,
-/// KHR_draco_mesh_compression and KHR_animation_pointer. What is read is checked, strictly by the specification; what is
-/// not read (materials, textures, skins, the bounds of accessors) is not.
+/// KHR_draco_mesh_compression and KHR_animation_pointer. What is read is checked, strictly by the specification; what
+/// is not read (materials, textures, skins, the bounds of accessors) is not.
 ///
 /// A file that requires another extension is refused by the name of that, but for those of materials, textures and
 /// lights, which do not touch geometry.
@@ -76,8 +76,8 @@ struct GltfNode {
   std::vector<double> weights;  ///< its own, or empty: those of the mesh
 };
 
-/// The animation of the weights of one node: by a channel for it, or by one of KHR_animation_pointer for all weights of the
-/// node, or of its mesh (then each node that has none of its own has such a track).
+/// The animation of the weights of one node: by a channel for it, or by one of KHR_animation_pointer for all weights of
+/// the node, or of its mesh (then each node that has none of its own has such a track).
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
   /// The first track of the animation that gives the same weights: the same keys, interpolation and number of targets.

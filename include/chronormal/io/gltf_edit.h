@@ -2,7 +2,8 @@
 ///
 /// The JSON is not printed anew: what changes is spliced into the text of the source, so that every token that is not
 /// named by a pointer keeps its bytes (64-bit integers, 1e400, unknown extensions, the order of members, blanks). New
-/// arrays go behind the BIN chunk of the source, which stays a prefix of the new one unless leave_out_unused() is called.
+/// arrays go behind the BIN chunk of the source, which stays a prefix of the new one unless leave_out_unused() is
+/// called.
 ///
 ///     GltfEdit edit(document);
 ///     const std::size_t a = edit.add_vectors(deltas, {});               // a new accessor

@@ -3,8 +3,8 @@
 ///     (n, 3)      each point rests
 ///     (n, 2, 3)   each point moves from the first position to the second
 ///
-/// Errors     kInvalidInput with the file, and the element, as the place ("points.npy, [17, 0, 2]"): another shape or type,
-///            coordinates that are not finite or too large for float32; kFailed where the file cannot be read.
+/// Errors     kInvalidInput with the file, and the element, as the place ("points.npy, [17, 0, 2]"): another shape or
+///            type, coordinates that are not finite or too large for float32; kFailed where the file cannot be read.
 /// Threads    pure
 #ifndef CHRONORMAL_IO_POINTS_FILE_H_
 #define CHRONORMAL_IO_POINTS_FILE_H_

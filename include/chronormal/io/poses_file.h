@@ -3,8 +3,8 @@
 ///     [{"jawOpen": 0.7, "mouthSmile_L": 1},     weights by the names of targets; all others are 0
 ///      [0, 0.7, 0, 1]]                          or one for each target of a mesh, in its order
 ///
-/// Errors     kInvalidInput with the file and a JSON pointer as the place ("poses.json, /1/jawOpen"), or a byte for what is
-///            no JSON; kFailed where the file cannot be read.
+/// Errors     kInvalidInput with the file and a JSON pointer as the place ("poses.json, /1/jawOpen"), or a byte for
+///            what is no JSON; kFailed where the file cannot be read.
 /// Threads    pure
 #ifndef CHRONORMAL_IO_POSES_FILE_H_
 #define CHRONORMAL_IO_POSES_FILE_H_

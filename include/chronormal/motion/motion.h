@@ -89,8 +89,9 @@ struct Instant {
 };
 
 /// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
-/// later one, and the end of the motion is the end of the last one. The motion must be valid, or stand still. O(segments).
-/// Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that stands still.
+/// later one, and the end of the motion is the end of the last one. The motion must be valid, or stand still.
+/// O(segments). Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that
+/// stands still.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 
 }  // namespace chronormal

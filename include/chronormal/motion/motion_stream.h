@@ -6,9 +6,10 @@
 ///       const Segment segment = stream.motion().segment(s);      // good until the next hold
 ///     }
 ///
-/// motion() is the whole motion except for the positions of keyframes that are not held: faces, segments, times and names
-/// are always there. So a function that takes a Motion takes the motion of a stream too, once the stream holds what the
-/// function looks at. Where keyframes are held one after the other, a thread of its own reads the next one ahead.
+/// motion() is the whole motion except for the positions of keyframes that are not held: faces, segments, times and
+/// names are always there. So a function that takes a Motion takes the motion of a stream too, once the stream holds
+/// what the function looks at. Where keyframes are held one after the other, a thread of its own reads the next one
+/// ahead.
 ///
 /// Memory     the keyframes that are held, and one that is read ahead. Keyframes that take no more than `kept` bytes
 ///            together are read once and stay. A motion that was whole before takes nothing more.
@@ -28,8 +29,8 @@ namespace chronormal {
 
 class MotionStream {
  public:
-  /// Writes the 3 x vertex_count coordinates of a keyframe of the motion, all of them finite. It is called from one thread
-  /// at a time, not always from the same.
+  /// Writes the 3 x vertex_count coordinates of a keyframe of the motion, all of them finite. It is called from one
+  /// thread at a time, not always from the same.
   using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
@@ -37,8 +38,8 @@ class MotionStream {
   /// A motion that is in memory and stays there; it must outlive the stream, and it may stand still.
   explicit MotionStream(const Motion& whole);
 
-  /// A motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline must be
-  /// valid (motion/motion.h).
+  /// A motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline must
+  /// be valid (motion/motion.h).
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;

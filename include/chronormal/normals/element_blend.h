@@ -28,8 +28,8 @@ namespace chronormal {
 
 class ElementBlend {
  public:
-  /// Prepares the terms of all targets. Vertices are one point where they are at one place in the base and at full weight of
-  /// each target. Errors: those of validate() for a set, and of make_groups().
+  /// Prepares the terms of all targets. Vertices are one point where they are at one place in the base and at full
+  /// weight of each target. Errors: those of validate() for a set, and of make_groups().
   [[nodiscard]] static Result<ElementBlend> make(BlendSet set, const ElementOptions& options);
 
   /// Writes the unit normal of every output; (0, 0, 0) where there is none. Returns how many of those were written.

@@ -18,9 +18,10 @@
 ///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13): where n(t) gets small
 ///            against its control normals, their rounding counts more, so each element carries a certificate of how
 ///            small it can get. Where float32 cannot promise 1e-6 rad the element is *flagged* and evaluated in double;
-///            flagged_count() tells how many those are. Where double cannot either, curves that were made from positions
-///            keep the control normals as integers, and know the direction at every t; those that were made of control
-///            normals have the direction of these, and tell by uncertain_count() where even that is not known.
+///            flagged_count() tells how many those are. Where double cannot either, curves that were made from
+///            positions keep the control normals as integers, and know the direction at every t; those that were made
+///            of control normals have the direction of these, and tell by uncertain_count() where even that is not
+///            known.
 /// Lengths    |n(t)| is kept where the tolerance is kExactTolerance, and is lost in compact curves.
 /// Ownership  the curves own their memory; results go to the caller's.
 /// Threads    const functions may run at the same time. On one thread and at one t they do not allocate or throw. The
@@ -108,8 +109,8 @@ class NormalCurves {
   [[nodiscard]] bool keeps_lengths() const noexcept;
   /// How many elements have true degree 0, 1 and 2.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
-  /// How many elements at t are uncertain: n(t) is so small a part of what it is the sum of, in double, that 1e-6 rad is
-  /// not promised there. Only where control normals are all that is known; curves made from positions have none.
+  /// How many elements at t are uncertain: n(t) is so small a part of what it is the sum of, in double, that 1e-6 rad
+  /// is not promised there. Only where control normals are all that is known; curves made from positions have none.
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
   /// How many elements are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;

@@ -32,8 +32,8 @@ struct ErrorTable {
   /// (V) of a glTF mesh: the primitive of each vertex, and which of its vertices it is; else empty.
   std::vector<std::int64_t> primitives = {}, vertices = {};
 
-  /// Of each row: the subject of the audit (Audit::subjects), or the segment of the motion; and when it is. One of time and
-  /// weight is NaN.
+  /// Of each row: the subject of the audit (Audit::subjects), or the segment of the motion; and when it is. One of time
+  /// and weight is NaN.
   std::vector<std::int64_t> subjects = {};
   std::vector<double> times = {}, weights = {};
   std::vector<float> degrees = {};  ///< (rows, columns)
@@ -47,8 +47,8 @@ struct ErrorTable {
 /// The most bytes that the errors of one table may have.
 inline constexpr std::size_t kMostErrorBytes = std::size_t{1} << 30;
 
-/// Refuses before a long computation what write_errors() would refuse. Errors: kUsage for another extension than .npz and
-/// .ply; those of check_output().
+/// Refuses before a long computation what write_errors() would refuse. Errors: kUsage for another extension than .npz
+/// and .ply; those of check_output().
 [[nodiscard]] Status check_errors_output(const std::string& path, bool force);
 
 /// Writes tables as a file, all or nothing:

@@ -1,5 +1,5 @@
-/// The results of inspect, audit, compare, bake and query as JSON: what the program prints for --json, for whoever has the results
-/// and not the program. docs/cli.md has the fields.
+/// The results of inspect, audit, compare, bake and query as JSON: what the program prints for --json, for whoever has
+/// the results and not the program. docs/cli.md has the fields.
 ///
 /// Text       indented by two, with a line end; names that are no UTF-8 get U+FFFD, and numbers that are infinite or no
 ///            numbers are null.

@@ -1,4 +1,5 @@
-/// Questions about the normals of a motion over whole intervals of time, answered as arrays: what `chronormal query` does.
+/// Questions about the normals of a motion over whole intervals of time, answered as arrays: what `chronormal query`
+/// does.
 ///
 /// A question takes a motion and a span of its time, looks at every segment that the span touches, and answers with
 /// tables of equally long columns. What one segment's answer is made of, and what is guaranteed, stands in the header
@@ -7,8 +8,8 @@
 ///     const Result<QueryAnswer> answer = query_collapse(motion);
 ///     write_query(answer.value(), "collapses.npz", false);
 ///
-/// Units      a `t` is the fraction of a segment, in [0, 1]; a `time` is that of the motion: seconds, or the weight of a
-///            target.
+/// Units      a `t` is the fraction of a segment, in [0, 1]; a `time` is that of the motion: seconds, or the weight of
+///            a target.
 /// Threads    every question uses all (core/parallel.h); the answer is the same on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_H_
 #define CHRONORMAL_WORKFLOW_QUERY_H_
@@ -28,8 +29,8 @@
 
 namespace chronormal {
 
-/// The span that a question is about, in the time of the motion; of targets, in weights. Nothing: from its beginning, or
-/// to its end.
+/// The span that a question is about, in the time of the motion; of targets, in weights. Nothing: from its beginning,
+/// or to its end.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
 };
@@ -40,8 +41,8 @@ struct SegmentPart {
   double t0 = 0, t1 = 1;
 };
 
-/// The parts of all segments that lie in a span, ascending. Errors: kUsage, with --from or --to as the place, for a span
-/// that is empty or in which there is no motion.
+/// The parts of all segments that lie in a span, ascending. Errors: kUsage, with --from or --to as the place, for a
+/// span that is empty or in which there is no motion.
 [[nodiscard]] Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span);
 
 /// A column of an answer: an array of which the first length is that of its table.
@@ -88,8 +89,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
 
-/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that moves
-/// does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
+/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that
+/// moves does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
 /// float32; over targets it moves with the weight. Tables:
 ///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
 ///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
@@ -98,10 +99,10 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
 
-/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses the
-/// surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of the
-/// motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them it moves
-/// straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
+/// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses
+/// the surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of
+/// the motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and between them
+/// it moves straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
 ///     ""         inside: one row for each point
 ///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
 ///                segment and weight
@@ -114,9 +115,9 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
 ///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
 ///     member    meshlet, face
-/// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first keyframe.
-/// Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up to 512, and
-/// for a mesh of larger faces.
+/// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first
+/// keyframe. Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up
+/// to 512, and for a mesh of larger faces.
 [[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
@@ -129,8 +130,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {});
 
-/// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN where
-/// the table has no name. Errors: kUsage for another extension; those of write_output().
+/// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN
+/// where the table has no name. Errors: kUsage for another extension; those of write_output().
 [[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
 
 /// Refuses before a long computation what write_query() would refuse.

@@ -6,14 +6,14 @@
 ///
 /// The report is one container of bytes (docs/report-data.md): the mesh, what moves it, what is stored of normals, the
 /// samples that audit() judged with the worst and the mean error of each, the worst places, and as JSON what audit, the
-/// plan of bake and compare say. What is right and what is shown at any moment in between is computed by the page, from the
-/// same positions and normals, so that its numbers at the worst places are those of the audit.
+/// plan of bake and compare say. What is right and what is shown at any moment in between is computed by the page, from
+/// the same positions and normals, so that its numbers at the worst places are those of the audit.
 ///
-/// Worst      at most kMostWorstPlaces vertices, each where it is off the most, by more than kLeastPlace, none within kPlaceDistance of another of
-///            the same mesh.
+/// Worst      at most kMostWorstPlaces vertices, each where it is off the most, by more than kLeastPlace, none within
+///            kPlaceDistance of another of the same mesh.
 /// Thinned    what would make the page larger than the limit is left out, and said: keyframes and samples between those
-///            of the worst places, and then triangles far from these, which become fewer and are not judged. Everything that the
-///            normals around a worst place depend on is kept as it is.
+///            of the worst places, and then triangles far from these, which become fewer and are not judged. Everything
+///            that the normals around a worst place depend on is kept as it is.
 /// Threads    on all cores; the same bytes on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_H_
 #define CHRONORMAL_WORKFLOW_REPORT_H_
@@ -88,8 +88,8 @@ inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 /// Whether a template holds the mark exactly once. Errors: kInvalidInput
 [[nodiscard]] Status check_report_template(std::string_view page_template);
 
-/// Fills a template: the container, packed and as base64, becomes a script element in place of the mark, from which no name
-/// in a file can break out. Errors: those of check_report_template()
+/// Fills a template: the container, packed and as base64, becomes a script element in place of the mark, from which no
+/// name in a file can break out. Errors: those of check_report_template()
 [[nodiscard]] Result<std::string> report_page(const Report& report, std::string_view page_template);
 
 /// What the report holds, as JSON for programs. output: the name of what was written, and its size.

@@ -5,10 +5,11 @@
 /// between its frames, and the frames themselves tell what: all but every N-th keyframe are left out, normals are
 /// interpolated between those that are kept, and held against the normals of those that were left out.
 ///
-/// Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex moves on
-///            cubics through the kept keyframes. Its velocity at each of them is that of the parabola through it and its
-///            two neighbours, and at an end of the motion that of the cubic through the nearest four. Its normals are
-///            exact on that path. "hermite": the same with the velocities of the keyframes, where they have them.
+/// Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex
+///            moves on cubics through the kept keyframes. Its velocity at each of them is that of the parabola through
+///            it and its two neighbours, and at an end of the motion that of the cubic through the nearest four. Its
+///            normals are exact on that path. "hermite": the same with the velocities of the keyframes, where they have
+///            them.
 /// Bend       that of the kept keyframes, by bend_of() in normals/paths.h.
 /// Source     docs/truth.md.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_H_

@@ -1,15 +1,15 @@
 /// The largest angle between two curves on one piece of a segment, by Bernstein coefficients.
 ///
-/// A scheme on a piece is a cubic p with a ball around it, and the normal a polynomial n of degree N that may be off by a
-/// little: a quadratic where vertices move straight, and of degree 6 on curved paths. Both S = p x n and D = p.n have
+/// A scheme on a piece is a cubic p with a ball around it, and the normal a polynomial n of degree N that may be off by
+/// a little: a quadratic where vertices move straight, and of degree 6 on curved paths. Both S = p x n and D = p.n have
 /// degree N + 3, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
 /// their Bernstein coefficients as long as those of the denominator are positive, so
 ///
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
 ///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   all (S.S)_k > 0
 ///
-/// which converges with the square of the width of the piece. S.S + D^2 = |p|^2 |n|^2 has the same coefficients at hand;
-/// its smallest says how much the ball and the error of n turn the two. (docs/theory.md, section 19)
+/// which converges with the square of the width of the piece. S.S + D^2 = |p|^2 |n|^2 has the same coefficients at
+/// hand; its smallest says how much the ball and the error of n turn the two. (docs/theory.md, section 19)
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_ANGLE_BOUND_H_
@@ -50,8 +50,8 @@ struct MiddleAngle {
 template <std::size_t N>
 [[nodiscard]] MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept;
 
-/// An upper bound of the angle between n and what is computed from the same n up to its error; pi where the piece does not
-/// show that n is longer than that.
+/// An upper bound of the angle between n and what is computed from the same n up to its error; pi where the piece does
+/// not show that n is longer than that.
 [[nodiscard]] double largest_turn(const NormalPiece<6>& normal) noexcept;
 
 }  // namespace chronormal::inline internal

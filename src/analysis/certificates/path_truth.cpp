@@ -1,10 +1,11 @@
 // The control normals of elements on curved paths, with a bound of what rounding did to them.
 //
-// An edge is a difference of two control positions, rounded once. A component of a cross product of two edges e and f is
-// two products of three roundings each and their difference: within 8 u M, M = max |e| max |f|. Its share of a control
-// normal is rounded once and multiplied, 4 u M, and at most four of them are added up, 8 u of the sum of the shares of M.
-// So a triangle is within 20 u of that sum, and a fan of polygons adds 2 u for each corner; polynomial_face_normals()
-// takes a control normal for zero that is not above 32 u for each corner of it. The bound is twice that.
+// An edge is a difference of two control positions, rounded once. A component of a cross product of two edges e and f
+// is two products of three roundings each and their difference: within 8 u M, M = max |e| max |f|. Its share of a
+// control normal is rounded once and multiplied, 4 u M, and at most four of them are added up, 8 u of the sum of the
+// shares of M. So a triangle is within 20 u of that sum, and a fan of polygons adds 2 u for each corner;
+// polynomial_face_normals() takes a control normal for zero that is not above 32 u for each corner of it. The bound is
+// twice that.
 #include <cassert>
 
 #include "chronormal/analysis/certify.h"

@@ -27,8 +27,8 @@ Bernstein<Vec3d, 3> elevated(const Bernstein<Vec3d, 2>& p) {
   return {p[0], (1.0 / 3) * (p[0] + 2.0 * p[1]), (1.0 / 3) * (2.0 * p[1] + p[2]), p[2]};
 }
 
-// The halves of de Casteljau's triangle over as many coefficients as there are, in place: p becomes the part after t, or
-// the one before it.
+// The halves of de Casteljau's triangle over as many coefficients as there are, in place: p becomes the part after t,
+// or the one before it.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {
@@ -164,7 +164,8 @@ CurvePiece LagrangeCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, LagrangeBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // The cubic of the same ends and slopes at the ends; raised to the degree of p, it has a coefficient beside each of p.
+  // The cubic of the same ends and slopes at the ends; raised to the degree of p, it has a coefficient beside each of
+  // p.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
@@ -207,8 +208,8 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
   const double at = (a + (b - a) / 2) * angle_, beta = (b - a) / 2 * angle_;
   const double cosine = portable::cos(at), sine = portable::sin(at);
   const Vec3d p = cosine * p_ + sine * q_, q = cosine * q_ - sine * p_;
-  // From here x in [-beta, beta] further: cos x = 1 - x^2 / 2 + x^4 / 24 of which x^4 is beta^2 x^2 - beta^4 / 8 to within
-  // beta^4 / 8, and sin x = x - x^3 / 6.
+  // From here x in [-beta, beta] further: cos x = 1 - x^2 / 2 + x^4 / 24 of which x^4 is beta^2 x^2 - beta^4 / 8 to
+  // within beta^4 / 8, and sin x = x - x^3 / 6.
   const double square = beta * beta, fourth = square * square;
   const double constant = 1 - fourth / 192, quadratic = square / 24 - 0.5;
   const Vec3d outer = w_ + (constant + quadratic * square) * p, inner = w_ + (constant - quadratic * square / 3) * p;

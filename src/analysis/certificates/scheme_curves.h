@@ -1,7 +1,7 @@
 /// The curves of schemes, piece by piece: on any [a, b], a cubic and a ball around it that holds what is shown.
 ///
-/// Everything is taken from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so fits have no
-/// rounding of their own. What one evaluation adds, with e = 2^-24, is bounded for each formula of
+/// Everything is taken from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so fits have
+/// no rounding of their own. What one evaluation adds, with e = 2^-24, is bounded for each formula of
 /// schemes/kernels/formulas-inl.h, operation by operation (docs/theory.md, section 19):
 ///
 ///     weighted sums of K + 1       (K + 3) e sum |w_k| |c_k|
@@ -24,8 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// Lagrange polynomials at equidistant nodes, as what the whole block has in common. Beyond degree 27 the weights are so
-/// large that float32 shows nothing but rounding.
+/// Lagrange polynomials at equidistant nodes, as what the whole block has in common. Beyond degree 27 the weights are
+/// so large that float32 shows nothing but rounding.
 class LagrangeBasis {
  public:
   static constexpr std::size_t kMostDegree = 27;

@@ -164,8 +164,8 @@ class Cluster {
   std::vector<IntervalNormals> normals_;
 };
 
-// The axis and the cutoff in 8 bits each: n.v >= 0 holds for all n of the cone where v.axis_s8 / 127 is no less than the
-// sine and what rounding the axis can make of v.axis.
+// The axis and the cutoff in 8 bits each: n.v >= 0 holds for all n of the cone where v.axis_s8 / 127 is no less than
+// the sine and what rounding the axis can make of v.axis.
 void set_8_bits(const NormalCone& cone, ClusterBounds& bounds) {
   const Vec3d axis = unit(to_double(cone.axis));
   const auto rounded = [](double x) { return std::nearbyint(kSteps * x); };

@@ -22,8 +22,8 @@ bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
 bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 
-// Writes the cones of up to kBlock elements. settle(i) gives that of an element of which double cannot say where a control
-// normal of the part points.
+// Writes the cones of up to kBlock elements. settle(i) gives that of an element of which double cannot say where a
+// control normal of the part points.
 template <class Settle>
 void cones_of_block(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result,
                     const Settle& settle) noexcept {
@@ -130,7 +130,8 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
   if (count == 0) return NormalCone::empty();
   if (count == 1) return *only;
 
-  // Move towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003), and keep the best axis on the way.
+  // Move towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003), and keep the best axis on the
+  // way.
   Vec3d axis = unit(sum), best = axis;
   double best_nearness = -3;
   for (std::size_t i = 0; i < kRefinements && !is_zero(axis); ++i) {

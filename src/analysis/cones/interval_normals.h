@@ -11,7 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Three control normals, each of which is exactly zero or within `unknown` of its largest component from the exact one.
+/// Three control normals, each of which is exactly zero or within `unknown` of its largest component from the exact
+/// one.
 struct IntervalNormals {
   ControlNormals normals;
   double unknown = kNormalShare;

@@ -1,10 +1,10 @@
-// In a piece of the interval n(s) = a + b s + c s^2 with s in [-1, 1], and |n(s)|^2 = q(s) is a quartic with q(0) = |a|^2.
-// For complex s with |s| <= R
+// In a piece of the interval n(s) = a + b s + c s^2 with s in [-1, 1], and |n(s)|^2 = q(s) is a quartic with q(0) =
+// |a|^2. For complex s with |s| <= R
 //     |q(s) - q(0)| <= |q1| R + |q2| R^2 + |q3| R^3 + |q4| R^4 = k |a|^2
-// so where k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is at most
-// M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with the foci -1 and
-// 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2 M 4^-j. Gauss's rule
-// with 8 nodes is exact up to degree 15, so the mean that it gives is off by at most
+// so where k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is
+// at most M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with
+// the foci -1 and 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2
+// M 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the mean that it gives is off by at most
 //     32/15 M 4^-16 / (1 - 4^-2)                               (Trefethen, Approximation Theory and Practice, chapter 19)
 #include "chronormal/analysis/shutter.h"
 

@@ -95,8 +95,8 @@ std::size_t axis_of(const ControlNormals& n) {
 
 constexpr std::size_t kUpwards = 2;
 
-// A root in [0, 1], as far as double can tell; the first, where there is no change of sign between the ends. By Newton's
-// method, which is kept between the ends that bracket the root.
+// A root in [0, 1], as far as double can tell; the first, where there is no change of sign between the ends. By
+// Newton's method, which is kept between the ends that bracket the root.
 std::optional<double> first_root(const Bernstein<double, 3>& p) {
   if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
     const Roots<3> roots = roots_in_unit_interval(p);

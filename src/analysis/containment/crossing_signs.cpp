@@ -250,8 +250,8 @@ CrossingSigns::CrossingSigns(const std::array<MovingPoint, 3>& corners, const Mo
   }
   // A difference has one rounding and a position at t three more, so each is within 4 u of the largest coordinate along
   // its axis. A coefficient of a side is a sum of 4 products, that of a volume one of 18, each with the errors of its
-  // factors and its own roundings, and every sum adds at most one rounding of the whole: below 4 (8 + 1 + 2) u = 44 u of
-  // the product of the sizes, and 18 (12 + 2 + 5) u = 342 u.
+  // factors and its own roundings, and every sum adds at most one rounding of the whole: below 4 (8 + 1 + 2) u = 44 u
+  // of the product of the sizes, and 18 (12 + 2 + 5) u = 342 u.
   constexpr double kRounding = 0x1p-53;
   for (std::size_t axis = 0; axis < 3; ++axis)
     side_bound_[axis] = 64 * kRounding * size[first_of(axis)] * size[second_of(axis)];

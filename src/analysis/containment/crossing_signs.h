@@ -7,8 +7,8 @@
 ///     side       S_ab(t) = a_x b_y - a_y b_x        quadratic, one for each edge; all three have the same sign where the
 ///                                                   line through the point along z meets the triangle
 ///
-/// Sides may be taken along any axis along which the normal n(t) is not zero throughout: where the point is in the plane
-/// of the triangle, it is between the edges if and only if the line meets the triangle.
+/// Sides may be taken along any axis along which the normal n(t) is not zero throughout: where the point is in the
+/// plane of the triangle, it is between the edges if and only if the line meets the triangle.
 /// V goes from - to + where the point goes from the side to which the normal points to the other. A polynomial over a
 /// cell [t0, t1] of time is looked at by the signs of its Bernstein coefficients, which are polynomials themselves in
 /// the corners at t0 and at t1: no sign change, no root; one sign change, one root (Descartes).
@@ -70,8 +70,8 @@ class CrossingSigns {
   /// What the triangle does in a cell, with sides along axis 0, 1 or 2.
   [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
-  /// What the triangle adds to the winding number at a moment: 1 where the half-line from the point along the axis leaves
-  /// through it, -1 where it enters, else 0.
+  /// What the triangle adds to the winding number at a moment: 1 where the half-line from the point along the axis
+  /// leaves through it, -1 where it enters, else 0.
   [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
 
   /// The sign of the volume at a moment.

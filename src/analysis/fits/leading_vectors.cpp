@@ -1,6 +1,6 @@
 // Subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011, algorithm 4.4): a block of
-// random columns is multiplied by the matrix and made orthonormal, again and again. The eigenvectors of the small matrix
-// that the large one is in this block, by Jacobi's rotations, turn the block into eigenvectors of the large one.
+// random columns is multiplied by the matrix and made orthonormal, again and again. The eigenvectors of the small
+// matrix that the large one is in this block, by Jacobi's rotations, turn the block into eigenvectors of the large one.
 #include "analysis/fits/leading_vectors.h"
 
 #include <algorithm>

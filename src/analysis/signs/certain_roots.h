@@ -1,10 +1,10 @@
 /// Roots of a polynomial whose coefficients are only known to a bound, as far as that bound lets them be certain.
 ///
 /// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them is
-/// exactly one root. So a part of [0, 1] is settled where all coefficients are beyond the bound on one side, or where those
-/// beyond it on one side come first, those beyond it on the other side last, and only those of which the sign is unknown
-/// between. Any other part is halved, a few times; what is not settled then is for integers (analysis/signs/exact_roots.h). The
-/// only root of a part is bracketed by two values that are beyond the bound.
+/// exactly one root. So a part of [0, 1] is settled where all coefficients are beyond the bound on one side, or where
+/// those beyond it on one side come first, those beyond it on the other side last, and only those of which the sign is
+/// unknown between. Any other part is halved, a few times; what is not settled then is for integers
+/// (analysis/signs/exact_roots.h). The only root of a part is bracketed by two values that are beyond the bound.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 

@@ -1,9 +1,11 @@
 // Three stages, of which each decides what it is sure of.
 //
-// 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is a convex
+// 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is a
+// convex
 //    combination of them. This takes three dot products, and proves it for almost every face.
-// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so there is none while they span space.
-// 3. Integers: n(t) has three components, each a quadratic. If all are multiples of one, its roots are the collapses. If
+// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so there is none while they span
+// space. 3. Integers: n(t) has three components, each a quadratic. If all are multiples of one, its roots are the
+// collapses. If
 //    two differ, the combination of the two without t^2 is linear, and its root is the only candidate.
 //
 // Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.

@@ -2,8 +2,8 @@
 ///
 ///     f(t) = a[0] + a[1] t + ... + a[N] t^N,   N = 1, 2 or 3
 ///
-/// Sturm's theorem counts: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at each root of
-/// f, whatever its multiplicity, and nowhere else. All signs are those of integers (core/wide_integer.h), taken just
+/// Sturm's theorem counts: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at each root
+/// of f, whatever its multiplicity, and nowhere else. All signs are those of integers (core/wide_integer.h), taken just
 /// after t, so that a t which is a root itself needs no exception. The count is monotone in t, so a search among the
 /// doubles finds the neighbours between which it steps. The search starts from a guess in floating point, which decides
 /// nothing but how long it takes: a few microseconds from a good one.

@@ -1,9 +1,11 @@
 // Three stages, of which each decides what it is sure of.
 //
-// 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones: where
+// 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
+// where
 //    all are clearly positive, or all negative, so is f. This is the answer for almost every face.
-// 2. The same coefficients with the bound that the face's own rounding has, and their roots (analysis/signs/certain_roots.h).
-// 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has no area.
+// 2. The same coefficients with the bound that the face's own rounding has, and their roots
+// (analysis/signs/certain_roots.h). 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at
+// an end or in the middle, or has no area.
 
 #include "chronormal/analysis/facing.h"
 #include "analysis/signs/length_1.h"

@@ -1,5 +1,5 @@
-/// Whole files as bytes: in by memory mapping, or from memory where a caller has them there. Private to io and the program;
-/// the way out is chronormal/io/output.h.
+/// Whole files as bytes: in by memory mapping, or from memory where a caller has them there. Private to io and the
+/// program; the way out is chronormal/io/output.h.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_BYTES_FILE_H_
@@ -18,8 +18,8 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
 /// The bytes of a file, as long as the object lives. Regular files are mapped: where another program shortens one
-/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/terminal/process.h). Pipes and
-/// terminals are read to their end.
+/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/terminal/process.h).
+/// Pipes and terminals are read to their end.
 class FileBytes {
  public:
   /// Opens a file; "-" is the standard input.

@@ -28,9 +28,9 @@ class OutputFile {
   /// is written.
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
-  /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; 0 begins it. The bytes are in the file
-  /// partial_name(path) until finish(), and stay there where the object or the process ends before. Errors: those of
-  /// create(); kUsage for a path that is no file.
+  /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; 0 begins it. The bytes are in the
+  /// file partial_name(path) until finish(), and stay there where the object or the process ends before. Errors: those
+  /// of create(); kUsage for a path that is no file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
   [[nodiscard]] static std::string partial_name(const std::string& path);
   /// Opens the file that another process has begun, whose temporary_name() is the name, to write other parts of it by

@@ -1,5 +1,5 @@
-// The list has a place for every temporary file that is there at the same time. A name in it belongs to whoever takes it
-// out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
+// The list has a place for every temporary file that is there at the same time. A name in it belongs to whoever takes
+// it out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
 #include "io/bytes/temporary_file.h"
 
 #include <sys/random.h>

@@ -28,7 +28,8 @@ class TemporaryFile {
     std::string name;
   };
   TemporaryFile(const Kept& kept, mode_t mode);
-  /// Opens the temporary file that another process has opened, by the name that it has there. Each of the two removes it.
+  /// Opens the temporary file that another process has opened, by the name that it has there. Each of the two removes
+  /// it.
   [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;

@@ -84,8 +84,8 @@ bool read_zip64_field(std::string_view extra, Member& member) {
   return false;
 }
 
-// Unpacks at most `most` bytes. The result has fewer where the data are damaged; at_end is whether they ended well. Where
-// zlib gets no memory, this ends as it does where anything else gets none.
+// Unpacks at most `most` bytes. The result has fewer where the data are damaged; at_end is whether they ended well.
+// Where zlib gets no memory, this ends as it does where anything else gets none.
 std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
   std::string result(most, '\0');

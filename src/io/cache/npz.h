@@ -45,8 +45,9 @@ namespace chronormal::inline internal {
 /// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, velocities
 /// of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree between
 /// directory, member and array header are refused before memory is taken.
-/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so expansion
-/// is asked first, with bytes and numbers of what is deflated, and what a keyframe takes beside its positions.
+/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so
+/// expansion is asked first, with bytes and numbers of what is deflated, and what a keyframe takes beside its
+/// positions.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
@@ -126,8 +127,8 @@ class NpzOutput {
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
   /// Goes on with a file that another process has begun (OutputFile::join()), after the same arrays were added. skip()
-  /// passes over the bytes of a growing array that others write. The process that has called begin() calls finish(), after
-  /// add_checksum() for what each of the others, in their order, has appended to each growing array.
+  /// passes over the bytes of a growing array that others write. The process that has called begin() calls finish(),
+  /// after add_checksum() for what each of the others, in their order, has appended to each growing array.
   void join();
   void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
   /// The checksum of what was appended to an array.

@@ -46,8 +46,8 @@ struct CacheOptions {
 };
 
 /// Gives the samples of a cache the faces of a mesh, as a sequence or what else they are known to be; every keyframe
-/// takes the name of the cache. The result is valid (motion/motion.h), but that samples without positions give keyframes
-/// without any.
+/// takes the name of the cache. The result is valid (motion/motion.h), but that samples without positions give
+/// keyframes without any.
 ///
 /// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
 /// fewer than two samples, times that do not ascend as the kind has it (the place has the sample).

@@ -1,5 +1,5 @@
-// The glTF files that inputs stand for. Keyframes and glTF files are told apart by their names alone; a folder whose own
-// files are meshes is a sequence, whatever lies in the folders in it.
+// The glTF files that inputs stand for. Keyframes and glTF files are told apart by their names alone; a folder whose
+// own files are meshes is a sequence, whatever lies in the folders in it.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -21,8 +21,8 @@ bool holds(const std::string& path, Holds kind) {
   return format != nullptr && format->holds == kind;
 }
 
-// The glTF files in a folder and in the folders in it; none where its own files are meshes. What cannot be listed is for the
-// one who opens it to say.
+// The glTF files in a folder and in the folders in it; none where its own files are meshes. What cannot be listed is
+// for the one who opens it to say.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
   fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, code);

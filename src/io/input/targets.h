@@ -7,8 +7,9 @@
 ///
 /// A target is a mesh with the faces of the base (.obj, .ply), or what is added to it (io/mesh/make_human_target.h).
 /// Inputs are files and patterns as in io/input.h, and folders: all targets in a folder and in the folders in it,
-/// sorted by path with numbers as numbers; names that begin with a dot and links to folders are passed over. The file of the
-/// base itself is passed over wherever it comes among the inputs, so that it may lie in the folder of its targets.
+/// sorted by path with numbers as numbers; names that begin with a dot and links to folders are passed over. The file
+/// of the base itself is passed over wherever it comes among the inputs, so that it may lie in the folder of its
+/// targets.
 #ifndef CHRONORMAL_IO_INPUT_TARGETS_H_
 #define CHRONORMAL_IO_INPUT_TARGETS_H_
 

@@ -49,8 +49,8 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 [[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name);
 
 /// The same with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these that
-/// the vertices have, of any scalar type. A file has all three of them or none. Errors: also kInvalidInput where it does
-/// not, where one is a list, and for velocities that are no number, not finite or too large for float32.
+/// the vertices have, of any scalar type. A file has all three of them or none. Errors: also kInvalidInput where it
+/// does not, where one is a list, and for velocities that are no number, not finite or too large for float32.
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name);
 
 /// Writes a PLY file with float x, y, z and one list of indices for each face. In ascii, coordinates have the fewest

@@ -50,8 +50,8 @@ class CornerVectors {
 class ProductSum {
  public:
   /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
-  /// Edges and both products of a component are within 10 u of the absolute products; each triangle adds a rounding, and
-  /// four for what counts as one.
+  /// Edges and both products of a component are within 10 u of the absolute products; each triangle adds a rounding,
+  /// and four for what counts as one.
   void add(const CornerVectors& p, const CornerVectors& q) {
     struct Edge {
       Vec3d p, q;

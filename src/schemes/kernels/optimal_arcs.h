@@ -6,8 +6,8 @@
 /// continues with parabolas until convexity shows that hardly anything is left to gain.
 ///
 /// That holds where the element turns mildly: by less than a radian over the segment and by 0.15 between neighbouring
-/// samples, with an arc of less than 150 degrees, and a normal that vanishes nowhere. Other elements are left to a search
-/// over the whole family.
+/// samples, with an arc of less than 150 degrees, and a normal that vanishes nowhere. Other elements are left to a
+/// search over the whole family.
 #ifndef CHRONORMAL_SCHEMES_KERNELS_OPTIMAL_ARCS_H_
 #define CHRONORMAL_SCHEMES_KERNELS_OPTIMAL_ARCS_H_
 

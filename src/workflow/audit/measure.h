@@ -86,9 +86,9 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element in some of the segments. The control normals of a quadratic follow from its ends
-/// and its middle. (On curved paths they are those of the parabola through these three, which is near enough for a
-/// scale.)
+/// The length of the largest control normal of each element in some of the segments. The control normals of a quadratic
+/// follow from its ends and its middle. (On curved paths they are those of the parabola through these three, which is
+/// near enough for a scale.)
 template <class Source>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, IndexRange segments,
                                                                   PlacedPart& placed) {
@@ -111,8 +111,8 @@ template <class Source>
   return largest;
 }
 
-/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each, where
-/// it is not empty, gets that of the i-th in degrees, NaN where none is judged.
+/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each,
+/// where it is not empty, gets that of the i-th in degrees, NaN where none is judged.
 template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat,
                                    std::span<const double> largest, std::size_t segment, double t, const Shown& shown,
@@ -195,8 +195,9 @@ struct MeasuredSample {
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of the segments of a subject, or of a share of them, which says how many there are, and fills in its errors. progress
-/// is called after each segment, each_sample(measured sample) after each sample. Errors: those of source.enter().
+/// Measures all samples of the segments of a subject, or of a share of them, which says how many there are, and fills
+/// in its errors. progress is called after each segment, each_sample(measured sample) after each sample. Errors: those
+/// of source.enter().
 template <class Source, class EachSample>
 [[nodiscard]] Status measure(Source& source, const JudgedPart& part, AuditRule rule,
                              const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,

@@ -28,7 +28,8 @@ using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const 
 
 /// Measures all samples of these segments of a motion, as measure() does for normals that a host computes at keyframes.
 /// The outputs of the part must be in the order of their elements. Calls progress after each segment. Of `kept`, only
-/// the shard, the known segments and tell_segment are used. Errors: those of the stream, of which one segment is held at a time.
+/// the shard, the known segments and tell_segment are used. Errors: those of the stream, of which one segment is held
+/// at a time.
 [[nodiscard]] Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
                                     AuditRule rule, const FindPlace& at, const std::function<void()>& progress,
                                     AuditSubject& subject, const KeptErrors& kept);

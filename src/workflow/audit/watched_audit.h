@@ -34,15 +34,15 @@ struct AuditSample {
 
 using AuditWatch = std::function<void(const AuditSample&)>;
 
-/// The audits of workflow/audit.h, told as they go: subject after subject, sample after sample. Tracks with the same keys
-/// are told once, as the first of their subjects. An empty watch is told nothing.
+/// The audits of workflow/audit.h, told as they go: subject after subject, sample after sample. Tracks with the same
+/// keys are told once, as the first of their subjects. An empty watch is told nothing.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, const AuditWatch& watch);
 
-/// Which corners of a motion share a normal, as its audit has it: those of smooth edges, as the stored normals of keyframe
-/// 0 say, where there are any. Errors: of NormalGroups and of the stream
+/// Which corners of a motion share a normal, as its audit has it: those of smooth edges, as the stored normals of
+/// keyframe 0 say, where there are any. Errors: of NormalGroups and of the stream
 [[nodiscard]] Result<NormalGroups> audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal

@@ -254,7 +254,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   return Success{};
 }
 
-// A mesh is baked once: a second time would add targets to targets. One that has none of them can be baked in another way.
+// A mesh is baked once: a second time would add targets to targets. One that has none of them can be baked in another
+// way.
 bool is_baked(const GltfShading& shading, const BakeOptions& options) {
   return shading.mark &&
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));

@@ -51,8 +51,8 @@ Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::
   return ((a * bb - b * ab) / determinant) * to[0] + ((b * aa - a * ab) / determinant) * to[1];
 }
 
-// The tangents of all vertices, as a target at weight 1 carries them along, of any length; as in the base where it moves
-// no face around.
+// The tangents of all vertices, as a target at weight 1 carries them along, of any length; as in the base where it
+// moves no face around.
 std::vector<Vec3d> carried_tangents(const GltfShading& shading, std::size_t target) {
   const std::size_t vertices = shading.element_of_vertex.size();
   std::vector<double> weights(shading.set.targets.size(), 0.0), after(3 * vertices);

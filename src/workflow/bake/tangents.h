@@ -1,5 +1,5 @@
-/// Tangents of normal-mapped primitives: what targets add to them, so that they stay perpendicular to the right normals and
-/// of length 1. Private to workflow.
+/// Tangents of normal-mapped primitives: what targets add to them, so that they stay perpendicular to the right normals
+/// and of length 1. Private to workflow.
 ///
 ///     carried    a tangent lies in the faces around its vertex and goes along with each of them, as texture
 ///                coordinates do: where it is a e1 + b e2 of the edges of a face in the base, it is a e1' + b e2' where a
@@ -21,8 +21,8 @@
 
 namespace chronormal::inline internal {
 
-/// The targets whose stored tangents are stale, one entry for each; none are where no host adds them up. The shading must
-/// have its deltas. O(corners) for each target that moves something.
+/// The targets whose stored tangents are stale, one entry for each; none are where no host adds them up. The shading
+/// must have its deltas. O(corners) for each target that moves something.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Host> hosts);
 
 /// What a target adds to the tangents: (vertices, 3) of each part, empty for parts without tangents.

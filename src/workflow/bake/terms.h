@@ -19,8 +19,8 @@
 namespace chronormal::inline internal {
 
 /// n(w) of all elements as a quadratic form. By area it is exact. By other weightings n(w) is no polynomial, and the
-/// form is fitted: it has the weighted direction, and the length by area, where one target has the weight 0, 1/2 or 1, and
-/// where two have the weight 1.
+/// form is fitted: it has the weighted direction, and the length by area, where one target has the weight 0, 1/2 or 1,
+/// and where two have the weight 1.
 class NormalTerms {
  public:
   /// The shading must outlive this; its groups need no corners where the weighting is area. Fits all targets where it
@@ -53,7 +53,8 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
-  /// The normals by the weighting of some elements, with the length by area, from the positions of all vertices, (V, 3).
+  /// The normals by the weighting of some elements, with the length by area, from the positions of all vertices, (V,
+  /// 3).
   [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> positions,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }

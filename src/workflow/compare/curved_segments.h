@@ -26,8 +26,8 @@ inline constexpr std::string_view kExactCurve = "exact";
 
 class CurvedSegments {
  public:
-  /// groups is nullptr for faces; certified says whether truth() will be asked for. The motion and the groups must outlive
-  /// the object.
+  /// groups is nullptr for faces; certified says whether truth() will be asked for. The motion and the groups must
+  /// outlive the object.
   CurvedSegments(const Motion& motion, PathKind path, const NormalGroups* groups, bool certified)
       : motion_(&motion), path_(path), groups_(groups), certified_(certified) {}
 

@@ -1,5 +1,5 @@
-/// The part of what inspect_input() found that is bad news: in words, with what it means for normals. Private to workflow
-/// and the program.
+/// The part of what inspect_input() found that is bad news: in words, with what it means for normals. Private to
+/// workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 #define CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 

@@ -1,5 +1,5 @@
-// The question `shutter`: what normal a renderer should show while the shutter is open, and what it shows instead where it
-// interpolates between the ends.
+// The question `shutter`: what normal a renderer should show while the shutter is open, and what it shows instead where
+// it interpolates between the ends.
 
 #include "chronormal/analysis/shutter.h"
 

@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Leaves about so many vertices of a part: half of them around its worst places, with all triangles there, and half for
-/// the others, which become coarse. The worst places keep their neighbourhoods even where these take more. Numbers in the
-/// model follow. The part must have no coarse triangles yet
+/// Leaves about so many vertices of a part: half of them around its worst places, with all triangles there, and half
+/// for the others, which become coarse. The worst places keep their neighbourhoods even where these take more. Numbers
+/// in the model follow. The part must have no coarse triangles yet
 void make_coarse(ReportModel& model, std::size_t part, std::size_t most_vertices);
 
 }  // namespace chronormal::inline internal

@@ -45,8 +45,8 @@ bool show_alike(const Host& a, const Host& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// The first entry is what the specification shows, with the names of all hosts that show the same. The others are what the
-// rest of `hosts` show.
+// The first entry is what the specification shows, with the names of all hosts that show the same. The others are what
+// the rest of `hosts` show.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Host> hosts) {
   const Host specification{.name = "specification", .title = ""};
   std::vector<Host> firsts = {specification};

@@ -1,5 +1,5 @@
-/// The parts of a report, as an input has them: one for each mesh of a glTF file that was judged, or one for another motion.
-/// Private to workflow.
+/// The parts of a report, as an input has them: one for each mesh of a glTF file that was judged, or one for another
+/// motion. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 
@@ -34,8 +34,8 @@ struct MotionVertices {
 /// Finds them. Errors: of NormalGroups
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// A motion that is no glTF file, with what a comparison of schemes on it found, with keep_samples at the samples of the
-/// audit.
+/// A motion that is no glTF file, with what a comparison of schemes on it found, with keep_samples at the samples of
+/// the audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
                                     const Comparison& comparison, WatchedPart watched);
 

@@ -1,5 +1,5 @@
-/// The samples of an audit as a report keeps them: what it takes to place each, its errors, and where each vertex is off the
-/// most. Private to workflow.
+/// The samples of an audit as a report keeps them: what it takes to place each, its errors, and where each vertex is
+/// off the most. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 
@@ -23,8 +23,8 @@ struct WatchedPart {
 
 class WatchedMotions {
  public:
-  /// audited are the hosts of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must outlive
-  /// this, says which vertex of the report shows a corner; where it is empty, vertices are those of the audit.
+  /// audited are the hosts of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must
+  /// outlive this, says which vertex of the report shows a corner; where it is empty, vertices are those of the audit.
   WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 

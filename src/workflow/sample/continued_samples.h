@@ -17,8 +17,8 @@ namespace chronormal::inline internal {
 
 /// write_samples() (chronormal/workflow/sample.h) into a .npy file, of which each row that is written gets a record of
 /// the journal. The file is OUT.partial until it is whole. Rows that the journal of an earlier run has, and that are in
-/// the file with the same checksum, are not computed again. The journal stays; the caller removes it. Errors: also those
-/// of the journal; kUsage for another format or a stream; kFailed where OUT.partial is no such array.
+/// the file with the same checksum, are not computed again. The journal stays; the caller removes it. Errors: also
+/// those of the journal; kUsage for another format or a stream; kFailed where OUT.partial is no such array.
 [[nodiscard]] Result<SampleSummary> continue_samples(
     MotionStream& stream, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
     Journal& journal, const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -54,7 +54,8 @@ struct GltfShading {
   std::vector<float> tangents;  ///< (V, 4), or empty where no primitive has any
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas
   std::optional<GltfBakeMark> mark;
-  /// Extra targets of an earlier bake that turn nothing, because another program made normals anew: there is no mark then.
+  /// Extra targets of an earlier bake that turn nothing, because another program made normals anew: there is no mark
+  /// then.
   std::size_t emptied = 0;
   std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
 

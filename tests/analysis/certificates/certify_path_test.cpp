@@ -1,5 +1,5 @@
-// Certificates on curved paths against whole numbers of any size: at 40 exact times each, no error of any scheme is above
-// its upper bound, and at the time that is named it is not below the lower one. 200 elements from fixed seeds.
+// Certificates on curved paths against whole numbers of any size: at 40 exact times each, no error of any scheme is
+// above its upper bound, and at the time that is named it is not below the lower one. 200 elements from fixed seeds.
 
 #include <gtest/gtest.h>
 
@@ -234,7 +234,8 @@ Motion arch(float height) {
 }
 
 TEST(PathCertificates, meet_an_error_that_is_known_by_hand) {
-  // z of the third corner is 4 h t (1 - t), so that n = (0, -z, 1), and all that looks at the ends alone shows (0, 0, 1).
+  // z of the third corner is 4 h t (1 - t), so that n = (0, -z, 1), and all that looks at the ends alone shows (0, 0,
+  // 1).
   const Motion motion = arch(1);
   const PolynomialSegment<3> path = path_segment(motion, 0, PathKind::kHermite);
   for (const char* const scheme : {"linear", "slerp", "polynomial", "recompute", "quaternion:optimal", "circle"}) {

@@ -1,6 +1,6 @@
-// Bounds of the meshlets that meshoptimizer builds, while the mesh deforms: its tests must never reject one of which a face
-// is front-facing at an instant of the interval, which integers decide. Bounds of one instant do. A sheet of 512 faces, and
-// built-in morphs under ./test --full exact.
+// Bounds of the meshlets that meshoptimizer builds, while the mesh deforms: its tests must never reject one of which a
+// face is front-facing at an instant of the interval, which integers decide. Bounds of one instant do. A sheet of 512
+// faces, and built-in morphs under ./test --full exact.
 
 #include "chronormal/analysis/cluster_bounds.h"
 

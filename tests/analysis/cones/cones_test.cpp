@@ -1,5 +1,5 @@
-// Normal cones against whole numbers of any size: no exact normal of the interval may lie outside. One element for every 50
-// cases, at 64 instants each: 2,000 of them, and 200,000 under ./test --full exact.
+// Normal cones against whole numbers of any size: no exact normal of the interval may lie outside. One element for
+// every 50 cases, at 64 instants each: 2,000 of them, and 200,000 under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 

@@ -1,5 +1,5 @@
-// BlendNormals against an adversary: a search for sets and weights whose normals use up as much of the promised 1e-6 rad
-// as can be found, on every path, judged in rationals.
+// BlendNormals against an adversary: a search for sets and weights whose normals use up as much of the promised 1e-6
+// rad as can be found, on every path, judged in rationals.
 
 #include <gtest/gtest.h>
 

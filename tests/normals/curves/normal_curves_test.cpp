@@ -173,7 +173,8 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
 }
 
 TEST(ControlNormalsOfFaces, corners_that_are_not_quite_collinear_give_what_there_is) {
-  // c = 2 b and a hardly off the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding of its products.
+  // c = 2 b and a hardly off the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding of its
+  // products.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   const float p[] = {1e-20f, 0, 0, 0.3f, 0.7f, 0.1f, 2 * 0.3f, 2 * 0.7f, 2 * 0.1f};
   const auto view = VectorView<const float>::packed(p, 3);

@@ -11,8 +11,8 @@
 namespace chronormal::element_curves_test {
 namespace {
 
-// Two triangles that share an edge, once by the same vertices (0 1 2 and 2 1 3) and once with a seam between them: 4 and
-// 5 lie where 1 and 2 do.
+// Two triangles that share an edge, once by the same vertices (0 1 2 and 2 1 3) and once with a seam between them: 4
+// and 5 lie where 1 and 2 do.
 const std::vector<std::uint32_t> kCorners = {0, 1, 2, 5, 4, 3};
 const std::vector<float> kFrom = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kTo = {0, 0, 1, 1, 0.5F, 0, 0, 1, 1, 2, 1, -1, 1, 0.5F, 0, 0, 1, 1};

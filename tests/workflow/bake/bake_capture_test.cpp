@@ -1,5 +1,6 @@
-// The captured face: what the smallest form leaves between the keys, at instants that nothing was fitted to or judged by.
-// The environment variable CHRONORMAL_DATA says where it is; CHRONORMAL_FULL asks for all of its keys instead of the first few.
+// The captured face: what the smallest form leaves between the keys, at instants that nothing was fitted to or judged
+// by. The environment variable CHRONORMAL_DATA says where it is; CHRONORMAL_FULL asks for all of its keys instead of
+// the first few.
 
 #include <gtest/gtest.h>
 
@@ -81,8 +82,8 @@ struct Errors {
   }
 };
 
-// The errors of all vertices in some poses, which are given for the file before and after; normals that are shorter than a
-// thousandth of those of the base are excused.
+// The errors of all vertices in some poses, which are given for the file before and after; normals that are shorter
+// than a thousandth of those of the base are excused.
 Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<double>, std::vector<float>>>& poses) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<Vector> base = truth.normals_at(std::vector<double>(kTargets, 0.0));

@@ -51,8 +51,8 @@ std::vector<VectorD> positions_at(const Motion& motion, double time) {
   return result;
 }
 
-// The largest angle, in degrees, between what the file shows and the vertex normals of the motion; and how far any vertex is
-// off, as a share of a size of about 1.
+// The largest angle, in degrees, between what the file shows and the vertex normals of the motion; and how far any
+// vertex is off, as a share of a size of about 1.
 struct Off {
   double degrees = 0, distance = 0;
 };

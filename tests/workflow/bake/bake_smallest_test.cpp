@@ -1,4 +1,5 @@
-// The smallest form of a bake: extra targets that only the animations of the file drive, within a tolerance and a limit.
+// The smallest form of a bake: extra targets that only the animations of the file drive, within a tolerance and a
+// limit.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length 1, and along
-// the texture, for hosts that add them up. The oracle moves texture coordinates along in long double.
+// Tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length 1, and
+// along the texture, for hosts that add them up. The oracle moves texture coordinates along in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>

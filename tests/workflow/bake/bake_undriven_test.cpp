@@ -1,5 +1,5 @@
-// Rigs that nothing drives: extra targets whose weights are quadratics of the weights. What the file shows is held against
-// cross products, in poses that are drawn here, and its formulas are computed here too.
+// Rigs that nothing drives: extra targets whose weights are quadratics of the weights. What the file shows is held
+// against cross products, in poses that are drawn here, and its formulas are computed here too.
 
 #include <gtest/gtest.h>
 
@@ -171,7 +171,8 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// What is said of a mesh that nothing drives is about this bake: extra targets that were written, or that gained nothing.
+// What is said of a mesh that nothing drives is about this bake: extra targets that were written, or that gained
+// nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {
     const auto& warnings = baked.report.warnings;

@@ -40,8 +40,8 @@ class Field {
   [[nodiscard]] std::vector<Vec3d> normals(const std::vector<double>& pose) const {
     return normals_from_positions(shading_, pose);
   }
-  // What both targets add beyond what each adds by itself, from normals at weights 0 and 1; of one target with itself what
-  // is quadratic in its weight.
+  // What both targets add beyond what each adds by itself, from normals at weights 0 and 1; of one target with itself
+  // what is quadratic in its weight.
   [[nodiscard]] std::vector<Vec3d> term(std::size_t i, std::size_t j) const {
     std::vector<double> none(kTargets, 0.0), a = none, b = none, both = none;
     a[i] += 1;

@@ -1,5 +1,5 @@
-// What the choice among forms is made by: the mean, the worst, and what 99.9 % of the errors are below, held against a list of
-// all errors that is sorted here; and that a target alone is looked at where it ends.
+// What the choice among forms is made by: the mean, the worst, and what 99.9 % of the errors are below, held against a
+// list of all errors that is sorted here; and that a target alone is looked at where it ends.
 #include "workflow/bake/judge/played_errors.h"
 
 #include <gtest/gtest.h>

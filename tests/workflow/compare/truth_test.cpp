@@ -1,5 +1,5 @@
-// Normals between keyframes against keyframes that were left out: motions whose truth is known, figures computed here from
-// positions alone, and what is refused.
+// Normals between keyframes against keyframes that were left out: motions whose truth is known, figures computed here
+// from positions alone, and what is refused.
 #include "chronormal/workflow/truth.h"
 
 #include <gtest/gtest.h>
@@ -79,8 +79,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// The rule, written a second time for faces: nlerp of the ends, and the cross product of the blended positions, against that
-// of the frame that was left out.
+// The rule, written a second time for faces: nlerp of the ends, and the cross product of the blended positions, against
+// that of the frame that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

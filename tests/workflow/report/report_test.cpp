@@ -76,8 +76,8 @@ test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) {
   return builder;
 }
 
-// A box whose six sides are quads, with normals of its sides, so that each of its vertices has three. Its upper side turns,
-// and one corner of it rises, so that no two vertices do the same.
+// A box whose six sides are quads, with normals of its sides, so that each of its vertices has three. Its upper side
+// turns, and one corner of it rises, so that no two vertices do the same.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {

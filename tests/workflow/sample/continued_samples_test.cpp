@@ -1,5 +1,5 @@
-// Samples that go on behind the rows of an earlier run; tests/cli/resume_cli_test.cpp and tests/faults/killed_test.cpp have
-// the whole way.
+// Samples that go on behind the rows of an earlier run; tests/cli/resume_cli_test.cpp and tests/faults/killed_test.cpp
+// have the whole way.
 #include "workflow/sample/continued_samples.h"
 
 #include <gtest/gtest.h>

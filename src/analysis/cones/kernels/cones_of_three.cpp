@@ -1,12 +1,12 @@
-// The smallest cone around three unit vectors is that of the widest pair where the third lies in it, that is, where their
-// triangle has no acute angle there; else it goes through all three, around the centre of the triangle's circle. It is
-// found in float32, and whatever axis comes out, the cone is then made wide enough: the largest sine of the angles between
-// the axis as rounded and the three vectors, and to it, with u = 2^-24,
+// The smallest cone around three unit vectors is that of the widest pair where the third lies in it, that is, where
+// their triangle has no acute angle there; else it goes through all three, around the centre of the triangle's circle.
+// It is found in float32, and whatever axis comes out, the cone is then made wide enough: the largest sine of the
+// angles between the axis as rounded and the three vectors, and to it, with u = 2^-24,
 //     2^-20 of itself, for the lengths of axis and vectors, the root and the quotient
 //     5 u: a vector loses 2 u to float32, and a cross product of unit vectors 2.5 u
 //     the share of its length by which a vector may be off: the sine of the angle that it may be off by
-// With sin(a + b) <= sin a + sin b this sum is no less than the sine of the angle to any vector as it is, and where it is
-// at most 1 that angle is at most 90 degrees.
+// With sin(a + b) <= sin a + sin b this sum is no less than the sine of the angle to any vector as it is, and where it
+// is at most 1 that angle is at most 90 degrees.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <algorithm>

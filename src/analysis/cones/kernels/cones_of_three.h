@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// How far a control normal may be off, in any norm between its largest component and its length: 2^-26 in each component
-/// is sqrt(3) / 2 of this, and the rest is for rounding.
+/// How far a control normal may be off, in any norm between its largest component and its length: 2^-26 in each
+/// component is sqrt(3) / 2 of this, and the rest is for rounding.
 inline constexpr double kNormalShare = 0x1p-25;
 
 /// The largest share of a restricted control normal that may be unknown; beyond it the element is flagged.

@@ -1,5 +1,5 @@
-// Computes the normals of moving triangles and the angles of an audit in lanes. Operations come in the order of the scalar
-// forms, so that the bits are the same.
+// Computes the normals of moving triangles and the angles of an audit in lanes. Operations come in the order of the
+// scalar forms, so that the bits are the same.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #undef HWY_TARGET_INCLUDE

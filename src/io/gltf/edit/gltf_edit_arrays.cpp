@@ -28,8 +28,8 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// The smallest or the largest number of each component, as JSON. Readers compare it in double with what they find in the
-// array, so that its digits have to read back as a double.
+// The smallest or the largest number of each component, as JSON. Readers compare it in double with what they find in
+// the array, so that its digits have to read back as a double.
 template <class Choose>
 std::string bound_of(std::span<const float> values, std::size_t components, const Choose& choose) {
   std::string json = "[";

@@ -5,9 +5,9 @@
 ///     left out  bytes of the BIN chunk that belong to such accessors and to nothing else; what follows moves towards
 ///               the front by whole multiples of 4, so that every number stays aligned
 ///
-/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused ones a view of one byte. An
-/// extension may refer to accessors and views where only its author knows: files with another one than those that are known
-/// to do without keep all their bytes.
+/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused ones a view of one byte.
+/// An extension may refer to accessors and views where only its author knows: files with another one than those that
+/// are known to do without keep all their bytes.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 

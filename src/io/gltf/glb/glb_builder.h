@@ -26,8 +26,8 @@
 
 namespace chronormal::inline internal {
 
-/// The triangles of polygons, each as a fan around its first corner. vertex_of_corner has a vertex for each corner of the
-/// topology.
+/// The triangles of polygons, each as a fan around its first corner. vertex_of_corner has a vertex for each corner of
+/// the topology.
 [[nodiscard]] std::vector<std::uint32_t> fan_triangles(const Topology& topology,
                                                        std::span<const std::uint32_t> vertex_of_corner);
 

@@ -328,7 +328,8 @@ void Parser::connect_nodes() {
   }
 }
 
-// Other programs drop the extras of meshes and keep those of nodes, and some hang the mesh into a node of its own below.
+// Other programs drop the extras of meshes and keep those of nodes, and some hang the mesh into a node of its own
+// below.
 void Parser::read_marks_of_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const GltfNode& node = model_.nodes[i];

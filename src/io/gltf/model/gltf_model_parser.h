@@ -74,7 +74,8 @@ class Parser {
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  /// The nodes whose weights a target of a channel drives by KHR_animation_pointer; none where it drives something else.
+  /// The nodes whose weights a target of a channel drives by KHR_animation_pointer; none where it drives something
+  /// else.
   std::vector<std::size_t> nodes_pointed_to(const JsonView& target);
   void parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index, std::size_t node,
                    GltfAnimation& result, std::vector<TrackSource>& sources);

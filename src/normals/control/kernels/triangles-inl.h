@@ -117,7 +117,8 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Of half of the lanes, into tile. Whether one of the values may be noise, or a zero, or a vector hardly more than noise.
+// Of half of the lanes, into tile. Whether one of the values may be noise, or a zero, or a vector hardly more than
+// noise.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);

@@ -83,9 +83,9 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16) {
   // As in TestPiece.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
-  // Of `magnitude`, which is not less than the largest component: noise is below 2^-45 of it (12 u for a face, and u for
-  // each of up to 100 that are added), so that it turns n(t) by less than 2^-24, and no control normal is below 2^-21 of
-  // the largest.
+  // Of `magnitude`, which is not less than the largest component: noise is below 2^-45 of it (12 u for a face, and u
+  // for each of up to 100 that are added), so that it turns n(t) by less than 2^-24, and no control normal is below
+  // 2^-21 of the largest.
   const Floats noise_square = hn::Set(kFloats, 0x1p-42f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 

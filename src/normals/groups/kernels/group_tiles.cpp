@@ -35,7 +35,8 @@ struct alignas(64) SumRows {
 inline constexpr std::size_t kMostFaces = 100;
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// The same sum as group_control_normals() makes it, with zero for what is nothing but rounding, into one lane of a tile.
+// The same sum as group_control_normals() makes it, with zero for what is nothing but rounding, into one lane of a
+// tile.
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               SumRows& sums, ControlTile& tile) noexcept;
 

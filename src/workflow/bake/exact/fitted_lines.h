@@ -16,15 +16,15 @@ namespace chronormal::inline internal {
 /// Deltas of elements for which |n(0)| is 1: where two targets move an element and are active at once somewhere in the
 /// file, those of all active targets that move it, fitted together by least squares to the weights of the file
 /// (docs/theory.md, eq. 44). Over the poses that were fitted to no element is off by more than with the best delta of
-/// each target alone (analysis/fits/end_delta.h), neither at worst nor in the square mean; where that cannot be had it keeps
-/// those, as it does where more than 64 targets move it.
+/// each target alone (analysis/fits/end_delta.h), neither at worst nor in the square mean; where that cannot be had it
+/// keeps those, as it does where more than 64 targets move it.
 class FittedLines {
  public:
   /// Has no deltas.
   FittedLines() = default;
-  /// Fits deltas of the elements that are shown, of which `largest` are the lengths of the largest terms. Cost: the normals of all
-  /// elements at 17 to 2,000 poses to fit to and more to state the error at, and for each element and pose some ten
-  /// times the square of its active targets.
+  /// Fits deltas of the elements that are shown, of which `largest` are the lengths of the largest terms. Cost: the
+  /// normals of all elements at 17 to 2,000 poses to fit to and more to state the error at, and for each element and
+  /// pose some ten times the square of its active targets.
   FittedLines(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use,
               const std::vector<bool>& is_shown, const std::vector<double>& largest);
 

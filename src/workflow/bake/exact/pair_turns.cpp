@@ -1,6 +1,6 @@
-// A bound of what an entry of a term comes to, over all poses, is its length by the shortest normal of its element. A heap
-// gives the entries in the order of that bound; the search ends where it is below what has been found. Angles are compared
-// by their tangents, and only the largest becomes an angle.
+// A bound of what an entry of a term comes to, over all poses, is its length by the shortest normal of its element. A
+// heap gives the entries in the order of that bound; the search ends where it is below what has been found. Angles are
+// compared by their tangents, and only the largest becomes an angle.
 #include "workflow/bake/exact/pair_turns.h"
 
 #include <algorithm>

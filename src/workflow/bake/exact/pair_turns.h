@@ -1,8 +1,9 @@
-/// How far normals turn where the extra target of a pair is left out: measured at poses of the file. Private to workflow.
+/// How far normals turn where the extra target of a pair is left out: measured at poses of the file. Private to
+/// workflow.
 ///
 /// A pair whose term is T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Of all
-/// elements and poses only the largest angle counts, and it is below asin(|weight| |T| / |n|): elements are looked at in the
-/// order of that bound, and most of them never.
+/// elements and poses only the largest angle counts, and it is below asin(|weight| |T| / |n|): elements are looked at
+/// in the order of that bound, and most of them never.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
@@ -61,8 +62,8 @@ class PairMeter {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;
 
-  /// is_shown tells of each element whether some vertex shows it; largest has the length of its largest term so far. All of
-  /// these must outlive this.
+  /// is_shown tells of each element whether some vertex shows it; largest has the length of its largest term so far.
+  /// All of these must outlive this.
   PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
             const std::vector<bool>& is_shown, std::vector<double>& largest);
 

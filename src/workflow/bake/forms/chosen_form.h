@@ -70,8 +70,8 @@ class ChosenForm {
   std::vector<VertexVectors> extras_;                    // of the last form
 };
 
-/// Chooses among the harmless forms whose vectors are such. shading must have its deltas, and base_normals of the source be those that will be
-/// stored.
+/// Chooses among the harmless forms whose vectors are such. shading must have its deltas, and base_normals of the
+/// source be those that will be stored.
 [[nodiscard]] ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weights,
                                            const BakeOptions& options, FormLengths lengths);
 

@@ -133,8 +133,8 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds a correction for two targets that is right in a pose, and as near as may be in the middle of the way there: two
-  // extra targets with one weight, or one where that is as good, to a part of the tolerance (radians).
+  // Adds a correction for two targets that is right in a pose, and as near as may be in the middle of the way there:
+  // two extra targets with one weight, or one where that is as good, to a part of the tolerance (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);

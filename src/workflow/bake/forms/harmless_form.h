@@ -1,5 +1,5 @@
-/// The harmless form of a mesh: deltas that are right, or nearly, in every host (docs/theory.md, section 16). Private to
-/// workflow.
+/// The harmless form of a mesh: deltas that are right, or nearly, in every host (docs/theory.md, section 16). Private
+/// to workflow.
 ///
 /// Each target of the mesh gets the delta to the right normal at its weight 1. What this leaves wrong on the way, and
 /// where targets meet, extra targets correct; they move no vertex, and their weights follow from those of the targets:
@@ -8,9 +8,10 @@
 ///     self      4 w_i (1-w_i)  right at w_i = 1/2 as well
 ///     pair      s w_i w_j      right where both are strongest in the file; one or two
 ///
-/// Every one of them is a unit normal beside N, with a weight from 0 to 1 where those of the file are: what a host leaves
-/// of it, be it the direction or 8 bits, is the same. Where all hosts keep weights below 0, corrections have the lengths of
-/// n(w), each as two unit normals with opposite weights; where all hosts add up what is stored, everything has.
+/// Every one of them is a unit normal beside N, with a weight from 0 to 1 where those of the file are: what a host
+/// leaves of it, be it the direction or 8 bits, is the same. Where all hosts keep weights below 0, corrections have the
+/// lengths of n(w), each as two unit normals with opposite weights; where all hosts add up what is stored, everything
+/// has.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_FORMS_HARMLESS_FORM_H_
 #define CHRONORMAL_WORKFLOW_BAKE_FORMS_HARMLESS_FORM_H_
 
@@ -52,8 +53,8 @@ struct HarmlessLimits {
 [[nodiscard]] HarmlessForm end_point_form(const GltfShading& shading, const NormalTerms& terms,
                                           const RightNormals& rights, FormLengths lengths);
 
-/// Adds extra targets for the poses of a file, to vertices that have need of them (`worst` is what the form is off by at
-/// each of `vertices`, degrees).
+/// Adds extra targets for the poses of a file, to vertices that have need of them (`worst` is what the form is off by
+/// at each of `vertices`, degrees).
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const HarmlessLimits& limits, HarmlessForm& form);

@@ -215,7 +215,8 @@ class Choice {
   }
 
   [[nodiscard]] ChosenForm take_best() {
-    // The judge measures the stored deltas whenever it measures another form, so that every other form knows their errors.
+    // The judge measures the stored deltas whenever it measures another form, so that every other form knows their
+    // errors.
     const auto measured =
         std::find_if(choices_.begin(), choices_.end(), [](const auto& c) { return !c.hosts.empty(); });
     for (BakeChoice& choice : choices_) {
@@ -389,8 +390,8 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   const OwnForm own = own_form(source, rights, options, lengths);
   reach(20);
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
-  // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no choice
-  // between these and what is stored is near enough, they are looked at when nothing else is.
+  // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no
+  // choice between these and what is stored is near enough, they are looked at when nothing else is.
   const bool waits =
       has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree && choice.is_far(own);
   std::optional<std::size_t> of_deltas;

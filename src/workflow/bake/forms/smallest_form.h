@@ -25,13 +25,13 @@ struct OwnForm {
   std::vector<std::uint32_t> vertices;  ///< that are judged
 };
 
-/// Computes deltas of these lengths: right at the end of each target, or where they may have any length, the best single
-/// ones. Unless nothing but animations is ever played, they do no harm to targets alone.
+/// Computes deltas of these lengths: right at the end of each target, or where they may have any length, the best
+/// single ones. Unless nothing but animations is ever played, they do no harm to targets alone.
 [[nodiscard]] OwnForm own_form(const DeltaSource& source, const RightNormals& rights, const BakeOptions& options,
                                FormLengths lengths);
 
-/// Chooses among what the file stores, the new deltas of the mesh's own targets, and these with extra targets of low rank
-/// (low_rank_form.h); no more than so many extra ones in all that hosts add up.
+/// Chooses among what the file stores, the new deltas of the mesh's own targets, and these with extra targets of low
+/// rank (low_rank_form.h); no more than so many extra ones in all that hosts add up.
 [[nodiscard]] ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights,
                                          const MeshWeights& weights, const BakeOptions& options, FormLengths lengths,
                                          const OwnForm& own, std::size_t most_extras);

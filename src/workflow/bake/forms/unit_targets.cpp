@@ -1,5 +1,6 @@
 // With q = base - shown / weight, what is looked for is u = q + x right with |u| = 1 and a sum weight x right that is
-// longer than nothing: the part of q across `right` stays, and the part along it is what length 1 leaves, on either side.
+// longer than nothing: the part of q across `right` stays, and the part along it is what length 1 leaves, on either
+// side.
 #include "workflow/bake/forms/unit_targets.h"
 
 #include <cmath>

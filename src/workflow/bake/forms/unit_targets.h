@@ -1,8 +1,8 @@
 /// Deltas that every host shows alike: from the base normal N to other unit normals. Private to workflow.
 ///
-/// One host adds N + D, another keeps only its direction, a third cuts the components of D at 1. Where |N + D| = 1 and no
-/// component of D is beyond 1 these are the same, so that u - N, with unit vectors u, is all that an author's target and
-/// an extra one may add (docs/theory.md, section 16).
+/// One host adds N + D, another keeps only its direction, a third cuts the components of D at 1. Where |N + D| = 1 and
+/// no component of D is beyond 1 these are the same, so that u - N, with unit vectors u, is all that an author's target
+/// and an extra one may add (docs/theory.md, section 16).
 ///
 /// Vectors    base and u have length 1; base may be (0, 0, 0), from which any u is reached.
 /// Threads    pure
@@ -37,9 +37,9 @@ struct BaseNormal {
 /// The last unit vector on the arc from base to u that fits.
 [[nodiscard]] Vec3d farthest_that_fits(const Vec3d& base, const Vec3d& u) noexcept;
 
-/// The unit vector u that fits and for which shown + weight (u - base) has the direction `right`, which has length 1. It
-/// has no choice of length, but that of the sum is free: there are two such vectors, of which the longer sum is taken
-/// where that fits (eq. 46). Where none fits, the nearest that does. Nothing where the sum would be nearly zero.
+/// The unit vector u that fits and for which shown + weight (u - base) has the direction `right`, which has length 1.
+/// It has no choice of length, but that of the sum is free: there are two such vectors, of which the longer sum is
+/// taken where that fits (eq. 46). Where none fits, the nearest that does. Nothing where the sum would be nearly zero.
 /// weight must not be 0
 [[nodiscard]] std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right,
                                                 double weight) noexcept;

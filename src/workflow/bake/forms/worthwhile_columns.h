@@ -1,9 +1,9 @@
 /// Which deltas of a form are worth their bytes. Private to workflow.
 ///
-/// A form is made of columns: deltas of many vertices that one weight drives, be it that of a target of the mesh or of an
-/// extra one. Each slot (a target of the mesh with its own corrections, or a pair of targets) is filled with one of its
-/// options, from the cheapest to the fullest one. All of these together are a selection, and wanted is the one of fewest bytes
-/// that is near enough at all poses:
+/// A form is made of columns: deltas of many vertices that one weight drives, be it that of a target of the mesh or of
+/// an extra one. Each slot (a target of the mesh with its own corrections, or a pair of targets) is filled with one of
+/// its options, from the cheapest to the fullest one. All of these together are a selection, and wanted is the one of
+/// fewest bytes that is near enough at all poses:
 ///
 ///     few selections    all of them, by their bytes: the first that is near enough is the cheapest
 ///     many              from the fullest one on, slot by slot, those first whose lack turns least, for as long as the time
@@ -27,8 +27,8 @@
 
 namespace chronormal::inline internal {
 
-/// The deltas of a form as a host keeps them beside the stored normals, whatever the lengths of these. The result is the form
-/// itself where that makes no difference.
+/// The deltas of a form as a host keeps them beside the stored normals, whatever the lengths of these. The result is
+/// the form itself where that makes no difference.
 [[nodiscard]] VertexColumns kept_columns(const Host& host, const RightNormals& rights,
                                          std::span<const std::uint32_t> vertices, const VertexColumns& form);
 
@@ -61,9 +61,9 @@ struct Worthwhile {
   std::vector<Slot> slots;
 };
 
-/// Finds cheap selections that are near enough, the fullest one at last, and calls take(selection) for one after the other,
-/// by their bytes, until that returns true. A vertex that is off by more than the tolerance with all columns need not be
-/// nearer without some of them. Cost: for each selection the sums of all columns at all poses
+/// Finds cheap selections that are near enough, the fullest one at last, and calls take(selection) for one after the
+/// other, by their bytes, until that returns true. A vertex that is off by more than the tolerance with all columns
+/// need not be nearer without some of them. Cost: for each selection the sums of all columns at all poses
 void find_worthwhile(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                      std::span<const std::uint32_t> element_of_vertex, const Worthwhile& offered,
                      std::span<const AskedPose> poses, std::span<const Host> hosts, double tolerance,

@@ -1,5 +1,5 @@
-// What is offered is looked at with weights as they should be. Tracks that stay LINEAR have extra weights that are straight
-// between keys, so that each selection is judged once more as it would be written.
+// What is offered is looked at with weights as they should be. Tracks that stay LINEAR have extra weights that are
+// straight between keys, so that each selection is judged once more as it would be written.
 #include "workflow/bake/forms/worthwhile_form.h"
 
 #include <algorithm>

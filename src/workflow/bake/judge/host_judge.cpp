@@ -110,8 +110,8 @@ struct Spread {
   }
 };
 
-// The same while it is gathered: numbers of vertices, which are added up in their order, and counts, for which the order
-// does not matter.
+// The same while it is gathered: numbers of vertices, which are added up in their order, and counts, for which the
+// order does not matter.
 struct Gathered {
   explicit Gathered(std::size_t vertices) : sum(vertices), worst(vertices), counts(vertices) {}
 
@@ -162,11 +162,11 @@ struct GatheredPairs {
   std::deque<Gathered> before, after;  // they cannot be moved
 };
 
-// Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did; and
-// those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where 99.9 %
-// are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below. Where there are
-// now no more of these than before, a vertex that is nearer in the mean may be farther off at worst, as long as it is not
-// the worst of all.
+// Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did;
+// and those that grew into the upper half of what 99.9 % were below, since other poses would find more of them. Where
+// 99.9 % are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below. Where
+// there are now no more of these than before, a vertex that is nearer in the mean may be farther off at worst, as long
+// as it is not the worst of all.
 void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
   const ShownErrors then = before.spread().errors(), now = after.spread().errors();
   const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.most, tolerance);
@@ -402,8 +402,8 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
     }
     return return_to_stored(noted, choice);
   };
-  // What is judged pose by pose comes first: it may be all that made the mixed poses worse. What is stored does no harm,
-  // so that one look at those of the file is enough, but for the figures.
+  // What is judged pose by pose comes first: it may be all that made the mixed poses worse. What is stored does no
+  // harm, so that one look at those of the file is enough, but for the figures.
   bool any_returned = measure(true);
   for (int round = 0; round < kMostRounds && measure(false); ++round) any_returned = true;
   if (any_returned) (void)measure(true);

@@ -30,8 +30,8 @@ namespace chronormal::inline internal {
 /// By how much an error may grow where nothing else is said: what the rounding of float32 and of float16 may turn.
 inline constexpr double kHarmless = 0.02;
 
-/// The same host without what is too fine to choose by, or a compressor's own: halves, and numbers of so many bits. What is
-/// left is what becomes of lengths: they are kept, or made 1, or cut.
+/// The same host without what is too fine to choose by, or a compressor's own: halves, and numbers of so many bits.
+/// What is left is what becomes of lengths: they are kept, or made 1, or cut.
 [[nodiscard]] Host judged_as(Host host);
 /// Whether two such hosts show the same of all deltas.
 [[nodiscard]] bool shows_alike(const Host& a, const Host& b);
@@ -85,8 +85,9 @@ enum class FormPreference {
 
 class HostJudge {
  public:
-  /// The vertices that are judged, with their elements, and whether each has a new base normal, so that there is no stored
-  /// form to return to. All of these, and rights, must outlive this. No form may do harm in hosts that are binding.
+  /// The vertices that are judged, with their elements, and whether each has a new base normal, so that there is no
+  /// stored form to return to. All of these, and rights, must outlive this. No form may do harm in hosts that are
+  /// binding.
   HostJudge(const RightNormals& rights, std::span<const std::uint32_t> vertices,
             std::span<const std::uint32_t> element_of_vertex, const std::vector<bool>& is_new,
             std::span<const Host> hosts, std::vector<bool> is_binding, double tolerance);
@@ -98,8 +99,8 @@ class HostJudge {
   [[nodiscard]] std::vector<std::uint8_t> choose(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
                                                  FormPreference preference) const;
 
-  /// Measures the chosen forms against the stored ones, host by host. Elements whose form is not harmless in these poses,
-  /// and where mixed poses as a whole are worse, those that make them so, get the stored form.
+  /// Measures the chosen forms against the stored ones, host by host. Elements whose form is not harmless in these
+  /// poses, and where mixed poses as a whole are worse, those that make them so, get the stored form.
   [[nodiscard]] std::vector<HostChange> settle(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
                                                std::vector<std::uint8_t>& choice) const;
 

@@ -15,8 +15,9 @@
 namespace chronormal::inline internal {
 
 /// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
-/// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end too,
-/// where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind, evenly.
+/// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end
+/// too, where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind,
+/// evenly.
 [[nodiscard]] PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets,
                                     std::size_t most);
 
@@ -26,8 +27,8 @@ namespace chronormal::inline internal {
                                         std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
                                         const PoseList& poses);
 
-/// What no choice of one of these forms for each vertex can be below: the largest of the least errors at worst, over the
-/// same pairs.
+/// What no choice of one of these forms for each vertex can be below: the largest of the least errors at worst, over
+/// the same pairs.
 [[nodiscard]] double least_worst(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                  std::span<const std::uint32_t> element_of_vertex, std::span<const VertexColumns> forms,
                                  const PoseList& poses);

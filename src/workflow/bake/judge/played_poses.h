@@ -1,5 +1,5 @@
-/// Poses to judge a bake at: what hosts play of the tracks of a file, targets alone, and what a program may mix. Private
-/// to workflow.
+/// Poses to judge a bake at: what hosts play of the tracks of a file, targets alone, and what a program may mix.
+/// Private to workflow.
 ///
 /// Poses      weights of the mesh's own targets, then those of extra targets.
 /// Threads    pure; random poses are the same on every system.
@@ -38,8 +38,8 @@ void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t
 [[nodiscard]] PoseList random_poses(std::span<const std::size_t> targets, std::size_t target_count,
                                     const ExtraDrivers& extras, std::size_t count, unsigned seed);
 
-/// Poses on the way from one track to another, as mixers blend them: all weights linearly. None where there are less than
-/// two tracks.
+/// Poses on the way from one track to another, as mixers blend them: all weights linearly. None where there are less
+/// than two tracks.
 [[nodiscard]] PoseList cross_fades(std::span<const DrivingTrack> tracks, std::size_t count, unsigned seed);
 
 }  // namespace chronormal::inline internal

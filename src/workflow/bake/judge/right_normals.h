@@ -1,7 +1,7 @@
 /// The normals that vertices should show in any pose. Private to workflow.
 ///
-/// Units      a right normal has the direction that is asked for and the length |n(w)| / |n(0)|, by area (1 where n(0) is
-///            zero); it is (0, 0, 0) where n(w) is so short beside its terms that its direction means nothing.
+/// Units      a right normal has the direction that is asked for and the length |n(w)| / |n(0)|, by area (1 where n(0)
+///            is zero); it is (0, 0, 0) where n(w) is so short beside its terms that its direction means nothing.
 /// Poses       weights of the mesh's own targets, one for each; more weights may follow, which are not looked at.
 /// Threads    const functions may run at once; they run on all cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
@@ -38,8 +38,8 @@ class RightNormals {
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
   /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: right are the unit normals of the
-  /// vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other. Cost:
-  /// for each pose all positions, and the normals that these vertices show.
+  /// vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
+  /// Cost: for each pose all positions, and the normals that these vertices show.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kVertices = 64;

@@ -1,5 +1,5 @@
-// The parabola through the values a, m, b at the start, the middle and the end of a piece has the slopes 4m - 3a - b and
-// a - 4m + 3b there; a cubic spline whose tangents are these is that parabola.
+// The parabola through the values a, m, b at the start, the middle and the end of a piece has the slopes 4m - 3a - b
+// and a - 4m + 3b there; a cubic spline whose tangents are these is that parabola.
 #include "workflow/bake/low_rank/extra_curves.h"
 
 #include <algorithm>

@@ -63,9 +63,10 @@ struct ExtraCurves {
 
 using TrackCurves = std::map<TrackName, ExtraCurves>;
 
-/// Extends a track by curves. A LINEAR track stays one, in as many pieces of each gap as are asked for (straight_track);
-/// a cubic spline is cut at the ends of the curves' pieces, where it plays as before, and holds the curves exactly.
-/// Where that takes more than most_keys, the result has no values, but says how many keys it would have.
+/// Extends a track by curves. A LINEAR track stays one, in as many pieces of each gap as are asked for
+/// (straight_track); a cubic spline is cut at the ends of the curves' pieces, where it plays as before, and holds the
+/// curves exactly. Where that takes more than most_keys, the result has no values, but says how many keys it would
+/// have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());
@@ -73,7 +74,8 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 /// How many pieces each gap between two keys of a LINEAR track is cut into.
 using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 
-/// What drives the extra targets of a mesh: formulas of the weights of its own targets, of one term or of many, or curves.
+/// What drives the extra targets of a mesh: formulas of the weights of its own targets, of one term or of many, or
+/// curves.
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each extra target; all zero where there are sums or curves
   std::vector<GltfExtraTarget> sums;  ///< one for each extra target, or none; tracks have curves beside them

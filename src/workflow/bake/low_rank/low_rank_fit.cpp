@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kBlock = 16;  // points at a time
 constexpr std::size_t kPadding = 16;
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it lacks
-// at most: what is off by a right angle can be off by no more, and must not drown the others.
+// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it
+// lacks at most: what is off by a right angle can be off by no more, and must not drown the others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kRounds = 3;

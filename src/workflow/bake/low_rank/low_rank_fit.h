@@ -1,8 +1,8 @@
 /// The numbers behind extra targets of low rank: singular vectors of what is missing, and least squares of angles point
 /// by point. Private to workflow.
 ///
-/// Shapes     points, rows and stride as MissingNormals has them; extras = columns, in rows of `padded()` floats, of which
-///            those beyond extras() are zero.
+/// Shapes     points, rows and stride as MissingNormals has them; extras = columns, in rows of `padded()` floats, of
+///            which those beyond extras() are zero.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_

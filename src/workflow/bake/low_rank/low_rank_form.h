@@ -1,5 +1,5 @@
-/// Extra targets of low rank: what the deltas of a mesh's own targets lack along the animations of a file, as the sum of
-/// a few deltas whose weights are curves in time (docs/theory.md, section 17). Private to workflow.
+/// Extra targets of low rank: what the deltas of a mesh's own targets lack along the animations of a file, as the sum
+/// of a few deltas whose weights are curves in time (docs/theory.md, section 17). Private to workflow.
 ///
 ///     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
 ///

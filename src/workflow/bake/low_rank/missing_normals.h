@@ -54,8 +54,8 @@ class MissingNormals {
   /// (3, stride): what that lacks of the right normal, whose length is |n(w)| / |n(0)|.
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
-  /// The inner products of what is missing in two rows, over every step-th point, each times its importance: (rows, rows).
-  /// Sums of a few points are float32, those of all double.
+  /// The inner products of what is missing in two rows, over every step-th point, each times its importance: (rows,
+  /// rows). Sums of a few points are float32, those of all double.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
   /// Has own deltas show more of a point, so that less is missing; more is (3, stride).

@@ -28,8 +28,8 @@ std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std:
   return result;
 }
 
-// An instant of the sequence, whose keyframe k is k: the last one lies at the end of a segment, all others at a start or
-// within.
+// An instant of the sequence, whose keyframe k is k: the last one lies at the end of a segment, all others at a start
+// or within.
 Instant instant_of(double time, std::size_t segments) {
   const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
   return {segment, time - static_cast<double>(segment)};

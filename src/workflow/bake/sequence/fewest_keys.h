@@ -1,11 +1,12 @@
-/// The fewest keys of a sequence for hosts that draw straight lines between the normals of two keys. Private to workflow.
+/// The fewest keys of a sequence for hosts that draw straight lines between the normals of two keys. Private to
+/// workflow.
 ///
-/// Every key has the exact unit normals of its instant, and between two keys a host shows normalize((1-t) u_0 + t u_1). From the
-/// first key on, the next one is put as late as possible: as long as the line is within the tolerance of n(t) at every instant,
-/// by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex leaves the straight line between the two keys. A key
-/// may lie between two keyframes, where the motion is straight and the normal is known; and keyframes that say nothing new, as
-/// a motion has them that was sampled by another program, are left out. As long as a part of what is right is right as well,
-/// no choice has fewer keys.
+/// Every key has the exact unit normals of its instant, and between two keys a host shows normalize((1-t) u_0 + t u_1).
+/// From the first key on, the next one is put as late as possible: as long as the line is within the tolerance of n(t)
+/// at every instant, by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex leaves the
+/// straight line between the two keys. A key may lie between two keyframes, where the motion is straight and the normal
+/// is known; and keyframes that say nothing new, as a motion has them that was sampled by another program, are left
+/// out. As long as a part of what is right is right as well, no choice has fewer keys.
 ///
 /// Times      of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
 /// Threads    on all cores; the same keys on any number of them
@@ -39,7 +40,8 @@ struct SequenceKeys {
 [[nodiscard]] SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                        const std::function<void(std::size_t segment)>& progress);
 
-/// What a key has: the positions of its instant, as deltas against keyframe 0 in float32, and the directions of all elements.
+/// What a key has: the positions of its instant, as deltas against keyframe 0 in float32, and the directions of all
+/// elements.
 struct KeyPose {
   std::vector<float> deltas;
   std::vector<Vec3d> directions;  ///< (0, 0, 0) where there is none in the segment

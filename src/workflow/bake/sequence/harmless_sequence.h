@@ -1,8 +1,9 @@
 /// The numbers of a sequence that every host shows alike (docs/theory.md, section 16). Private to workflow.
 ///
-/// N is the normal of key 0, and the target of a key has the delta from it to the normal there, both of length 1. Between two
-/// keys that is a straight line between unit normals; one more unit normal for each segment, with the weight 4 t (1 - t),
-/// makes it right at t = 1/2 as well. Tracks are LINEAR: that weight is a chain of kBendPieces straight pieces.
+/// N is the normal of key 0, and the target of a key has the delta from it to the normal there, both of length 1.
+/// Between two keys that is a straight line between unit normals; one more unit normal for each segment, with the
+/// weight 4 t (1 - t), makes it right at t = 1/2 as well. Tracks are LINEAR: that weight is a chain of kBendPieces
+/// straight pieces.
 ///
 /// Threads    on all cores; the same bits on any number of them
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_HARMLESS_SEQUENCE_H_
@@ -26,7 +27,8 @@ struct HarmlessElements {
 };
 [[nodiscard]] HarmlessElements harmless_elements(const SequenceNormals& normals);
 
-/// The directions of all elements at both keys of a segment; where an element has none at a key, that of the key before.
+/// The directions of all elements at both keys of a segment; where an element has none at a key, that of the key
+/// before.
 struct SegmentEnds {
   std::vector<Vec3d> from, to;
 };

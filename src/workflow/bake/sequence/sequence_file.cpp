@@ -108,8 +108,8 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
   return track;
 }
 
-// The weight t (1 - t), or 4 times that, as a product of the weights of two keys. That of key 0, where it has no target,
-// is 1 minus all of the others.
+// The weight t (1 - t), or 4 times that, as a product of the weights of two keys. That of key 0, where it has no
+// target, is 1 minus all of the others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
   const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;

@@ -1,13 +1,13 @@
-/// Extra targets of rigs that nothing drives: what the deltas of a mesh's own targets lack in the poses that the rig is made
-/// for, as the sum of a few deltas whose weights are quadratics of the weights (docs/theory.md, section 18). Private to
-/// workflow.
+/// Extra targets of rigs that nothing drives: what the deltas of a mesh's own targets lack in the poses that the rig is
+/// made for, as the sum of a few deltas whose weights are quadratics of the weights (docs/theory.md, section 18).
+/// Private to workflow.
 ///
 ///     n(w) / |n(0)|  =  N + sum_i w_i D_i + sum_k s_k(w) E_k, nearly,   s_k(w) = sum_i l_ki w_i + sum_ij q_kij w_i w_j
 ///
-/// What is missing, in some poses of the rig, is a matrix of low rank; its leading right singular vectors say which E_k are
-/// worth having. Since n(w) is a quadratic form, the weight that each of these should have is one too, and its
-/// terms are the terms of n(w), projected. Small terms are left out. The E_k are then fitted again, point by point, to what
-/// is missing divided by the length of n(w), which is about the angle.
+/// What is missing, in some poses of the rig, is a matrix of low rank; its leading right singular vectors say which E_k
+/// are worth having. Since n(w) is a quadratic form, the weight that each of these should have is one too, and its
+/// terms are the terms of n(w), projected. Small terms are left out. The E_k are then fitted again, point by point, to
+/// what is missing divided by the length of n(w), which is about the angle.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
@@ -31,8 +31,8 @@ inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
  public:
-  /// own has the deltas of the mesh's own targets; of `vertices` only those are fitted that these leave wrong. rights must
-  /// outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
+  /// own has the deltas of the mesh's own targets; of `vertices` only those are fitted that these leave wrong. rights
+  /// must outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
   QuadraticFit(const DeltaSource& source, const RightNormals& rights, std::span<const std::uint32_t> vertices,
                const std::vector<VertexVectors>& own, const RigPoses& rig,
                std::span<const std::vector<double>> standing, std::size_t most_extras, double tolerance);
@@ -44,8 +44,8 @@ class QuadraticFit {
     std::vector<GltfExtraTarget> weights;  ///< about from -1 to 1 in the poses of the rig; no index is set
     std::vector<VertexVectors> vectors;    ///< of any length
   };
-  /// The best so many; count must be no more than extras(). Where hosts keep no lengths, the direction of the sum alone is
-  /// fitted, and its length left as it is.
+  /// The best so many; count must be no more than extras(). Where hosts keep no lengths, the direction of the sum alone
+  /// is fitted, and its length left as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:

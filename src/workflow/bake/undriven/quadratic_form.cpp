@@ -1,5 +1,5 @@
-// What a weight does to the vectors is linear, so that where hosts keep directions alone each vector becomes two: one with the
-// terms above zero, and one with those below.
+// What a weight does to the vectors is linear, so that where hosts keep directions alone each vector becomes two: one
+// with the terms above zero, and one with those below.
 #include "workflow/bake/undriven/quadratic_form.h"
 
 #include <algorithm>

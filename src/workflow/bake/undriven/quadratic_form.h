@@ -1,4 +1,5 @@
-/// A form of a mesh that nothing drives, with extra targets whose weights are quadratics of the weights. Private to workflow.
+/// A form of a mesh that nothing drives, with extra targets whose weights are quadratics of the weights. Private to
+/// workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FORM_H_
 #define CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FORM_H_
 
@@ -30,10 +31,10 @@ struct QuadraticChoice {
   std::optional<ChosenForm> form;    ///< nothing where none is worth it
 };
 
-/// Adds extra targets to the deltas of a form that has none, for the vertices where these do no harm and are nearer. A file
-/// whose extra targets nobody drives shows these deltas alone. As many are taken as bring the error within the tolerance; or where none do, as long as
-/// more of them take a tenth away from the mean error, up to 32 where no number of targets is asked for. weights must have
-/// a rig
+/// Adds extra targets to the deltas of a form that has none, for the vertices where these do no harm and are nearer. A
+/// file whose extra targets nobody drives shows these deltas alone. As many are taken as bring the error within the
+/// tolerance; or where none do, as long as more of them take a tenth away from the mean error, up to 32 where no number
+/// of targets is asked for. weights must have a rig
 [[nodiscard]] QuadraticChoice choose_quadratics(const DeltaSource& source, const MeshWeights& weights,
                                                 const BakeOptions& options, FormLengths lengths, const ChosenForm& own,
                                                 const QuadraticLimits& limits);

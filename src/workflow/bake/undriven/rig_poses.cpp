@@ -1,5 +1,5 @@
-// A name is taken apart into words where its letters change from small to capital, and at all that is no letter; the words
-// for a side are what tells the left from the right of the same thing.
+// A name is taken apart into words where its letters change from small to capital, and at all that is no letter; the
+// words for a side are what tells the left from the right of the same thing.
 #include "workflow/bake/undriven/rig_poses.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-/// The poses that a rig is made for where no animation says so: what sliders, a captured face or the program of an avatar
-/// may set. Private to workflow.
+/// The poses that a rig is made for where no animation says so: what sliders, a captured face or the program of an
+/// avatar may set. Private to workflow.
 ///
 ///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each is drawn by how often its name
 ///                      goes together with those that are drawn already
@@ -49,7 +49,8 @@ class RigPoses {
 /// The poses of a file that give this mesh weights.
 [[nodiscard]] PoseList poses_of_mesh(std::span<const RigPose> poses, const GltfMesh& mesh);
 
-/// Errors: kInvalidInput where a pose has a target that no mesh with targets has, or weights for another number of targets.
+/// Errors: kInvalidInput where a pose has a target that no mesh with targets has, or weights for another number of
+/// targets.
 [[nodiscard]] Status check_poses(std::span<const RigPose> poses, const GltfDocument& document);
 
 }  // namespace chronormal::inline internal

@@ -50,8 +50,8 @@ inline constexpr std::size_t kBytesPerWeight = 48;
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
 /// Extends a LINEAR track so that it stays one: from each key to the next in as many equal pieces as are asked for, on
-/// straight lines, so that the weights that are there play as before (but for float32), and extra weights are right at all
-/// keys. Where that takes more than most_keys, the result has no values, but says how many it would have.
+/// straight lines, so that the weights that are there play as before (but for float32), and extra weights are right at
+/// all keys. Where that takes more than most_keys, the result has no values, but says how many it would have.
 /// pieces must have one number for each pair of neighbouring keys, none of them 0
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            std::span<const std::uint32_t> pieces,

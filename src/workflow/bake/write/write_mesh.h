@@ -45,8 +45,8 @@ class MeshWriter {
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
   /// Has all targets get tangents in primitives that have some.
   void add_tangents();
-  /// Writes the deltas of a target of the mesh, of normals and of tangents; without them it only gets the attributes that it
-  /// lacks.
+  /// Writes the deltas of a target of the mesh, of normals and of tangents; without them it only gets the attributes
+  /// that it lacks.
   void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas,
                     const std::optional<TargetDeltas>& tangents = {});
   /// Adds a target that moves no vertex.
@@ -55,8 +55,8 @@ class MeshWriter {
   /// as MeshWeights has these, where no formula gives them.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
   /// Writes down what was done (docs/extras.md): in the mesh, where the next bake and an audit look for it, and where
-  /// there are extra targets, in the nodes that carry the mesh, for hosts that hand on the extras of nodes alone. Returns
-  /// the nodes whose extras are no object, which stay as they are.
+  /// there are extra targets, in the nodes that carry the mesh, for hosts that hand on the extras of nodes alone.
+  /// Returns the nodes whose extras are no object, which stay as they are.
   [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
 
  private:

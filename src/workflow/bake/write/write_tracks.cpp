@@ -90,7 +90,8 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
 
 namespace {
 
-// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the mesh.
+// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the
+// mesh.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);

@@ -22,8 +22,8 @@ struct GrownMesh {
   bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
 };
 
-/// The JSON pointer of a channel in which KHR_animation_pointer drives weights of a mesh that no track has, one of them or
-/// those of a mesh without a node; nothing where there is none.
+/// The JSON pointer of a channel in which KHR_animation_pointer drives weights of a mesh that no track has, one of them
+/// or those of a mesh without a node; nothing where there is none.
 [[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
                                                           const GltfEdit& edit);
 
