@@ -12,11 +12,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     chronormal::fuzz::require(!shading.error().place.empty(), "an error has a place");
     return 0;
   }
-  const auto& [topology, positions, groups, normals] = shading.value();
-  chronormal::fuzz::require(mesh.ok() && topology == mesh.value().topology && positions == mesh.value().positions,
-                            "the shading is that of the mesh");
-  chronormal::fuzz::require(groups.empty() || groups.size() == topology.face_count(), "each face has a group");
-  chronormal::fuzz::require(normals.empty() || normals.size() == 3 * topology.corner_count(),
+  const chronormal::MeshFrame& frame = shading.value();
+  const std::size_t faces = frame.topology.face_count(), corners = frame.topology.corner_count();
+  chronormal::fuzz::require(
+      mesh.ok() && frame.topology == mesh.value().topology && frame.positions == mesh.value().positions,
+      "the shading is that of the mesh");
+  chronormal::fuzz::require(frame.group_of_face.empty() || frame.group_of_face.size() == faces,
+                            "each face has a group");
+  chronormal::fuzz::require(frame.normal_of_corner.empty() || frame.normal_of_corner.size() == 3 * corners,
                             "each corner has a normal");
   return 0;
 }

@@ -274,9 +274,12 @@ TEST(PathCertificates, follow_the_limit_where_a_face_has_no_area_at_an_end) {
 TEST(PathCertificates, are_close_on_an_ordinary_mesh) {
   const Motion motion = test::curved_motion({0, 0.3, 0.7, 1}, 1.2, 16, 8);
   const PolynomialSegment<3> path = path_segment(motion, 1, PathKind::kCatmullRom);
-  for (const char* const scheme : {"linear", "quadratic", "slerp", "quaternion:matrix", "circle:timed", "recompute"})
-    for (const ErrorBounds& bounds : certify(scheme, motion.segment(1), path, {}, Threads::kAll).value())
+  for (const char* const scheme : {"linear", "quadratic", "slerp", "quaternion:matrix", "circle:timed", "recompute"}) {
+    const auto certified = certify(scheme, motion.segment(1), path, {}, Threads::kAll);
+    ASSERT_TRUE(certified.ok());
+    for (const ErrorBounds& bounds : certified.value())
       ASSERT_LE(bounds.upper - bounds.lower, 1e-3 * bounds.upper + 6e-6) << scheme << ", at " << bounds.at;
+  }
   const PathTruth truth = path_truth(path, {0, motion.topology.face_count()});
   std::vector<ErrorBounds> bounds(truth.normals.size());
   certify_path_curves(truth, bounds);

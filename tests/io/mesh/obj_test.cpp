@@ -277,12 +277,12 @@ TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {
     }
     ++good;
     ASSERT_TRUE(mesh.ok()) << bytes;
-    const auto& [topology, positions, groups, normals] = shading.value();
-    EXPECT_EQ(topology, mesh.value().topology);
-    EXPECT_EQ(positions, mesh.value().positions);
-    EXPECT_TRUE(groups.empty() || groups.size() == topology.face_count());
-    EXPECT_TRUE(normals.empty() || normals.size() == 3 * topology.corner_count());
-    for (const float component : normals) EXPECT_TRUE(std::isfinite(component));
+    const MeshFrame& frame = shading.value();
+    EXPECT_EQ(frame.topology, mesh.value().topology);
+    EXPECT_EQ(frame.positions, mesh.value().positions);
+    EXPECT_TRUE(frame.group_of_face.empty() || frame.group_of_face.size() == frame.topology.face_count());
+    EXPECT_TRUE(frame.normal_of_corner.empty() || frame.normal_of_corner.size() == 3 * frame.topology.corner_count());
+    for (const float component : frame.normal_of_corner) EXPECT_TRUE(std::isfinite(component));
   }
   EXPECT_GT(good, 200U);
   EXPECT_GT(refused, 500U);
