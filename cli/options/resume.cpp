@@ -29,7 +29,7 @@ struct ValueText {
   std::string operator()(const bool* value) const { return *value ? "given" : ""; }
   std::string operator()(const std::string* value) const { return *value; }
   std::string operator()(const double* value) const { return Json(*value).dump(); }
-  std::string operator()(const std::size_t* value) const { return std::to_string(*value); }
+  std::string operator()(const std::size_t* value) const { return formatted("{}", *value); }
   std::string operator()(const std::vector<std::string>* values) const {
     std::string text;
     for (const std::string& value : *values) text += (text.empty() ? "" : " ") + value;

@@ -13,6 +13,7 @@
 
 #include "chronormal/io/output.h"
 #include "cli/ranks/ranks.h"
+#include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 
 namespace chronormal::cli {
@@ -98,7 +99,7 @@ std::string receive_text(int from) {
 
 // An error as a text: its code, its place and its message, with a zero between them.
 std::string text_of(const Error& error) {
-  return std::to_string(static_cast<int>(error.code)) + '\0' + error.place + '\0' + error.message;
+  return formatted("{}", static_cast<int>(error.code)) + '\0' + error.place + '\0' + error.message;
 }
 
 Error error_of(const std::string& text) {
@@ -110,7 +111,7 @@ Error error_of(const std::string& text) {
 // The error, with the rank that has it where not all have it.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
-    error.place = "rank " + std::to_string(rank) + (error.place.empty() ? "" : ": ") + error.place;
+    error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);
   return error;
 }
 
@@ -197,7 +198,7 @@ ProgressCallback watching_ranks(ProgressCallback progress) {
 int end_ranks(const Result<int>& result) {
   if (has_ranks() && !result) fail(result.error());
   int code = result ? result.value() : state().report(result.error());
-  if (has_ranks()) code = std::atoi(broadcast_text(std::to_string(code)).c_str());
+  if (has_ranks()) code = std::atoi(broadcast_text(formatted("{}", code)).c_str());
   int is_running = 0;
   MPI_Initialized(&is_running);
   if (is_running != 0) MPI_Finalize();

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "chronormal/io/output.h"
+#include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/text.h"
 
@@ -64,7 +65,7 @@ void say_ending(std::string_view message) noexcept {
 }
 
 void speak_as_rank(int rank) {
-  who_ends = "chronormal: rank " + std::to_string(rank) + ": ";
+  who_ends = formatted("chronormal: rank {}: ", rank);
   is_rank = true;
   is_silent = rank != 0;
 }
