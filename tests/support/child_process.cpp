@@ -56,11 +56,13 @@ void write_all(int file, const std::string& text) {
 }
 
 // The growth as text, a mark, and the text of the work: what goes through the pipe.
-[[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work) {
+[[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
+                                const std::function<void()>& prepare) {
   constexpr unsigned kWaits = 20;  // times that long for what waits, or for other processes
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);
   alarm(kWaits * most_seconds);
+  if (prepare) prepare();
   malloc_trim(0);
   if (!is_sanitized()) limit_address_space(std::size_t{1} << 30);
   forget_peak();
@@ -88,14 +90,15 @@ bool is_sanitized() {
 #endif
 }
 
-ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work) {
+ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
+                      const std::function<void()>& prepare) {
   ChildRun run;
   int ends[2];
   if (pipe(ends) != 0) return run;
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    work_and_exit(ends[1], most_seconds, work);
+    work_and_exit(ends[1], most_seconds, work, prepare);
   }
   close(ends[1]);
   std::string text;

@@ -20,7 +20,9 @@ struct ChildRun {
 
 /// Does the work in a forked process that is stopped after most_seconds of a processor, and, unless a sanitizer
 /// watches, may not take a GiB of address space more than it has at the start.
-[[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work);
+/// `prepare` runs before that in the same process: what it brings into memory, such as the program's own pages, is no growth.
+[[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
+                                    const std::function<void()>& prepare = {});
 
 }  // namespace chronormal::test
 

@@ -138,18 +138,22 @@ TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) 
   if (test::is_sanitized()) GTEST_SKIP() << "sanitizers take memory of their own";
   const TemporaryFolder folder;
   const std::string path = write_grid(folder, kSide), output = folder / "baked.glb";
-  const auto bake_it = [&]() -> std::string {
+  const std::string small = folder / "small.glb";
+  MorphingGrid(8).write(small);
+  const auto bake_file = [&](const std::string& input) -> std::string {
     count_what_is_held();
     const ThreadLimit one(1);
-    const Result<GltfDocument> document = GltfDocument::open(path);
+    const Result<GltfDocument> document = GltfDocument::open(input);
     if (!document) return document.error().text();
     GltfEdit edit(document.value());
     const Result<GltfBake> baked = bake(document.value(), {.encoding = BakeEncoding::kExact}, edit);
     if (!baked) return baked.error().text();
-    if (const Status written = edit.write(output, false); !written) return written.error().text();
+    if (const Status written = edit.write(output, true); !written) return written.error().text();
     return std::to_string(baked.value().added_targets) + " targets";
   };
-  const test::ChildRun run = test::run_in_child(60, bake_it);
+  // A small file first: what the program itself takes is not what a bake of the large one does.
+  const test::ChildRun run = test::run_in_child(
+      60, [&] { return bake_file(path); }, [&] { (void)bake_file(small); });
   ASSERT_TRUE(run.finished) << run.text;
   EXPECT_EQ(run.text, "7 targets");  // four squares, and three pairs where quarters meet
   const std::size_t size = std::filesystem::file_size(path);
