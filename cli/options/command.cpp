@@ -117,7 +117,7 @@ void warn_if_sparse(const std::string& command, PathKind path, double bend) {
       formatted(
           "the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and "
           "above {:.2f} nothing tells what happened between",
-          bend, kTooSparse),
+          up_to_hundredths(bend), kTooSparse),
       Tone::kWarning);
 }
 

@@ -60,7 +60,7 @@ std::string headline(const Audited& input) {
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
   if (audit.path != PathKind::kLinear)
     text += formatted("  the right normals are those of {} paths, which bend by {:.2f} of their length\n",
-                      path_name(audit.path), audit.bend);
+                      path_name(audit.path), up_to_hundredths(audit.bend));
   text += weighting_words(input);
   if (audit.still > 0)
     text += formatted("  {} nothing that could be judged\n",

@@ -31,7 +31,7 @@ std::string headline(const NamedComparison& input) {
          (c.path == PathKind::kLinear
               ? std::string()
               : formatted("held against the exact normals of {} paths, which bend by {:.2f} of their length\n",
-                          path_name(c.path), c.bend));
+                          path_name(c.path), up_to_hundredths(c.bend)));
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }

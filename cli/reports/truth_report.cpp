@@ -38,7 +38,7 @@ std::string remarks(const TruthComparison& c) {
     text += formatted(
         "\nThe keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and\n"
         "above {:.2f} nothing tells what happened between. More keyframes help; no scheme does.\n",
-        c.bend, kTooSparse);
+        up_to_hundredths(c.bend), kTooSparse);
   if (curved == nullptr) text += "\nTwo keyframes have no curve through them: with three, curved paths take part.\n";
   std::size_t degenerate = 0;
   for (const TruthRow& row : c.rows) degenerate = std::max(degenerate, row.quality.degenerate);

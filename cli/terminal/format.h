@@ -42,6 +42,9 @@ template <class... Args>
   return fmt::format(text, as_argument(args)...);
 }
 
+/// A share in hundredths, rounded up: what is above a limit of some hundredths is not printed as the limit itself.
+[[nodiscard]] inline double up_to_hundredths(double share) noexcept { return std::ceil(100 * share - 1e-9) / 100; }
+
 }  // namespace chronormal::cli
 
 template <>

@@ -19,14 +19,14 @@ using Json = nlohmann::json;
 class Paths : public testing::Test {
  protected:
   // Two triangles that turn by an angle from frame to frame, and lean over.
-  void write_turn(double angle) {
+  void write_turn(double angle, double lean = 0.1) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
       text.precision(9);
       const double c = std::cos(angle * frame), s = std::sin(angle * frame);
       const double places[4][3] = {{1, 0, 0}, {2, 0.3, 0.2}, {1.5, 1, 0.4}, {2.4, 1.2, -0.3}};
       for (const auto& p : places)
-        text << "v " << c * p[0] + s * p[2] << ' ' << p[1] + 0.1 * frame * frame * p[0] << ' ' << c * p[2] - s * p[0]
+        text << "v " << c * p[0] + s * p[2] << ' ' << p[1] + lean * frame * frame * p[0] << ' ' << c * p[2] - s * p[0]
              << '\n';
       text << "f 1 2 3\nf 2 4 3\n";
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
@@ -44,6 +44,13 @@ class Paths : public testing::Test {
  private:
   test::TemporaryFolder folder_;
 };
+
+TEST_F(Paths, that_bend_a_little_too_much_are_not_printed_as_bending_by_the_limit) {
+  write_turn(2 * std::asin(0.502), 0);  // a turn bends by the sine of half its angle
+  const ProcessResult result = run("compare 'f*.obj' --path catmull-rom --schemes linear --no-times");
+  EXPECT_NE(result.err.find("its paths bend by 0.51 of their length, and above 0.50"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("paths, which bend by 0.51 of their length"), std::string::npos) << result.out;
+}
 
 TEST_F(Paths, compare_has_a_row_for_the_curve_and_says_what_it_is_held_against) {
   write_turn(0.3);
