@@ -63,7 +63,7 @@ std::string quoted_value(const Json& run, const std::string& name) {
   return run.contains(name) && run[name].is_string() ? formatted("'{}'", run[name].get<std::string>()) : "not given";
 }
 
-// What differs first between two runs; empty where nothing does.
+// Returns what differs first between two runs, in words; the text is empty where nothing differs.
 std::string difference(const Json& old, const Json& now) {
   if (!old.is_object()) return "it describes no run";
   std::vector<std::string> names;

@@ -46,7 +46,7 @@ void end_line_and_say(const char* message) {
 extern "C" void end_by_signal(int signal) {
   remove_temporaries();
   for (const Ending& ending : kEndings) {
-    // Of ranks, mpirun says which one a signal has ended, and sends SIGTERM to all others.
+    // A rank stays silent: mpirun says which rank a signal has ended, and sends SIGTERM to all others.
     if (ending.signal == signal && !speaks_as_rank()) end_line_and_say(ending.message);
   }
   // The default action is there again (SA_RESETHAND), and comes when the handler returns.

@@ -13,7 +13,7 @@ inline std::string counted(std::size_t count, ElementKind kind) {
   return std::to_string(count) + ' ' + std::string(count == 1 ? one_element(kind) : element_kind_name(kind));
 }
 
-// What is asked of curves and blends alike, in words of Python.
+// Understands the arguments of Python that curves and blends have in common. Raises ValueError for wrong ones.
 inline ElementOptions element_options(const std::string& elements, std::optional<double> crease, bool weld) {
   ElementOptions options;
   options.kind = value_or_raise(make_element_kind(elements));

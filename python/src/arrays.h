@@ -87,8 +87,8 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
-// Where (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it fits, or a new array for
-// None.
+// Returns the array into which (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it
+// fits, or a new array where `out` is None.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
 // Which threads a number asks for: 1 is the calling one, 0 all cores, and others are so many.

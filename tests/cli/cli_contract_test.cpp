@@ -692,7 +692,7 @@ TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
   EXPECT_EQ(quiet.out.find("comparing ["), std::string::npos);
 }
 
-TEST_F(Cli, long_work_shows_its_pace_and_the_time_that_is_left) {
+TEST_F(Cli, long_work_shows_on_a_terminal_its_pace_and_the_time_that_is_left) {
   if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";
   const std::string command = "timeout -s INT 3 " + std::string(kProgram) +
                               " sample --sample twist --times 0:0.000002:1 --format npy -o /dev/null";

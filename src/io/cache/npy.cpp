@@ -67,7 +67,7 @@ class Python {
     (void)sign('\0');
     return text_.empty();
   }
-  // What stands behind a '#', without blanks at its ends; empty where there is none.
+  // Returns the text behind a '#', without blanks at its ends; it is empty where there is no '#'.
   [[nodiscard]] std::string_view comment() {
     if (!sign('#')) return {};
     const std::string_view line = text_.substr(0, text_.find('\n'));

@@ -18,7 +18,7 @@ namespace chronormal::inline internal::npy {
 
 enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 'U', kBytes = 'S' };
 
-/// What an array begins with.
+/// Every .npy file begins with these bytes.
 inline constexpr std::string_view kFirstWord("\x93NUMPY", 6);
 
 /// Longest header that is read; NumPy itself stops at 10,000 bytes unless it is told otherwise.

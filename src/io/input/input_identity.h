@@ -1,5 +1,5 @@
-/// What tells the files of one input from those of another, and from the same files after a change, without reading
-/// them. Private to io and the program.
+/// The names, sizes and times of change of the files of an input: they tell one input from another, and from itself
+/// after a change, without reading a file. Private to io and the program.
 #ifndef CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 #define CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 

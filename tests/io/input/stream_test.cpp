@@ -220,7 +220,7 @@ TEST(InputStream, curved_paths_need_nothing_but_the_keyframes_around_a_time) {
   }
 }
 
-TEST(InputStream, curved_paths_are_compared_and_audited_with_at_most_five_keyframes) {
+TEST(InputStream, curved_paths_are_compared_as_in_memory_and_audited_with_at_most_five_keyframes) {
   const Motion whole = wave(9);
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
     MotionStream read(whole);

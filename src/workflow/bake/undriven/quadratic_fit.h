@@ -4,10 +4,10 @@
 ///
 ///     n(w) / |n(0)|  =  N + sum_i w_i D_i + sum_k s_k(w) E_k, nearly,   s_k(w) = sum_i l_ki w_i + sum_ij q_kij w_i w_j
 ///
-/// What is missing, in some poses of the rig, is a matrix of low rank; its leading right singular vectors say which E_k
-/// are worth having. Since n(w) is a quadratic form, the weight that each of these should have is one too, and its
-/// terms are the terms of n(w), projected. Small terms are left out. The E_k are then fitted again, point by point, to
-/// what is missing divided by the length of n(w), which is about the angle.
+/// The normals that are missing, in some poses of the rig, form a matrix of low rank; its leading right singular
+/// vectors say which E_k are worth having. Since n(w) is a quadratic form, the weight that each of these should have is
+/// one too, and its terms are the terms of n(w), projected. Small terms are left out. The E_k are then fitted again,
+/// point by point, to what is missing divided by the length of n(w), which is about the angle.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
