@@ -74,6 +74,13 @@ TEST(Vec3, tiny_angles_are_not_lost) {
   EXPECT_EQ(angle_between({1, 0, 0}, {0, 0, 0}), 0);
 }
 
+TEST(Vec3, a_zero_vector_has_no_angle_to_any_direction) {
+  for (const Vec3d& v : {Vec3d{-1, -1, -1}, Vec3d{1, 2, 3}, Vec3d{-1, 2, -3}, Vec3d{}}) {
+    EXPECT_EQ(angle_between({}, v), 0);
+    EXPECT_EQ(angle_between(v, {}), 0);
+  }
+}
+
 RC_GTEST_PROP(Vec3, any_perpendicular_is_a_perpendicular_unit_vector, ()) {
   const Vec3d v = some_vector();
   RC_PRE(!(v == Vec3d{}));
