@@ -146,17 +146,21 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
-def certify(p0, p1, faces, scheme="linear", threads=0):
+def certify(p0, p1, faces, scheme="linear", threads=0, velocities=None):
     """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
 
     p0, p1, faces, threads  as for curves()
     scheme   a name that compare() knows
+    velocities  (2, V, 3), at p0 and at p1, in units of length per segment: vertices then move on the cubics through
+             them, and the errors are those against the normals there; None: on straight lines
     lower    degrees; the error is as large as that at the local time `at`
     upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
     from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
     """
     offsets, corners = _polygons(faces)
-    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
+    if velocities is not None:
+        velocities = _vectors(velocities, "velocities")
+    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads, velocities)
 
 
 def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
