@@ -44,6 +44,7 @@ class BlendSource {
   /// The weights of the moment that was placed.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
   void forget() { known_ = false; }
+  [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
   /// Adds up the normals that are shown at the moment that was placed.
   void show();
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;

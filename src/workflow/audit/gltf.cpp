@@ -89,7 +89,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment);
   HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved);
   const auto judge_hosts = [&](const MeasuredSample& sample) {
-    hosts.add_sample(source, sample.segment, sample.t, sample.placed, sample.largest);
+    hosts.add_sample(source, sample);
     if (!mesh.watch) return;
     mesh.watch({index, subject, sample.segment, sample.t, moment(sample.segment, sample.t), part, sample.largest,
                 sample.error, sample.each, source.now(), hosts.now()});

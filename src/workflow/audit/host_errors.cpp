@@ -12,6 +12,9 @@ bool keep_alike(const Host& a, const Host& b) noexcept {
          a.octahedral_base == b.octahedral_base;
 }
 
+// Whether a host adds up normals in float32, as BlendSource does by the rule of the specification.
+bool adds_as_specified(const Host& host) noexcept { return host.normals == NormalRule::kSum && host.bits == 32; }
+
 // The diagonal of the box around the base.
 double size_of(const GltfShading& shading) noexcept {
   Vec3d low, high;
@@ -82,13 +85,12 @@ std::vector<Vec3f> HostErrors::shown(const Kept& kept, std::span<const double> w
   return result;
 }
 
-void HostErrors::add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
-                            std::span<const double> largest) {
+void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
   const bool is_still = known_ && source.now() == specified_;
   std::vector<bool> is_judged(weights_.size());
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
-    weights_[h](segment, t, now);
+    weights_[h](sample.segment, sample.t, now);
     is_judged[h] = is_still && now == now_[h];  // as in the sample before
     now_[h] = std::move(now);
   }
@@ -96,17 +98,20 @@ void HostErrors::add_sample(BlendSource& source, std::size_t segment, double t, 
   specified_ = source.now();
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
-    const PlacedPart* where = &placed;
+    const PlacedPart* where = &sample.placed;
+    // Of all hosts that play these weights, those that keep alike are judged once.
+    std::vector<const MotionError*> of_kept(kept_.size());
     double displaced = 0;
     if (now_[h] != source.now()) {
       if (!elsewhere_) elsewhere_.emplace(part_);
       source.place_at(now_[h], elsewhere_->positions);
       part_.normals(elsewhere_->positions, elsewhere_->normals);
       where = &*elsewhere_;
-      if (size_ > 0) displaced = largest_distance(placed.positions, elsewhere_->positions) / size_;
+      if (size_ > 0) displaced = largest_distance(sample.placed.positions, elsewhere_->positions) / size_;
+    } else if (source.rule() == AuditRule::kGltf) {
+      for (std::size_t k = 0; k < kept_.size(); ++k)
+        if (adds_as_specified(*kept_[k].host)) of_kept[k] = &sample.error;
     }
-    // All hosts that play these weights, those that keep alike once.
-    std::vector<const MotionError*> of_kept(kept_.size());
     for (std::size_t other = h; other < weights_.size(); ++other) {
       if (is_judged[other] || now_[other] != now_[h]) continue;
       is_judged[other] = true;
@@ -117,7 +122,7 @@ void HostErrors::add_sample(BlendSource& source, std::size_t segment, double t, 
       }
       const std::vector<Vec3f> normals = shown(kept_[kept_by_[other]], now_[other]);
       const auto shown_at = [&](std::size_t i, const JudgedOutput&) { return to_double(normals[i]); };
-      last_[other] = {error_at(source, *where, false, largest, segment, t, shown_at), displaced};
+      last_[other] = {error_at(source, *where, false, sample.largest, sample.segment, sample.t, shown_at), displaced};
       known = &last_[other].error;
     }
   }

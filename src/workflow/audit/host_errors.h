@@ -32,9 +32,8 @@ class HostErrors {
   HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
              std::vector<Weights> weights, const std::vector<bool>& involved);
 
-  /// Judges every host at a sample that the source has placed; largest as largest_control_normals() has it.
-  void add_sample(BlendSource& source, std::size_t segment, double t, const PlacedPart& placed,
-                  std::span<const double> largest);
+  /// Judges every host at a sample that the source has placed. What shows the same as the source has its error.
+  void add_sample(BlendSource& source, const MeasuredSample& sample);
 
   /// The weights that each host plays at the last sample.
   [[nodiscard]] std::span<const std::vector<double>> now() const noexcept { return now_; }

@@ -4,6 +4,7 @@
 #define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/quality/kernels/shown_angles.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/workflow/audit.h"
 #include "core/bits.h"
@@ -111,6 +113,38 @@ template <class Source>
   return largest;
 }
 
+/// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and add_unlit()
+/// do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged.
+template <class Degrees, class At>
+void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const At& at, MotionError& result) {
+  double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
+  std::size_t judged = 0;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const JudgedOutput& output = outputs[i];
+    double degrees = degrees_of(output, i);
+    if (degrees < 0) {
+      if (degrees == kNotJudged) {
+        ++result.no_normal;
+        continue;
+      }
+      if (result.unlit++ == 0) result.unlit_at = at(output);
+      degrees = 180;
+    }
+    ++judged;
+    sum += degrees;
+    sum_of_squares += degrees * degrees;
+    count_in_bins(degrees, result);
+    if (degrees > worst) {
+      worst = degrees;
+      result.worst_at = at(output);
+    }
+  }
+  result.judged = judged;
+  result.sum = sum;
+  result.sum_of_squares = sum_of_squares;
+  result.worst = worst;
+}
+
 /// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each,
 /// where it is not empty, gets that of the i-th in degrees, NaN where none is judged.
 template <class Source, class Shown>
@@ -118,33 +152,47 @@ template <class Source, class Shown>
                                    std::span<const double> largest, std::size_t segment, double t, const Shown& shown,
                                    std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
-  const auto judge = [&](std::size_t i, MotionError& errors) {
-    const JudgedOutput& output = outputs[i];
-    const Vec3d is_shown = shown(i, output);
-    const Vec3d& normal = placed.normals.elements[output.element];
-    const double least = kVanished * largest[output.element];
-    const bool has_normal = length(normal) > least;
-    // A face without area is not drawn, whatever its normal.
-    const auto keep = [&](double degrees) {
-      if (!each.empty()) each[i] = static_cast<float>(degrees);
-    };
-    const bool is_drawn = is_flat ? is_shown != Vec3d{} : placed.normals.sizes[output.element] > least;
-    if (!is_finite(is_shown) || (is_drawn && is_shown == Vec3d{})) {
-      errors.add_unlit(source.at(segment, t, output));
-      keep(180);
-      return;
+  std::vector<MotionError> of_blocks(block_count(outputs.size(), kRange));
+  numbered_blocks(outputs.size(), kRange, [&](std::size_t b, std::size_t first, std::size_t end) {
+    std::vector<double> degrees(end - first);
+    std::array<Vec3d, 256> is_shown, is_right;
+    for (std::size_t from = first; from < end; from += is_shown.size()) {
+      const std::size_t count = std::min(is_shown.size(), end - from);
+      const std::span<double> of_some = std::span(degrees).subspan(from - first, count);
+      for (std::size_t k = 0; k < count; ++k) {
+        const JudgedOutput& output = outputs[from + k];
+        const Vec3d& normal = placed.normals.elements[output.element];
+        const double least = kVanished * largest[output.element];
+        is_shown[k] = shown(from + k, output);
+        // A face without area is not drawn, whatever its normal.
+        const bool is_drawn = is_flat ? is_shown[k] != Vec3d{} : placed.normals.sizes[output.element] > least;
+        const bool has_normal = length(normal) > least;
+        of_some[k] = !is_finite(is_shown[k]) || (is_drawn && is_shown[k] == Vec3d{}) ? kNotLit
+                     : !has_normal || !is_drawn                                      ? kNotJudged
+                                                                                     : 0;
+        if (of_some[k] < 0)
+          is_shown[k] = is_right[k] = {};
+        else
+          is_right[k] = source.right(output, normal);
+      }
+      std::array<double, is_shown.size()> angles;
+      angles_of_pairs(std::span(is_shown).first(count), std::span(is_right).first(count),
+                      std::span(angles).first(count));
+      for (std::size_t k = 0; k < count; ++k)
+        if (of_some[k] == 0) of_some[k] = angles[k];
     }
-    if (!has_normal || !is_drawn) {
-      ++errors.no_normal;
-      keep(std::numeric_limits<double>::quiet_NaN());
-      return;
+    add_errors(
+        outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
+        [&](const JudgedOutput& output) { return source.at(segment, t, output); }, of_blocks[b]);
+    for (std::size_t i = first; !each.empty() && i < end; ++i) {
+      const double found = degrees[i - first];
+      each[i] = found == kNotJudged ? std::numeric_limits<float>::quiet_NaN()
+                                    : static_cast<float>(found == kNotLit ? 180 : found);
     }
-    const double angle = angle_between(is_shown, source.right(output, normal)) * kDegreesPerRadian;
-    keep(angle);
-    errors.add(angle, angle > errors.worst ? source.at(segment, t, output) : AuditPlace());
-  };
-  return parallel_fold<MotionError>(outputs.size(), kRange, judge,
-                                    [](MotionError& all, const MotionError& one) { all.add(one); });
+  });
+  MotionError all;
+  for (const MotionError& of_block : of_blocks) all.add(of_block);
+  return all;
 }
 
 /// Where single errors are kept, and which subject they are of.

@@ -143,37 +143,6 @@ double time_of_sample(std::size_t i, std::size_t samples) {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
 
-// Adds the errors of all outputs, in their order, as MotionError::add() and add_unlit() do.
-template <class At>
-void add_errors(std::span<const double> of_elements, const Block& block, const JudgedPart& part, MotionError& result,
-                const At& at) {
-  double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
-  std::size_t judged = 0;
-  for (const JudgedOutput& output : part.outputs().subspan(block.outputs.first, block.outputs.count)) {
-    double degrees = of_elements[output.element - block.elements.first];
-    if (degrees < 0) {
-      if (degrees == kNotJudged) {
-        ++result.no_normal;
-        continue;
-      }
-      if (result.unlit++ == 0) result.unlit_at = at(output);
-      degrees = 180;
-    }
-    ++judged;
-    sum += degrees;
-    sum_of_squares += degrees * degrees;
-    count_in_bins(degrees, result);
-    if (degrees > worst) {
-      worst = degrees;
-      result.worst_at = at(output);
-    }
-  }
-  result.judged = judged;
-  result.sum = sum;
-  result.sum_of_squares = sum_of_squares;
-  result.worst = worst;
-}
-
 // Writes the errors of a block at each sample of a segment.
 void measure_block(const Segment& segment, std::size_t number, const Block& block, std::span<const double> largest,
                    const JudgedPart& part, AuditRule rule, const FindPlace& at, Scratch& scratch,
@@ -193,8 +162,10 @@ void measure_block(const Segment& segment, std::size_t number, const Block& bloc
     const double weight = rule != AuditRule::kStep ? t : t < 1 ? 0 : 1;
     shown_angles({scratch.from, scratch.to, right, kRoundingOfTerms}, weight, scratch.degrees);
     errors[i] = {};
-    add_errors(scratch.degrees, block, part, errors[i],
-               [&](const JudgedOutput& output) { return at(number, t, output); });
+    add_errors(
+        part.outputs().subspan(block.outputs.first, block.outputs.count),
+        [&](const JudgedOutput& output, std::size_t) { return scratch.degrees[output.element - block.elements.first]; },
+        [&](const JudgedOutput& output) { return at(number, t, output); }, errors[i]);
   }
 }
 

@@ -119,6 +119,36 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
   }
 }
 
+void AnglesOfPairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) {
+  const auto angles = [](const Vec3d* of_a, const Vec3d* of_b, double* result) HWY_ATTR {
+    Real3 u, v;
+    hn::LoadInterleaved3(kDoubles, &of_a->x, u.x.v, u.y.v, u.z.v);
+    hn::LoadInterleaved3(kDoubles, &of_b->x, v.x.v, v.y.v, v.z.v);
+    // As in angle_between(): -0 becomes 0.
+    (upper_angle(Scaled(cross(u, v)).whole_length(), dot(u, v) + Real(0.0)) * Real(kDegreesPerRadian)).store(result);
+  };
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= degrees.size(); i += kDoubleLanes) angles(&a[i], &b[i], &degrees[i]);
+  if (i == degrees.size()) return;
+  Vec3d last_a[kDoubleLanes], last_b[kDoubleLanes];
+  double last[kDoubleLanes];
+  std::copy(a.begin() + static_cast<std::ptrdiff_t>(i), a.end(), last_a);
+  std::copy(b.begin() + static_cast<std::ptrdiff_t>(i), b.end(), last_b);
+  angles(last_a, last_b, last);
+  std::copy_n(last, degrees.size() - i, &degrees[i]);
+}
+
+void UpperAngles(std::span<const double> y, std::span<const double> x, std::span<double> radians) {
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= radians.size(); i += kDoubleLanes)
+    upper_angle(Real::load(&y[i]), Real::load(&x[i])).store(&radians[i]);
+  for (; i < radians.size(); ++i) {
+    double result[kDoubleLanes];
+    upper_angle(Real(y[i]), Real(x[i])).store(result);
+    radians[i] = result[0];
+  }
+}
+
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -127,6 +157,8 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(TriangleNormals);
 HWY_EXPORT(ShownAngles);
+HWY_EXPORT(AnglesOfPairs);
+HWY_EXPORT(UpperAngles);
 
 void TrianglesInMotion::gather(VectorView<const float> from, VectorView<const float> to,
                                std::span<const std::uint32_t> corners) {
@@ -152,6 +184,16 @@ void TrianglesInMotion::normals(double t, std::vector<Normal>& result) const {
 
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept {
   HWY_DYNAMIC_DISPATCH(ShownAngles)(elements, t, degrees);
+}
+
+void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) noexcept {
+  assert(a.size() == degrees.size() && b.size() == degrees.size());
+  HWY_DYNAMIC_DISPATCH(AnglesOfPairs)(a, b, degrees);
+}
+
+void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept {
+  assert(y.size() == radians.size() && x.size() == radians.size());
+  HWY_DYNAMIC_DISPATCH(UpperAngles)(y, x, radians);
 }
 
 }  // namespace chronormal::inline internal

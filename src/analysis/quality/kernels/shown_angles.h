@@ -1,7 +1,7 @@
 /// Computes for every vertex and sample of an audit, in lanes of double, the normals of moving triangles, and the
-/// angles between right normals and those that a host shows which interpolates stored ones.
+/// angles between right normals and those that are shown.
 ///
-/// Both give the bits of their scalar forms: twice_vector_area() of positions interpolated in double, and
+/// All give the bits of their scalar forms: twice_vector_area() of positions interpolated in double, and
 /// angle_between() of what unit() and lerp() of core/vec3.h make.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
@@ -60,6 +60,14 @@ struct ShownElements {
 /// where an element is drawn and shows nothing; else kNotJudged where it is not drawn or has no right normal.
 /// All planes must have as many elements as the result; no number may be infinite or NaN.
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
+
+/// Writes, in degrees, the angles between pairs of vectors of any length: 0 where one is zero.
+/// All three must have the same size; no number may be infinite or NaN.
+void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) noexcept;
+
+/// Writes, in radians, the angles of the vectors (x, y): those of portable::atan2(), and NaN where a number is not
+/// finite. All three must have the same size; no y may be below 0.
+void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept;
 
 }  // namespace chronormal::inline internal
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <deque>
 
+#include "analysis/quality/kernels/shown_angles.h"
 #include "core/bits.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
@@ -52,18 +53,28 @@ class Sums {
     }
   }
 
-  // Degrees; negative where the right normal is not known.
-  [[nodiscard]] float angle_to(const Vec3f& right, std::size_t p) const {
-    if (right == Vec3f{}) return -1;
-    const Vec3f shown = {x_[p], y_[p], z_[p]};
-    const Vec3f aside = cross(shown, right);
-    const float along = dot(shown, right), across = std::sqrt(dot(aside, aside));
-    const float angle = kDegrees * static_cast<float>(portable::atan2(across, along));
-    return (shown == Vec3f{} || !std::isfinite(angle)) ? 180 : angle;
+  // Writes the angles to the right normals in degrees; negative where one is not known.
+  void angles_to(std::span<const Vec3f> right, std::span<float> degrees) {
+    across_.resize(right.size());
+    along_.resize(right.size());
+    angles_.resize(right.size());
+    for (std::size_t p = 0; p < right.size(); ++p) {
+      const Vec3f shown = at(p), aside = cross(shown, right[p]);
+      across_[p] = static_cast<double>(std::sqrt(dot(aside, aside)));
+      along_[p] = static_cast<double>(dot(shown, right[p]));
+    }
+    upper_angles(across_, along_, angles_);
+    for (std::size_t p = 0; p < right.size(); ++p) {
+      const float angle = kDegrees * static_cast<float>(angles_[p]);
+      degrees[p] = right[p] == Vec3f{} ? -1 : (at(p) == Vec3f{} || !std::isfinite(angle)) ? 180 : angle;
+    }
   }
 
  private:
+  [[nodiscard]] Vec3f at(std::size_t p) const { return {x_[p], y_[p], z_[p]}; }
+
   std::vector<float> x_, y_, z_;
+  std::vector<double> across_, along_, angles_;
 };
 
 std::vector<float> side_by_side(const PoseList& poses) {
@@ -249,8 +260,11 @@ std::vector<float> HostJudge::worst(const VertexColumns& form, const PoseList& p
   const std::vector<float> weights = side_by_side(poses);
   rights_.for_each(vertices_, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
+    thread_local std::vector<float> errors;
     sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), form.of(n), weights, poses.size(), first, right.size());
-    for (std::size_t p = 0; p < right.size(); ++p) result[n] = std::fmax(result[n], sums.angle_to(right[p], p));
+    errors.resize(right.size());
+    sums.angles_to(right, errors);
+    for (const float error : errors) result[n] = std::fmax(result[n], error);
   });
   return result;
 }
@@ -298,7 +312,7 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
                               are_plain[f * vertices.size() + at] != 0;
         if (is_known) continue;
         sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, set.poses.size(), first, right.size());
-        for (std::size_t p = 0; p < right.size(); ++p) errors[f * right.size() + p] = sums.angle_to(right[p], p);
+        sums.angles_to(right, std::span(errors).subspan(f * right.size(), right.size()));
       }
       visit(n, kind, std::span<const float>(errors));
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/quality/kernels/shown_angles.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
 #include "workflow/bake/judge/played_poses.h"
@@ -38,11 +39,12 @@ struct Batch {
     shown.fill(rights.stored(vertex));
     for (const auto& [column, delta] : entries)
       for (std::size_t p = 0; p < poses.size(); ++p) shown[p] = shown[p] + poses[p][column] * to_double(delta);
-    for (std::size_t p = 0; p < poses.size(); ++p) {
-      const Vec3d right = rights.of_vertex(vertex, normals[p][element]);
-      if (length(right) > kLeastLength)
-        visit(max_abs(shown[p]) > 0 ? kDegreesPerRadian * angle_between(shown[p], right) : 180);
-    }
+    std::array<Vec3d, kPosesAtOnce> right;
+    for (std::size_t p = 0; p < poses.size(); ++p) right[p] = rights.of_vertex(vertex, normals[p][element]);
+    std::array<double, kPosesAtOnce> degrees;
+    angles_of_pairs(shown, right, degrees);
+    for (std::size_t p = 0; p < poses.size(); ++p)
+      if (length(right[p]) > kLeastLength) visit(max_abs(shown[p]) > 0 ? degrees[p] : 180);
   }
 };
 

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "core/portable_math.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "simd/targets.h"
@@ -94,6 +96,49 @@ TEST(ShownAngles, have_the_bits_of_one_angle_after_the_other_on_every_instructio
   }
   EXPECT_GT(not_lit, 50U);
   EXPECT_GT(not_judged, 500U);
+}
+
+TEST(AnglesOfPairs, have_the_bits_of_one_angle_after_the_other_on_every_instruction_set) {
+  fixtures::Random random(8);
+  const auto vector = [&] {
+    const fixtures::Point p = random.in_cube(std::pow(10.0, random.uniform(-20, 20)));
+    return Vec3d{p[0], p[1], p[2]};
+  };
+  for (const std::size_t count : {0U, 1U, 3U, 7U, 8U, 501U}) {
+    std::vector<Vec3d> a(count), b(count);
+    std::vector<double> expected(count), degrees(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      a[i] = i % 10 == 3 ? Vec3d{} : vector();
+      b[i] = i % 10 == 4 ? Vec3d{} : i % 10 == 5 ? a[i] : i % 10 == 6 ? -a[i] : vector();
+      if (i % 3 == 0) b[i] = a[i] + 1e-7 * random.uniform(0, 1) * b[i];
+      expected[i] = angle_between(a[i], b[i]) * kDegreesPerRadian;
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      angles_of_pairs(a, b, degrees);
+      EXPECT_EQ(degrees, expected) << target_name(target) << ", " << count;
+    }
+  }
+}
+
+TEST(UpperAngles, have_the_bits_of_one_arc_tangent_after_the_other_on_every_instruction_set) {
+  fixtures::Random random(9);
+  std::vector<double> y = {0, 0, 1, 1, 0, 2, 1e300}, x = {0.0, -0.0, 0.0, -0.0, -3, 2, -1e-300};
+  for (int i = 0; i < 500; ++i) {
+    y.push_back(std::pow(10.0, random.uniform(-9, 9)));
+    x.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(-9, 9)));
+  }
+  std::vector<double> expected, angles(y.size());
+  for (std::size_t i = 0; i < y.size(); ++i) expected.push_back(portable::atan2(y[i], x[i]));
+  for (const std::int64_t target : supported_targets()) {
+    const ScopedTarget scoped(target);
+    upper_angles(y, x, angles);
+    EXPECT_EQ(angles, expected) << target_name(target);
+    const std::vector<double> one = {1}, infinite = {std::numeric_limits<double>::infinity()};
+    std::vector<double> angle(1);
+    upper_angles(infinite, one, angle);
+    EXPECT_TRUE(std::isnan(angle[0])) << target_name(target);
+  }
 }
 
 }  // namespace
