@@ -210,6 +210,14 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   return code;
 }
 
+// Opens the input with the normals of all keyframes, which an audit judges.
+Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
+  InputOptions wanted = options.input;
+  wanted.velocities = options.path.needs_velocities();
+  wanted.shading = KeepShading::kAll;
+  return open_input(std::move(wanted), progress);
+}
+
 Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   constexpr const char* kNotOfSequences = "it is for glTF files, which have targets of their own";
@@ -236,7 +244,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence is written as .glb");
   if (const Status status = check_path(input, how.path); !status) return status.error();
-  const Motion& motion = *input.motion().value();
+  MotionStream& stream = *input.stream().value();
+  const Motion& motion = stream.motion();
   if (motion.kind == MotionKind::kTargets)
     return invalid_input(input.name(),
                          "these are targets and no sequence: convert makes a .glb of them, and bake takes that");
@@ -250,20 +259,25 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   }
   how.progress = progress.callback("baking");
   how.expansion = input.expansion();
-  std::string glb;
-  const Result<SequenceBake> baked = bake_sequence(motion, how, glb);
+  const Result<SequenceBake> baked = bake_sequence(stream, how, output, options.common.force);
   progress.clear();
   if (!baked) return baked.error();
-  if (const Status written = write_output(output, glb, options.common.force); !written) return written.error();
   warn(baked.value().warnings);
   warn_if_sparse("bake", how.path, baked.value().bend);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
-  if (glb.size() <= kMostAudited && motion.topology.all_triangles()) {
-    auto audited = audit_both(how, options, [&](AuditOptions asked) {
+  if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
+    std::optional<Input> whole;
+    auto audited = audit_both(how, options, [&](AuditOptions asked) -> Result<Audit> {
       asked.rule = AuditRule::kNlerp;
       asked.path = how.path;
-      return audit(motion, stored, asked);
+      if (!stored.has_more) return audit(stream, stored, asked);
+      if (!whole) {
+        Result<Input> again = open_whole(options, progress);
+        if (!again) return again.error();
+        whole = std::move(again).value();
+      }
+      return audit(*whole->stream().value(), *whole->normals().value(), asked);
     });
     if (!audited) return audited.error();
     told.audit = std::move(audited).value();
@@ -314,7 +328,8 @@ Result<int> run(BakeArguments options) {
   }
   InputOptions wanted = options.input;
   wanted.velocities = options.path.needs_velocities();
-  if (options.crease_angle == 180) wanted.shading = KeepShading::kAll;
+  wanted.stream = true;
+  if (options.crease_angle == 180) wanted.shading = KeepShading::kRead;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
   return input.value().document() != nullptr ? run_gltf(options, how.value(), input.value(), progress)

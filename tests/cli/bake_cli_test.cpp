@@ -165,6 +165,30 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
+// Files of more than 64 MiB are read one after the other, without the normals that they store.
+TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
+  constexpr std::size_t kLine = 1 << 20, kLines = 24;
+  const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";
+  std::string room;
+  for (std::size_t i = 0; i < kLines; ++i) room += comment;
+  // The stored normals of keyframe 1 are wrong, which the report says, by the normals of that file.
+  for (const int k : {0, 1, 2}) {
+    std::string mesh = bytes_of("f_" + std::to_string(k) + ".obj");
+    mesh = mesh.substr(0, mesh.find('f')) + (k == 1 ? "vn 1 0 0\n" : "vn 0 0 1\n") +
+           "f 1//1 2//1 3//1\nf 3//1 2//1 4//1\n";
+    folder_.write("s_" + std::to_string(k) + ".obj", mesh);
+    folder_.write("l_" + std::to_string(k) + ".obj", mesh + room);
+  }
+  const ProcessResult small = run("s_0.obj s_1.obj s_2.obj -o s.glb --json");
+  const ProcessResult large = run("l_0.obj l_1.obj l_2.obj -o l.glb --json");
+  ASSERT_EQ(small.exit_code, 0) << small.err;
+  ASSERT_EQ(large.exit_code, 0) << large.err;
+  EXPECT_TRUE(bytes_of("s.glb") == bytes_of("l.glb"));
+  const Json expected = Json::parse(small.out)["audit"];
+  EXPECT_GT(expected["worst_degrees_before"], 45);
+  EXPECT_EQ(Json::parse(large.out)["audit"], expected);
+}
+
 TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
   for (const char* const how : {"exact", "endpoint"}) {
     const ProcessResult text = run(std::string("moving.glb -o out.glb --force --encode ") + how);

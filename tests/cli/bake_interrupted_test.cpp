@@ -78,6 +78,31 @@ TEST_F(InterruptedBake, full_disk_keeps_its_file) {
   EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
 }
 
+// The arrays wait in a file of their own until the JSON in front of them is known: there the disk has room for these, and
+// not for the file as well.
+TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
+  fs::create_directory(folder_ / "small");
+  const std::string size = std::to_string(whole_.size() * 3 / 2 / 1024);
+  if (run_shell("mount -t tmpfs -o size=" + size + "k none small", folder_.path()).exit_code != 0)
+    GTEST_SKIP() << "no small file system can be mounted here";
+  folder_.write("small/old.glb", kOld);
+  expect_refused("small");
+  EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
+}
+
+TEST_F(InterruptedBake, files_that_may_not_be_so_large_keep_what_was_there) {
+  fs::create_directory(folder_ / "limited");
+  folder_.write("limited/old.glb", kOld);
+  for (const char* const blocks : {"100", "1000"}) {
+    const ProcessResult result =
+        run("bake 'cloth_*.obj' --force --no-audit -o limited/old.glb", std::string("ulimit -f ") + blocks + "; ");
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_NE(result.err.find("limited/old.glb: File too large"), std::string::npos) << result.err;
+    EXPECT_EQ(test::read_whole(folder_ / "limited/old.glb"), kOld);
+    EXPECT_EQ(entries("limited"), 1) << "a temporary file is left";
+  }
+}
+
 TEST_F(InterruptedBake, killed_at_any_moment_leaves_the_old_file_or_the_new_one) {
   constexpr int kTimes = 50;
   const auto start = std::chrono::steady_clock::now();

@@ -187,6 +187,14 @@ ssize_t read(int file, void* bytes, std::size_t size) {
   }
   return ::syscall(SYS_read, file, bytes, fault != nullptr && size > 1 ? size / 2 : size);
 }
+ssize_t pread(int file, void* bytes, std::size_t size, off_t at) {
+  const Fault* const fault = fault_at(kRead);
+  if (fault != nullptr && !fault->is_short) {
+    errno = fault->error;
+    return -1;
+  }
+  return ::syscall(SYS_pread64, file, bytes, fault != nullptr && size > 1 ? size / 2 : size, at);
+}
 int fsync(int /*file*/) { return fails(kFsync) ? -1 : 0; }
 int close(int file) {
   const Fault* const fault = fault_at(kClose);

@@ -43,6 +43,7 @@ enum class KeepShading {
   kNone,
   kFirst,  ///< of the first keyframe: of the base, or of the mesh of a cache
   kAll,    ///< of all keyframes, as far as all of them store normals
+  kRead,   ///< of all keyframes that are read at once, as kAll; of the first one where positions are left in files
 };
 
 /// Names are those of the program's options, which fill this.
@@ -94,6 +95,7 @@ struct InputOptions {
 struct StoredNormals {
   /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
   std::vector<std::vector<float>> of_keyframes;
+  bool has_more = false;  ///< with KeepShading::kRead: other keyframes may store some, which were left in files
 };
 
 /// An input that was opened: a glTF document, or else a motion or a mesh.

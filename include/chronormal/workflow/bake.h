@@ -34,6 +34,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
@@ -198,12 +199,20 @@ struct SequenceBake {
 /// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals
 /// in all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard
 /// edges (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
-/// glb gets the bytes of the file.
+/// glb gets the bytes of the file; where there is an error, it stays as it was.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
 /// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area
 /// or a tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights;
 /// those of check_path(). Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
+
+/// The same of a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several
+/// passes that hold two keyframes at a time; for keys and on curved paths it holds all of them. The arrays wait in a
+/// file without a name in the folder of path until the JSON in front of them is known. So what grows with the number of
+/// keyframes is that JSON, and the fits of a weighting. Where path is a stream or a device, the arrays wait in memory.
+/// Errors: also those of the stream and of write_output()
+[[nodiscard]] Result<SequenceBake> bake_sequence(MotionStream& stream, const BakeOptions& options,
+                                                 const std::string& path, bool force);
 
 }  // namespace chronormal
 

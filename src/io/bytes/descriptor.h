@@ -7,7 +7,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -58,6 +63,33 @@ class Descriptor {
   if (errno != EAGAIN) return false;
   pollfd waiting{descriptor, events, 0};
   return ::poll(&waiting, 1, -1) >= 0 || errno == EINTR;
+}
+
+/// Writes everything. Returns false, with errno, on failure.
+[[nodiscard]] inline bool write_bytes(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    } else if (!may_go_on(descriptor, POLLOUT)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Reads a file from byte `at` on, until `bytes` is full or the file ends. Returns the part that was not filled, or
+/// nothing, with errno, on failure.
+[[nodiscard]] inline std::optional<std::span<char>> read_at(int descriptor, std::uint64_t at, std::span<char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return std::nullopt;
+    if (count == 0) break;
+    at += static_cast<std::uint64_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return bytes;
 }
 
 }  // namespace chronormal::inline internal

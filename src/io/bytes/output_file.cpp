@@ -22,34 +22,21 @@
 namespace chronormal {
 namespace {
 
-// Writes everything. Returns false, with errno, on failure.
-bool write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-    if (count >= 0) {
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    } else if (!may_go_on(descriptor, POLLOUT)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // Writes one piece after the other, and small pieces together. Returns false, with errno, on failure.
-bool write_all(int descriptor, std::span<const std::string_view> pieces) {
+bool write_pieces(int descriptor, std::span<const std::string_view> pieces) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string block;
   for (const std::string_view piece : pieces) {
     if (block.size() + piece.size() > kBlock) {
-      if (!write_all(descriptor, block)) return false;
+      if (!write_bytes(descriptor, block)) return false;
       block.clear();
     }
     if (piece.size() < kBlock)
       block += piece;
-    else if (!write_all(descriptor, piece))
+    else if (!write_bytes(descriptor, piece))
       return false;
   }
-  return write_all(descriptor, block);
+  return write_bytes(descriptor, block);
 }
 
 // Writes everything at a place of a file. Returns false, with errno, on failure.
@@ -201,10 +188,14 @@ Result<OutputFile> OutputFile::join(const std::string& path, const std::string& 
   return error;
 }
 
+Result<Spool> OutputFile::spool() const {
+  return state_->file == nullptr ? Spool() : Spool::beside(state_->target, state_->path);
+}
+
 std::string OutputFile::temporary_name() const { return state_->file == nullptr ? "" : state_->file->name(); }
 
 Status OutputFile::append(std::span<const std::string_view> pieces) {
-  if (!write_all(state_->descriptor(), pieces)) return state_->error();
+  if (!write_pieces(state_->descriptor(), pieces)) return state_->error();
   return Success{};
 }
 
@@ -229,7 +220,7 @@ Status OutputFile::finish() {
   State& state = *state_;
   if (state.file == nullptr) {
     const bool closed =
-        write_all(state.descriptor(), std::string_view(state.gathered)) && (state.stream || state.device.close());
+        write_bytes(state.descriptor(), std::string_view(state.gathered)) && (state.stream || state.device.close());
     if (!closed) return state.error();
     return Success{};
   }

@@ -19,6 +19,7 @@
 #include <string_view>
 
 #include "chronormal/core/result.h"
+#include "io/bytes/spool.h"
 
 namespace chronormal::inline internal {
 
@@ -43,6 +44,10 @@ class OutputFile {
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();
+
+  /// Begins a spool for what comes before its place in this file is known: in the folder of the file, or in memory
+  /// where this is a stream or a device. Errors: those of Spool::beside().
+  [[nodiscard]] Result<Spool> spool() const;
 
   /// Writes bytes behind all that was appended.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 namespace chronormal::inline internal {
@@ -22,22 +21,16 @@ std::optional<PositionedFile> PositionedFile::open(const std::string& path) {
 }
 
 Status PositionedFile::read(std::uint64_t at, std::span<char> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t count = ::pread(descriptor_.number(), bytes.data(), bytes.size(), static_cast<off_t>(at));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return Error{ErrorCode::kFailed, path_, std::generic_category().message(errno)};
-    if (count == 0) {
-      struct stat status {};
-      const bool is_known = ::fstat(descriptor_.number(), &status) == 0;
-      const std::uint64_t end = is_known ? static_cast<std::uint64_t>(status.st_size) : at;
-      return Error{ErrorCode::kFailed, path_,
-                   "the file ends at byte " + std::to_string(end) + ", but had " + std::to_string(size_) +
-                       " bytes when it was opened: it was cut while it was read"};
-    }
-    at += static_cast<std::uint64_t>(count);
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-  }
-  return Success{};
+  const std::optional<std::span<char>> missing = read_at(descriptor_.number(), at, bytes);
+  if (!missing) return failure(path_, errno);
+  if (missing->empty()) return Success{};
+  struct stat status {};
+  const bool is_known = ::fstat(descriptor_.number(), &status) == 0;
+  const std::uint64_t end =
+      is_known ? static_cast<std::uint64_t>(status.st_size) : at + (bytes.size() - missing->size());
+  return Error{ErrorCode::kFailed, path_,
+               "the file ends at byte " + std::to_string(end) + ", but had " + std::to_string(size_) +
+                   " bytes when it was opened: it was cut while it was read"};
 }
 
 }  // namespace chronormal::inline internal

@@ -34,6 +34,12 @@ std::string random_digits() {
   return digits;
 }
 
+// A name in the folder of target. It is free of anything that the name of target has, so that it is never too long.
+std::string name_beside(const std::string& target) {
+  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+  return (folder / (".chronormal-" + random_digits() + ".tmp")).string();
+}
+
 // The first free place, or kMostFiles where there is none: then the file is written all the same.
 std::size_t enter(char* name) noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
@@ -56,23 +62,28 @@ bool rename_to_new(const char* from, const char* to) noexcept {
 
 inline namespace internal {
 
-// The name is free of anything that target has, so that it is never too long.
 TemporaryFile::TemporaryFile(const std::string& target, mode_t mode) {
-  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-  open((folder / (".chronormal-" + random_digits() + ".tmp")).string(), O_CREAT | O_EXCL, mode);
+  open(name_beside(target), O_WRONLY | O_CREAT | O_EXCL, mode);
 }
 
 std::unique_ptr<TemporaryFile> TemporaryFile::of_peer(const std::string& name) {
   std::unique_ptr<TemporaryFile> file(new TemporaryFile());
-  file->open(name, 0, 0);
+  file->open(name, O_WRONLY, 0);
   return file;
+}
+
+// The object, which removes the name, ends here, and the descriptor does not.
+Descriptor TemporaryFile::nameless(const std::string& target) {
+  TemporaryFile file;
+  file.open(name_beside(target), O_RDWR | O_CREAT | O_EXCL, 0600);
+  return std::move(file.file_);
 }
 
 void TemporaryFile::open(const std::string& name, int flags, mode_t mode) {
   name_ = ::strdup(name.c_str());
   if (name_ == nullptr) return;  // errno says so
   place_ = enter(name_);
-  file_ = Descriptor(open_descriptor(name, O_WRONLY | O_NOFOLLOW | flags, mode));
+  file_ = Descriptor(open_descriptor(name, O_NOFOLLOW | flags, mode));
   if (!file_.is_open()) forget();
 }
 

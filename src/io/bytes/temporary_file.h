@@ -31,6 +31,9 @@ class TemporaryFile {
   /// Opens the temporary file that another process has opened, by the name that it has there. Each of the two removes
   /// it.
   [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
+  /// Opens a file in the folder of target, to be read and written, whose name is gone when this returns: the file is
+  /// there as long as its descriptor, however the process ends. Closed, with errno, on failure.
+  [[nodiscard]] static Descriptor nameless(const std::string& target);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   /// Removes the file, unless it was renamed or is one that stays.

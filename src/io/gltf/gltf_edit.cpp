@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
 #include "io/gltf/edit/gltf_edit_arrays.h"
@@ -158,7 +159,7 @@ std::vector<std::string> GltfEdit::warnings(const std::string& path) const {
   return layout ? layout.value().warnings() : std::vector<std::string>();
 }
 
-std::size_t GltfEdit::added_bytes() const noexcept { return state_->arrays.byte_count(); }
+std::size_t GltfEdit::added_bytes() const noexcept { return addressable(state_->arrays.byte_count()); }
 
 Result<std::size_t> GltfEdit::unused_bytes(const std::string& path) const {
   Result<gltf::LayoutTarget> target = state_->target_of(path);

@@ -109,8 +109,8 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
   // The normals of all keyframes count as far as every one so far had some.
-  const bool wanted =
-      k == 0 ? options.shading != KeepShading::kNone : options.shading == KeepShading::kAll && normals.size() == k;
+  const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
+  const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
   Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, {wanted, options.velocities});
   if (!mesh || !wanted) return mesh;
   if (k == 0) {

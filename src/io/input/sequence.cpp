@@ -159,7 +159,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   // Reads the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
   // may not be safe to call from several threads, and where the normals of a frame depend on whether the one before had
   // some.
-  const bool keeps_normals = options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty();
+  const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
+  const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
   if (!keeps_normals) faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
@@ -206,6 +207,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   if (!first) return first.error();
   if (options.shading == KeepShading::kAll && !read.normals.of_keyframes.empty()) return read_sequence(files, options);
   if (!first.value().velocities.empty()) return read_sequence(files, options);
+  read.normals.has_more = options.shading == KeepShading::kRead && !read.normals.of_keyframes.empty();
   read.bytes_read = *bytes;
   outline.topology = std::move(first.value().topology);
   std::vector<float>& positions = outline.keyframes[0].positions;

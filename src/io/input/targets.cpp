@@ -118,7 +118,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
 
   // Normals are those of the base: hosts that show targets have none of theirs.
   InputOptions of_base = options;
-  if (of_base.shading == KeepShading::kAll) of_base.shading = KeepShading::kFirst;
+  if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();
   ReadMotion read;
   Motion& motion = read.motion;

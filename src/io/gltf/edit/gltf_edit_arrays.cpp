@@ -42,15 +42,17 @@ std::string bound_of(std::span<const float> values, std::size_t components, cons
 }
 
 // "bufferView":3,"byteOffset":16
-void add_place(std::size_t view, std::size_t offset, JsonObject& object) {
+void add_place(std::size_t view, std::uint64_t offset, JsonObject& object) {
   object.add("bufferView", view);
-  if (offset > 0) object.add("byteOffset", offset);
+  if (offset > 0) object.add("byteOffset", std::to_string(offset));
 }
 
 }  // namespace
 
-NewArrays::Array NewArrays::encode(std::span<const float> values, std::size_t components, const GltfVectors& options) {
-  Array array;
+NewArrays::Encoded NewArrays::encode(std::span<const float> values, std::size_t components,
+                                     const GltfVectors& options) {
+  Encoded result;
+  Array& array = result.array;
   array.components = components;
   array.count = values.size() / components;
   if (options.bounds) {
@@ -71,54 +73,86 @@ NewArrays::Array NewArrays::encode(std::span<const float> values, std::size_t co
   const std::size_t index_size = last_used < 256 ? 1 : last_used < 65536 ? 2 : 4;
   const std::size_t sparse_bytes = used * (index_size + components * sizeof(float)) + kSparseJson;
   if (options.dense || (used > 0 && sparse_bytes >= values.size_bytes())) {
-    array.dense = bytes_of(values);
-    return array;
+    result.dense = bytes_of(values);
+    return result;
   }
-  if (used == 0) return array;
+  if (used == 0) return result;
   array.sparse_count = used;
   array.index_type = index_size == 1 ? 5121 : index_size == 2 ? 5123 : 5125;
-  array.indices.reserve(used * index_size + 3);
-  array.values.reserve(used * components * sizeof(float));
+  result.indices.reserve(used * index_size + 3);
+  result.values.reserve(used * components * sizeof(float));
   for (std::size_t i = 0; i < array.count; ++i) {
     if (is_zero(i)) continue;
     if (index_size == 1)
-      binary::append(array.indices, static_cast<std::uint8_t>(i), std::endian::little);
+      binary::append(result.indices, static_cast<std::uint8_t>(i), std::endian::little);
     else if (index_size == 2)
-      binary::append(array.indices, static_cast<std::uint16_t>(i), std::endian::little);
+      binary::append(result.indices, static_cast<std::uint16_t>(i), std::endian::little);
     else
-      binary::append(array.indices, static_cast<std::uint32_t>(i), std::endian::little);
-    for (const float value : element(i)) binary::append(array.values, value, std::endian::little);
+      binary::append(result.indices, static_cast<std::uint32_t>(i), std::endian::little);
+    for (const float value : element(i)) binary::append(result.values, value, std::endian::little);
   }
-  pad(array.indices);
-  return array;
+  pad(result.indices);
+  return result;
+}
+
+bool NewArrays::is_same(const Stored& stored, const Encoded& encoded) {
+  const bool are_as_long = stored.dense == encoded.dense.size() && stored.indices == encoded.indices.size() &&
+                           stored.values == encoded.values.size();
+  return are_as_long && stored.array == encoded.array && spool_.has(stored.at, encoded.dense) &&
+         spool_.has(stored.at + stored.dense, encoded.indices) &&
+         spool_.has(stored.at + stored.dense + stored.indices, encoded.values);
 }
 
 std::size_t NewArrays::add(std::span<const float> values, std::size_t components, const GltfVectors& options) {
   assert(!values.empty() && values.size() % components == 0);
   assert(std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }));
-  Array array = encode(values, components, options);
+  Encoded encoded = encode(values, components, options);
   const std::hash<std::string_view> hash_of;
-  std::size_t hash = array.count;
-  for (const std::string* const part : {&array.dense, &array.indices, &array.values, &array.least, &array.most})
+  std::size_t hash = encoded.array.count;
+  for (const std::string* const part :
+       {&encoded.dense, &encoded.indices, &encoded.values, &encoded.array.least, &encoded.array.most})
     hash = hash * 1000003 ^ hash_of(*part);
   const auto [first, end] = by_hash_.equal_range(hash);
-  const auto found = std::find_if(first, end, [&](const auto& entry) { return arrays_[entry.second] == array; });
+  const auto found =
+      std::find_if(first, end, [&](const auto& entry) { return is_same(arrays_[entry.second], encoded); });
   if (found != end) return found->second;
   by_hash_.emplace(hash, arrays_.size());
-  arrays_.push_back(std::move(array));
+  arrays_.push_back(
+      {std::move(encoded.array), spool_.size(), encoded.dense.size(), encoded.indices.size(), encoded.values.size()});
+  for (std::string* const part : {&encoded.dense, &encoded.indices, &encoded.values}) spool_.add(std::move(*part));
+  return arrays_.size() - 1;
+}
+
+std::size_t NewArrays::add_table(std::size_t rows, std::size_t width,
+                                 const std::function<void(std::size_t row, std::span<float> values)>& fill) {
+  constexpr std::size_t kPart = std::size_t{1} << 20;  // bytes
+  Stored stored;
+  stored.array.count = rows * width;
+  stored.at = spool_.size();
+  std::vector<float> row(width);
+  std::string part;
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::fill(row.begin(), row.end(), 0.0F);
+    fill(i, row);
+    assert(std::all_of(row.begin(), row.end(), [](float value) { return std::isfinite(value); }));
+    part += bytes_of(row);
+    if (part.size() >= kPart || i + 1 == rows) spool_.add(std::exchange(part, {}));
+  }
+  stored.dense = spool_.size() - stored.at;
+  arrays_.push_back(std::move(stored));
   return arrays_.size() - 1;
 }
 
 NewArrays::Sizes NewArrays::sizes() const noexcept {
   Sizes result;
-  for (const Array& array : arrays_) {
-    (array.components == 1 ? result.scalars : result.vectors) += array.dense.size();
-    result.sparse += array.indices.size() + array.values.size();
+  for (const Stored& stored : arrays_) {
+    (stored.array.components == 1 ? result.scalars : result.vectors) += stored.dense;
+    result.sparse += stored.indices + stored.values;
   }
   return result;
 }
 
-std::size_t NewArrays::byte_count() const noexcept {
+std::uint64_t NewArrays::byte_count() const noexcept {
   const Sizes all = sizes();
   return all.vectors + all.scalars + all.sparse;
 }
@@ -128,27 +162,39 @@ std::size_t NewArrays::view_count() const noexcept {
   return (all.vectors > 0 ? 1U : 0U) + (all.scalars > 0 ? 1U : 0U) + (all.sparse > 0 ? 1U : 0U);
 }
 
-std::vector<std::string_view> NewArrays::pieces() const {
-  std::vector<std::string_view> result;
+Status NewArrays::hand_over(const Spool::Take& take) const {
   for (const std::size_t components : {std::size_t{3}, std::size_t{1}}) {
-    for (const Array& array : arrays_) {
-      if (array.components == components) result.push_back(array.dense);
+    for (const Stored& stored : arrays_) {
+      if (stored.array.components != components) continue;
+      if (Status status = spool_.hand_over(stored.at, stored.dense, take); !status) return status;
     }
   }
-  for (const Array& array : arrays_) result.insert(result.end(), {array.indices, array.values});
+  for (const Stored& stored : arrays_) {
+    const Status status = spool_.hand_over(stored.at + stored.dense, stored.indices + stored.values, take);
+    if (!status) return status;
+  }
+  return status();
+}
+
+std::vector<std::string_view> NewArrays::pieces() const {
+  std::vector<std::string_view> result;
+  (void)hand_over([&](std::string_view bytes) -> Status {
+    result.push_back(bytes);
+    return Success{};
+  });
   return result;
 }
 
-NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::size_t first_view) const {
+NewArrays::Json NewArrays::json(std::size_t buffer, std::uint64_t offset, std::size_t first_view) const {
   Json result;
   const Sizes all = sizes();
-  const auto add_view = [&](std::size_t size, bool of_vertices) {
+  const auto add_view = [&](std::uint64_t size, bool of_vertices) {
     const std::size_t index = first_view + result.views.size();
     if (size == 0) return index;
     JsonObject view;
     view.add("buffer", buffer);
-    if (offset > 0) view.add("byteOffset", offset);
-    view.add("byteLength", size);
+    if (offset > 0) view.add("byteOffset", std::to_string(offset));
+    view.add("byteLength", std::to_string(size));
     // Vertex attributes that share a view need a stride, and other arrays must have none.
     if (of_vertices) view.add("byteStride", 3 * sizeof(float)).add("target", kArrayBuffer);
     result.views.push_back(view.text());
@@ -159,12 +205,13 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
                     sparse_view = add_view(all.sparse, false);
 
   Sizes at;
-  for (const Array& array : arrays_) {
+  for (const Stored& stored : arrays_) {
+    const Array& array = stored.array;
     JsonObject accessor;
-    if (!array.dense.empty()) {
-      std::size_t& place = array.components == 1 ? at.scalars : at.vectors;
+    if (stored.dense > 0) {
+      std::uint64_t& place = array.components == 1 ? at.scalars : at.vectors;
       add_place(array.components == 1 ? scalars_view : vectors_view, place, accessor);
-      place += array.dense.size();
+      place += stored.dense;
     }
     accessor.add("componentType", kFloat).add("count", array.count);
     accessor.add("type", quote_json(array.components == 1 ? "SCALAR" : "VEC3"));
@@ -173,9 +220,9 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::size_t offset, std::siz
       JsonObject sparse, indices, values;
       add_place(sparse_view, at.sparse, indices);
       indices.add("componentType", array.index_type);
-      at.sparse += array.indices.size();
+      at.sparse += stored.indices;
       add_place(sparse_view, at.sparse, values);
-      at.sparse += array.values.size();
+      at.sparse += stored.values;
       sparse.add("count", array.sparse_count).add("indices", indices.text()).add("values", values.text());
       accessor.add("sparse", sparse.text());
     }

@@ -3,13 +3,17 @@
 #define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "chronormal/io/gltf_edit.h"
+#include "io/bytes/spool.h"
 
 namespace chronormal::inline internal::gltf {
 
@@ -17,14 +21,27 @@ namespace chronormal::inline internal::gltf {
 /// specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
 class NewArrays {
  public:
+  /// Puts the bytes of the arrays into the spool.
+  explicit NewArrays(Spool spool = {}) : spool_(std::move(spool)) {}
+
   /// Stores an array of `components` numbers per element, 1 or 3, unless there is the same already. Returns its index.
   std::size_t add(std::span<const float> values, std::size_t components, const GltfVectors& options);
 
+  /// Stores a table of scalars, of which never more than a few rows are in memory beside the spool: fill(row, values)
+  /// writes one row over zeros. It has bytes for zeros and no bounds, and is not looked for among the others.
+  std::size_t add_table(std::size_t rows, std::size_t width,
+                        const std::function<void(std::size_t row, std::span<float> values)>& fill);
+
+  /// Whether all bytes could be put aside. Errors: those of Spool.
+  [[nodiscard]] const Status& status() const noexcept { return spool_.status(); }
+
   [[nodiscard]] std::size_t count() const noexcept { return arrays_.size(); }
   /// Of all bytes, a multiple of 4.
-  [[nodiscard]] std::size_t byte_count() const noexcept;
+  [[nodiscard]] std::uint64_t byte_count() const noexcept;
   [[nodiscard]] std::size_t view_count() const noexcept;
-  /// The bytes, which live as long as this.
+  /// Gives all bytes to take, in the order of the buffer. Errors: those of Spool::hand_over().
+  [[nodiscard]] Status hand_over(const Spool::Take& take) const;
+  /// The same as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
   /// The JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset` of a
@@ -32,27 +49,39 @@ class NewArrays {
   struct Json {
     std::vector<std::string> views, accessors;
   };
-  [[nodiscard]] Json json(std::size_t buffer, std::size_t offset, std::size_t first_view) const;
+  [[nodiscard]] Json json(std::size_t buffer, std::uint64_t offset, std::size_t first_view) const;
 
  private:
   struct Array {
     std::size_t components = 1, count = 0;
-    std::string dense;  // padded to a multiple of 4, as all bytes are
     std::size_t sparse_count = 0;
     std::size_t index_type = 0;
-    std::string indices, values;  // of the sparse_count elements that are not zero
-    std::string least, most;      // bounds as JSON, or empty
+    std::string least, most;  // bounds as JSON, or empty
 
     bool operator==(const Array&) const = default;
   };
+  // The bytes of an array, each padded to a multiple of 4.
+  struct Encoded {
+    Array array;
+    std::string dense;
+    std::string indices, values;  // of the sparse_count elements that are not zero
+  };
+  // The same bytes in the spool, one after the other from `at` on.
+  struct Stored {
+    Array array;
+    std::uint64_t at = 0, dense = 0, indices = 0, values = 0;
+  };
   struct Sizes {
-    std::size_t vectors = 0, scalars = 0, sparse = 0;
+    std::uint64_t vectors = 0, scalars = 0, sparse = 0;
   };
 
-  [[nodiscard]] static Array encode(std::span<const float> values, std::size_t components, const GltfVectors& options);
+  [[nodiscard]] static Encoded encode(std::span<const float> values, std::size_t components,
+                                      const GltfVectors& options);
+  [[nodiscard]] bool is_same(const Stored& stored, const Encoded& encoded);
   [[nodiscard]] Sizes sizes() const noexcept;
 
-  std::vector<Array> arrays_;
+  Spool spool_;
+  std::vector<Stored> arrays_;
   std::unordered_multimap<std::size_t, std::size_t> by_hash_;
 };
 

@@ -191,7 +191,7 @@ Status EditLayout::lay_out_glb() {
   if (target_.stands_alone) {
     if (Status status = find_images(); !status) return status;
   }
-  const std::size_t array_bytes = document_.arrays.byte_count();
+  const std::uint64_t array_bytes = document_.arrays.byte_count();
   const bool grows = array_bytes > 0 || !images_.empty();
   // A .gltf file becomes one with a BIN chunk; a GLB stays as it is where it can. Its buffer 0 has to be the BIN chunk
   // where that gets more bytes.
@@ -301,10 +301,10 @@ Status EditLayout::lay_out_gltf() {
       return status;
   }
   if (Status status = add_arrays(buffers.size(), 0); !status) return status;
-  const std::size_t size = document_.arrays.byte_count();
+  const std::uint64_t size = document_.arrays.byte_count();
   if (size == 0) return Success{};
   JsonObject buffer;
-  buffer.add("byteLength", size).add("uri", data_uri(kBytes, document_.arrays.pieces()));
+  buffer.add("byteLength", std::to_string(size)).add("uri", data_uri(kBytes, document_.arrays.pieces()));
   return append("/buffers", buffer.text());
 }
 

@@ -52,6 +52,33 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
   return chunks;
 }
 
+Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size, std::uint64_t rest_size,
+                           const std::string& name) {
+  const auto padding_of = [](std::uint64_t size) { return static_cast<std::size_t>((4 - size % 4) % 4); };
+  const std::size_t json_padding = padding_of(json_size), bin_padding = padding_of(bin_size.value_or(0));
+  GlbFrame frame;
+  frame.size = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
+               (bin_size ? kChunkHeaderSize + *bin_size + bin_padding : 0) + rest_size;
+  if (frame.size > ~std::uint32_t{0})
+    return invalid_input(name, "the GLB file would have " + std::to_string(frame.size) +
+                                   " bytes, but its header can not say more than 4294967295; a .gltf file can");
+  const auto add_word = [](std::string& bytes, std::uint64_t word) {
+    binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
+  };
+  frame.before_json = "glTF";
+  add_word(frame.before_json, 2);
+  add_word(frame.before_json, frame.size);
+  add_word(frame.before_json, json_size + json_padding);
+  add_word(frame.before_json, kJson);
+  frame.behind_json.assign(json_padding, ' ');
+  if (bin_size) {
+    add_word(frame.behind_json, *bin_size + bin_padding);
+    add_word(frame.behind_json, kBin);
+  }
+  frame.behind_bin.assign(bin_padding, '\0');
+  return frame;
+}
+
 Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
                               const std::optional<std::vector<std::string_view>>& bin, std::string_view rest,
                               const std::string& name) {
@@ -60,38 +87,16 @@ Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
     for (const std::string_view piece : pieces) size += piece.size();
     return size;
   };
-  const auto padding_of = [](std::uint64_t size) { return (4 - size % 4) % 4; };
-  const std::uint64_t json_size = size_of(json), bin_size = bin ? size_of(*bin) : 0;
-  const std::uint64_t json_padding = padding_of(json_size), bin_padding = padding_of(bin_size);
-  const std::uint64_t total = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
-                              (bin ? kChunkHeaderSize + bin_size + bin_padding : 0) + rest.size();
-  if (total > ~std::uint32_t{0})
-    return invalid_input(name, "the GLB file would have " + std::to_string(total) +
-                                   " bytes, but its header can not say more than 4294967295; a .gltf file can");
-
+  Result<GlbFrame> frame =
+      frame_glb(size_of(json), bin ? std::optional(size_of(*bin)) : std::nullopt, rest.size(), name);
+  if (!frame) return frame.error();
   GlbPieces result;
-  const auto add_frame = [&](std::string bytes) {
-    result.pieces.push_back(result.frame.emplace_back(std::move(bytes)));
-  };
-  const auto add_word = [](std::string& bytes, std::uint64_t word) {
-    binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
-  };
-  std::string head = "glTF";
-  add_word(head, 2);
-  add_word(head, total);
-  add_word(head, json_size + json_padding);
-  add_word(head, kJson);
-  add_frame(std::move(head));
+  result.frame = std::make_unique<const GlbFrame>(std::move(frame).value());
+  result.pieces.push_back(result.frame->before_json);
   result.pieces.insert(result.pieces.end(), json.begin(), json.end());
-  add_frame(std::string(static_cast<std::size_t>(json_padding), ' '));
-  if (bin) {
-    std::string bin_head;
-    add_word(bin_head, bin_size + bin_padding);
-    add_word(bin_head, kBin);
-    add_frame(std::move(bin_head));
-    result.pieces.insert(result.pieces.end(), bin->begin(), bin->end());
-    add_frame(std::string(static_cast<std::size_t>(bin_padding), '\0'));
-  }
+  result.pieces.push_back(result.frame->behind_json);
+  if (bin) result.pieces.insert(result.pieces.end(), bin->begin(), bin->end());
+  result.pieces.push_back(result.frame->behind_bin);
   result.pieces.push_back(rest);
   return result;
 }

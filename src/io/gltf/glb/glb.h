@@ -10,7 +10,8 @@
 #define CHRONORMAL_IO_GLTF_GLB_GLB_H_
 
 #include <cstddef>
-#include <deque>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,14 +40,25 @@ struct GlbChunks {
 /// the file, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
-/// A file in pieces: what the headers and the padding need, and views of that and of the chunks.
+/// What stands around the chunks of a file of one JSON chunk and, where it has one, one BIN chunk.
+struct GlbFrame {
+  std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
+  std::uint64_t size = 0;                            ///< of the file
+};
+
+/// Frames chunks of so many bytes. bin_size: nothing for no BIN chunk. rest_size: of further chunks, with their
+/// headers. Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
+[[nodiscard]] Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size,
+                                         std::uint64_t rest_size, const std::string& name);
+
+/// A file in pieces: views of the chunks and of the frame around them, which stays where it is when this is moved.
 struct GlbPieces {
-  std::deque<std::string> frame;
+  std::unique_ptr<const GlbFrame> frame;
   std::vector<std::string_view> pieces;
 };
 
-/// Lays chunks out as a file. bin: nothing for no BIN chunk. rest: further chunks, with their headers.
-/// Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
+/// Lays chunks out as a file. bin: nothing for no BIN chunk. rest: further chunks, with their headers. Errors: those of
+/// frame_glb().
 [[nodiscard]] Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
                                             const std::optional<std::vector<std::string_view>>& bin,
                                             std::string_view rest, const std::string& name);

@@ -32,8 +32,18 @@ std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<con
   return triangles;
 }
 
-GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes)
-    : document_(Json::object()), most_bytes_(std::min(most_bytes.value_or(kMostBytes), kMostBytes)) {
+GlbBuilder::Take GlbBuilder::gather_in(std::string& file) {
+  return [&file](std::string_view bytes, std::size_t file_size) -> Status {
+    file.reserve(file_size);
+    file += bytes;
+    return Success{};
+  };
+}
+
+GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes, Spool spool)
+    : document_(Json::object()),
+      arrays_(std::move(spool)),
+      most_bytes_(std::min(most_bytes.value_or(kMostBytes), kMostBytes)) {
   document_["asset"] = {{"version", "2.0"}, {"generator", "chronormal " CHRONORMAL_VERSION}};
 }
 
@@ -64,11 +74,17 @@ std::size_t GlbBuilder::add_scalars(std::span<const float> scalars, const GltfVe
   return kFirstArray + arrays_.add(scalars, 1, options);
 }
 
-Result<std::string> GlbBuilder::finish() {
+std::size_t GlbBuilder::add_table(std::size_t rows, std::size_t width,
+                                  const std::function<void(std::size_t row, std::span<float> values)>& fill) {
+  return kFirstArray + arrays_.add_table(rows, width, fill);
+}
+
+Result<std::size_t> GlbBuilder::finish(const Take& take) {
   constexpr int kElementArrayBuffer = 34963;
+  if (!status()) return status().error();
   const std::size_t index_bytes = indices_.size();
   indices_.resize((index_bytes + 3) / 4 * 4, '\0');
-  document_["buffers"] = Json::array({{{"byteLength", indices_.size() + arrays_.byte_count()}}});
+  document_["buffers"] = Json::array({{{"byteLength", byte_count()}}});
   Json views = Json::array({{{"buffer", 0}, {"byteLength", index_bytes}, {"target", kElementArrayBuffer}}});
   Json accessors = Json::array({index_accessor_});
   const gltf::NewArrays::Json arrays = arrays_.json(0, indices_.size(), kFirstArray);
@@ -78,18 +94,27 @@ Result<std::string> GlbBuilder::finish() {
   document_["accessors"] = std::move(accessors);
 
   const std::string text = document_.dump();
-  std::vector<std::string_view> bin = arrays_.pieces();
-  bin.insert(bin.begin(), indices_);
-  const Result<GlbPieces> laid_out = lay_out_glb(std::vector<std::string_view>{text}, bin, {}, "");
-  if (!laid_out) return laid_out.error();
-  std::size_t size = 0;
-  for (const std::string_view piece : laid_out.value().pieces) size += piece.size();
-  if (size > most_bytes_)
-    return invalid_input(
-        "", "the file would have " + std::to_string(size) + " bytes, but may have " + std::to_string(most_bytes_));
+  const Result<GlbFrame> framed = frame_glb(text.size(), byte_count(), 0, "");
+  if (!framed) return framed.error();
+  const GlbFrame& frame = framed.value();
+  if (frame.size > most_bytes_)
+    return invalid_input("", "the file would have " + std::to_string(frame.size) + " bytes, but may have " +
+                                 std::to_string(most_bytes_));
+  const auto size = static_cast<std::size_t>(frame.size);
+  for (const std::string_view piece : {std::string_view(frame.before_json), std::string_view(text),
+                                       std::string_view(frame.behind_json), std::string_view(indices_)}) {
+    if (const Status status = take(piece, size); !status) return status.error();
+  }
+  Status status = arrays_.hand_over([&](std::string_view bytes) { return take(bytes, size); });
+  if (status) status = take(frame.behind_bin, size);
+  if (!status) return status.error();
+  return size;
+}
+
+Result<std::string> GlbBuilder::finish() {
   std::string file;
-  file.reserve(size);
-  for (const std::string_view piece : laid_out.value().pieces) file += piece;
+  const Result<std::size_t> size = finish(gather_in(file));
+  if (!size) return size.error();
   return file;
 }
 

@@ -6,22 +6,25 @@
 ///     builder.document()["meshes"] = ...;         // names accessors by index
 ///     Result<std::string> file = builder.finish();
 ///
-/// The builder writes the members asset, buffers, bufferViews and accessors; the rest is up to the caller. Memory: that
-/// of the file, and once more at the end. Private to io and workflow.
+/// The builder writes the members asset, buffers, bufferViews and accessors; the rest is up to the caller. Memory: the
+/// triangles, the document, and what the spool takes. Private to io and workflow.
 #ifndef CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
 #define CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_edit.h"
 #include "chronormal/motion/topology.h"
+#include "io/bytes/spool.h"
 #include "io/gltf/edit/gltf_edit_arrays.h"
 
 namespace chronormal::inline internal {
@@ -33,11 +36,17 @@ namespace chronormal::inline internal {
 
 class GlbBuilder {
  public:
+  /// Takes bytes that follow those that it took before, of a file that has file_size bytes in the end.
+  using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
+  /// Returns one that puts the bytes into `file`, which must outlive it.
+  [[nodiscard]] static Take gather_in(std::string& file);
+
   /// A GLB counts its bytes in 32 bits.
   static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
 
-  /// The file may have this many bytes, and not more than kMostBytes.
-  explicit GlbBuilder(std::optional<std::size_t> most_bytes = {});
+  /// The file may have this many bytes, and not more than kMostBytes. Its arrays are put aside in the spool until the
+  /// file is put together, since the JSON that says where they lie comes first.
+  explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
   /// Sets the corners of the triangles, in 16 bits where that is enough for the vertices. Returns their accessor.
   std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
@@ -45,13 +54,22 @@ class GlbBuilder {
   /// Preconditions: those of GltfEdit
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
+  /// Adds an accessor of SCALAR (rows x width), row by row: fill(row, values) writes one row over zeros. Returns its
+  /// index.
+  std::size_t add_table(std::size_t rows, std::size_t width,
+                        const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
+  /// Whether all arrays could be put aside. Errors: those of the spool.
+  [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
   /// Bytes of the arrays so far.
-  [[nodiscard]] std::size_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
+  [[nodiscard]] std::uint64_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
-  /// Puts the file together. Errors: kInvalidInput where it would be too large.
+  /// Puts the file together and gives its bytes to take. Returns how many there are. Errors: kInvalidInput where there
+  /// would be too many, before take gets any; those of the spool and of take.
+  [[nodiscard]] Result<std::size_t> finish(const Take& take);
+  /// The same in memory.
   [[nodiscard]] Result<std::string> finish();
 
  private:

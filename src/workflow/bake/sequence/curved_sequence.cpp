@@ -189,10 +189,10 @@ CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, P
 SequenceTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
                            std::span<const CurveBend> bends) {
   const std::size_t keys = times.size(), of_keys = keys - 1, n = of_keys + with_velocities.size() + bends.size();
-  SequenceTrack track{{times.begin(), times.end()}, std::vector<float>(keys * 3 * n, 0.0F)};
-  enum Row : std::size_t { kIn, kValue, kOut };
+  std::vector<float> values(keys * 3 * n, 0.0F);
+  enum Row : std::size_t { kIn, kValue, kOut, kRows };
   const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
-    return track.values[(key * 3 + row) * n + target];
+    return values[(key * kRows + row) * n + target];
   };
   const std::vector<double> seconds(times.begin(), times.end());
   for (std::size_t k = 1; k < keys; ++k) at(k, kValue, k - 1) = 1;
@@ -215,7 +215,12 @@ SequenceTrack curved_track(std::span<const float> times, std::span<const std::si
     at(s, kOut, target) = static_cast<float>(slope);
     at(s + 1, kIn, target) = static_cast<float>(bends[b].is_odd ? slope : -slope);
   }
-  return track;
+  return {{times.begin(), times.end()},
+          kRows * keys,
+          n,
+          [n, values = std::move(values)](std::size_t row, std::span<float> result) {
+            std::copy_n(values.data() + row * n, n, result.data());
+          }};
 }
 
 }  // namespace chronormal::inline internal

@@ -36,7 +36,8 @@ struct SequenceKeys {
                            ///< kKeySteps pieces are tried
 };
 
-/// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached.
+/// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached. All keyframes
+/// must be held, here and for key_pose().
 [[nodiscard]] SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                        const std::function<void(std::size_t segment)>& progress);
 

@@ -36,10 +36,10 @@ double worst_angle(const ControlNormals& n, const Vec3d& from, const Vec3d& to, 
 
 }  // namespace
 
-HarmlessElements harmless_elements(const SequenceNormals& normals) {
+Result<HarmlessElements> harmless_elements(const SequenceNormals& normals) {
   HarmlessElements result{std::vector<SequenceElement>(normals.elements()), 0};
   std::vector<char> has_room(normals.elements(), 1);
-  (void)each_segment(normals, [&](std::size_t, const SegmentForm& form) -> Status {
+  const Status status = each_segment(normals, [&](std::size_t, const SegmentForm& form) -> Status {
     parallel_each(has_room.size(), kHarmlessBlock, [&](std::size_t e) {
       SequenceElement& element = result.elements[e];
       const ControlNormals n = form.control_normals(e);
@@ -51,6 +51,7 @@ HarmlessElements harmless_elements(const SequenceNormals& normals) {
     });
     return Success{};
   });
+  if (!status) return status.error();
   for (SequenceElement& element : result.elements)
     if (element.has_none) element.normal = kAnyNormal;
   result.without_room = static_cast<std::size_t>(std::count(has_room.begin(), has_room.end(), 0));

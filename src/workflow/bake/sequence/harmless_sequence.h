@@ -25,7 +25,8 @@ struct HarmlessElements {
   std::vector<SequenceElement> elements;
   std::size_t without_room = 0;
 };
-[[nodiscard]] HarmlessElements harmless_elements(const SequenceNormals& normals);
+/// Looks at all segments. Errors: those of reading keyframes.
+[[nodiscard]] Result<HarmlessElements> harmless_elements(const SequenceNormals& normals);
 
 /// The directions of all elements at both keys of a segment; where an element has none at a key, that of the key
 /// before.

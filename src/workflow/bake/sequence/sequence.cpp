@@ -1,13 +1,16 @@
 // Bakes a sequence. A host shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
 // target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
 //
-//     SequenceNormals     normals at keys, and their bends between                            sequence_normals
+//     SequenceNormals     normals at keys, and their bends between, from a stream             sequence_normals
 //     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
 //     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
 //     curved_normals      the same of curved paths, whose weights are cubics                  curved_sequence
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
+//
+// These are passes over the keyframes, of which a pass holds two at a time, and the arrays that they make go to a spool.
+// So memory does not grow with the number of keyframes; it does with fits of a weighting, for keys, and on curved paths.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,8 +18,12 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
+#include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/spool.h"
+#include "io/gltf/glb/glb_builder.h"
 #include "workflow/bake/sequence/curved_sequence.h"
 #include "workflow/bake/sequence/fewest_keys.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
@@ -29,12 +36,11 @@ namespace {
 
 using Step = std::function<void(std::size_t done, std::size_t total)>;
 
-Result<NormalGroups> groups_of(const Motion& motion, const BakeOptions& options) {
-  const Points points = weld_coincident(motion);
-  if (options.normal_of_corner.count > 0)
-    return NormalGroups::by_split_normals(motion.topology, points, options.normal_of_corner);
-  if (options.crease_angle == 180) return NormalGroups::of_vertices(motion.topology, points);
-  return NormalGroups::by_crease_angle(motion, points, options.crease_angle);
+Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options) {
+  const bool are_vertices = options.normal_of_corner.count == 0 && options.crease_angle == 180;
+  return make_groups(stream, {.kind = are_vertices ? ElementKind::kVertices : ElementKind::kCorners,
+                              .crease_angle = options.crease_angle,
+                              .normal_of_corner = options.normal_of_corner});
 }
 
 // Times as the file has them: float32, and none before 0.
@@ -53,6 +59,12 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
     times.push_back(time);
   }
   return times;
+}
+
+Result<HarmlessElements> exact_elements(const SequenceNormals& normals) {
+  Result<std::vector<SequenceElement>> elements = sequence_elements(normals);
+  if (!elements) return elements.error();
+  return HarmlessElements{std::move(elements).value(), 0};
 }
 
 // How many polygons a fan does not fit: one of its triangles looks the other way.
@@ -102,9 +114,10 @@ Status write_exact(const SequenceNormals& normals, const std::vector<SequenceEle
                    SequenceTargets& targets, SequenceFile& file) {
   const std::size_t total = 2 * normals.keys() - 1;
   for (std::size_t k = targets.has_key_0 ? 0 : 1; k < normals.keys(); ++k) {
+    if (Status status = normals.hold(k, k); !status) return status;
     file.add_key(k, k == 0 ? std::vector<float>() : normals.deltas(k), key_deltas(elements, normals.at_key(k)));
     step(k + 1, total);
-    if (Status status = file.check_size(); !status) return status;
+    if (Status status = file.check(); !status) return status;
   }
   return each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
     if (const std::vector<Vec3d> deltas = bend_deltas(elements, form); !deltas.empty()) {
@@ -112,7 +125,7 @@ Status write_exact(const SequenceNormals& normals, const std::vector<SequenceEle
       file.add_bend(s, deltas);
     }
     step(normals.keys() + s + 1, total);
-    return file.check_size();
+    return file.check();
   });
 }
 
@@ -127,7 +140,7 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
     largest = std::max(largest, kDegreesPerRadian * std::min(end.error, std::numbers::pi));
     file.add_key(s + 1, normals.deltas(s + 1), end.deltas);
     step(s + 1, normals.keys() - 1);
-    return file.check_size();
+    return file.check();
   });
   if (!status) return status.error();
   return largest;
@@ -153,16 +166,17 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
 }
 
 // Of all segments those whose bends gain most, as many as there is room for.
-std::vector<bool> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
-                                   std::size_t room) {
+Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
+                                           std::size_t room) {
   const std::size_t segments = normals.keys() - 1;
   std::vector<bool> is_bent(segments, segments <= room);
   if (segments <= room) return is_bent;
   std::vector<std::pair<double, std::size_t>> gains;
-  (void)each_unit_segment(normals, elements, [&](std::size_t s, const SegmentForm& form, const SegmentEnds& ends) {
+  const auto weigh = [&](std::size_t s, const SegmentForm& form, const SegmentEnds& ends) -> Status {
     gains.emplace_back(-unit_bends(elements, form, ends).gain, s);
-    return Status(Success{});
-  });
+    return Success{};
+  };
+  if (const Status status = each_unit_segment(normals, elements, weigh); !status) return status.error();
   std::sort(gains.begin(), gains.end());
   for (std::size_t n = 0; n < room; ++n) is_bent[gains[n].second] = true;
   return is_bent;
@@ -174,12 +188,15 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
                               std::span<const Host> hosts, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
   const std::size_t room = room_for_targets(hosts), total = 2 * normals.keys() - 1;
-  const std::vector<bool> is_bent = segments_to_bend(normals, elements, room - std::min(room, targets.of_keys()));
+  const Result<std::vector<bool>> chosen =
+      segments_to_bend(normals, elements, room - std::min(room, targets.of_keys()));
+  if (!chosen) return chosen.error();
+  const std::vector<bool>& is_bent = chosen.value();
   Status status = each_unit_segment(normals, elements, [&](std::size_t s, const SegmentForm&, const SegmentEnds& ends) {
     if (s == 0 && targets.has_key_0) file.add_key(0, {}, unit_key_deltas(elements, ends.from));
     file.add_key(s + 1, normals.deltas(s + 1), unit_key_deltas(elements, ends.to));
     step(s + 1, total);
-    return file.check_size();
+    return file.check();
   });
   if (!status) return status.error();
   double largest = 0;
@@ -191,7 +208,7 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
     }
     largest = std::max(largest, is_bent[s] ? bends.error : bends.straight);
     step(normals.keys() + s, total);
-    return file.check_size();
+    return file.check();
   });
   if (!status) return status.error();
   return kDegreesPerRadian * largest;
@@ -219,7 +236,7 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
     const KeyPose pose = key_pose(normals, at);
     file.add_key(k, pose.deltas, unit_key_deltas(elements, pose.directions));
     step(segments + s, 2 * segments);
-    if (Status status = file.check_size(); !status) return status.error();
+    if (Status status = file.check(); !status) return status.error();
   }
   report.keys->left_out = segments + 1 + report.keys->in_between - report.keys->count;
   if (keys.beyond > 0)
@@ -229,35 +246,40 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   return times;
 }
 
-// Adds the targets of curved paths to the file, makes its bytes, and notes the results in the report.
-Result<std::string> write_curved(const Motion& motion, const SequenceNormals& normals, const CurvedNormals& curved,
-                                 PathKind path, const std::vector<float>& times, SequenceFile& file,
-                                 SequenceBake& report) {
+// Adds the targets of curved paths to the file, gives its bytes to take, and notes the results in the report.
+Status write_curved(const Motion& motion, const SequenceNormals& normals, const CurvedNormals& curved, PathKind path,
+                    const std::vector<float>& times, SequenceFile& file, const GlbBuilder::Take& take,
+                    SequenceBake& report) {
   GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
   for (std::size_t k = 1; k < normals.keys(); ++k) {
     file.add_key(k, normals.deltas(k), curved.keys[k]);
-    if (Status status = file.check_size(); !status) return status.error();
+    if (Status status = file.check(); !status) return status;
   }
   const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, path);
   for (const std::size_t k : with_velocities) {
     file.add_velocities(k, motion.keyframes[k].velocities);
-    if (Status status = file.check_size(); !status) return status.error();
+    if (Status status = file.check(); !status) return status;
   }
   for (const CurveBend& bend : curved.bends) {
     GltfExtraTarget& extra = mark.extras.emplace_back();
     extra.target = normals.keys() - 1 + with_velocities.size() + mark.extras.size() - 1;
     file.add_bend(bend.segment, bend.deltas);
-    if (Status status = file.check_size(); !status) return status.error();
+    if (Status status = file.check(); !status) return status;
   }
   const SequenceTrack track = curved_track(times, with_velocities, curved.bends);
-  if (Status status = file.check_size(sizeof(float) * (track.times.size() + track.values.size())); !status)
-    return status.error();
+  if (Status status = file.check(sizeof(float) * (track.times.size() + std::uint64_t{track.rows} * track.width));
+      !status)
+    return status;
   report.largest_error = kDegreesPerRadian * curved.largest_error;
   report.targets = normals.keys() - 1 + with_velocities.size();
   report.extra_targets = curved.bends.size();
   report.path = path;
   report.bend = bend_of(motion);
-  return file.finish(track, "CUBICSPLINE", mark, std::vector<int>(report.targets + report.extra_targets, 0));
+  const std::vector<int> rest(report.targets + report.extra_targets, 0);
+  const Result<std::size_t> bytes = file.finish(track, "CUBICSPLINE", mark, rest, take);
+  if (!bytes) return bytes.error();
+  report.bytes = bytes.value();
+  return Success{};
 }
 
 std::string titles_of_others(std::span<const Host> hosts) {
@@ -284,9 +306,10 @@ void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size
                          " takes: " + std::string(host.beyond));
 }
 
-}  // namespace
-
-Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
+// Puts the arrays of the file into the spool, and gives all of its bytes to take.
+Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& options, Spool spool,
+                                 const GlbBuilder::Take& take) {
+  const Motion& motion = stream.motion();
   const bool is_curved = options.path != PathKind::kLinear;
   const BakeEncoding encoding = options.encoding.value_or(is_curved ? BakeEncoding::kEndpoint : BakeEncoding::kExact);
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
@@ -303,10 +326,12 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (is_curved && options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
     return Error{ErrorCode::kUsage, "", "on curved paths normals are weighted by area, and by nothing else"};
   if (const Status status = check_path(motion, options.path); !status) return status.error();
-  const Result<NormalGroups> groups = groups_of(motion, options);
+  const bool needs_all = is_curved || encoding == BakeEncoding::kKeys;
+  if (const Status status = needs_all ? stream.hold_all() : Success{}; !status) return status.error();
+  const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
   const Result<SequenceNormals> made =
-      SequenceNormals::make(motion, groups.value(), options.weighting.value_or(Weighting::kArea));
+      SequenceNormals::make(stream, groups.value(), options.weighting.value_or(Weighting::kArea));
   if (!made) return made.error();
   const SequenceNormals& normals = made.value();
   SequenceBake report;
@@ -317,15 +342,12 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
   if (is_curved)
     curved = curved_normals(motion, groups.value(), options.path, tolerance / kDegreesPerRadian,
                             [&](std::size_t done) { step(done, motion.segments.size()); });
-  HarmlessElements made_elements;
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
-  if (is_curved)
-    made_elements.elements = curved.elements;
-  else if (are_units)
-    made_elements = harmless_elements(normals);
-  else
-    made_elements.elements = sequence_elements(normals);
-  const std::vector<SequenceElement>& elements = made_elements.elements;
+  const Result<HarmlessElements> found = is_curved   ? HarmlessElements{curved.elements, 0}
+                                         : are_units ? harmless_elements(normals)
+                                                     : exact_elements(normals);
+  if (!found) return found.error();
+  const std::vector<SequenceElement>& elements = found.value().elements;
   report_elements(elements, encoding, report);
   report.largest_error = largest_bound(normals);
   const bool any_freed =
@@ -334,18 +356,16 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
                           encoding == BakeEncoding::kExact && any_freed,
                           normals.keys(),
                           {}};
-  if (const std::size_t bent = count_not_convex(motion.topology, motion.keyframes[0].positions); bent > 0)
+  if (const std::size_t bent = count_not_convex(motion.topology, normals.base()); bent > 0)
     report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
 
-  SequenceFile file(motion, groups.value(), elements, options);
+  SequenceFile file(motion.topology, groups.value(), normals.base(), elements, options, std::move(spool));
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (is_curved) {
-    Result<std::string> bytes = write_curved(motion, normals, curved, options.path, times.value(), file, report);
-    if (!bytes) return bytes.error();
+    const Status written = write_curved(motion, normals, curved, options.path, times.value(), file, take, report);
+    if (!written) return written.error();
     warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, options.path, report.warnings);
-    glb = std::move(bytes).value();
-    report.bytes = glb.size();
     return report;
   }
   if (encoding == BakeEncoding::kExact) {
@@ -361,15 +381,38 @@ Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& opti
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(targets.encoding, options.hosts, targets.count(), made_elements.without_room, options.path,
+  warn_of_hosts(targets.encoding, options.hosts, targets.count(), found.value().without_room, options.path,
                 report.warnings);
-  Result<std::string> bytes = file.finish(targets, times.value());
+  const Result<std::size_t> bytes = file.finish(targets, times.value(), take);
   if (!bytes) return bytes.error();
-  glb = std::move(bytes).value();
   report.targets = targets.of_keys();
   report.extra_targets = targets.bent_segments.size();
-  report.bytes = glb.size();
+  report.bytes = bytes.value();
   return report;
+}
+
+}  // namespace
+
+Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb) {
+  MotionStream stream(motion);
+  std::string bytes;
+  Result<SequenceBake> baked = bake_stream(stream, options, Spool(), GlbBuilder::gather_in(bytes));
+  if (baked) glb = std::move(bytes);
+  return baked;
+}
+
+Result<SequenceBake> bake_sequence(MotionStream& stream, const BakeOptions& options, const std::string& path,
+                                   bool force) {
+  Result<OutputFile> file = OutputFile::create(path, force);
+  if (!file) return file.error();
+  Result<Spool> spool = file.value().spool();
+  if (!spool) return spool.error();
+  Result<SequenceBake> baked =
+      bake_stream(stream, options, std::move(spool).value(),
+                  [&](std::string_view bytes, std::size_t) { return file.value().append(bytes); });
+  if (!baked) return baked.error();
+  if (const Status status = file.value().finish(); !status) return status.error();
+  return baked;
 }
 
 }  // namespace chronormal

@@ -18,14 +18,14 @@ constexpr std::size_t kBlock = 256;
 
 // With N = n_0 / |n_0|, float32 keeps the directions at other keys only where the normals there are not much smaller;
 // and where n_0 = 0 there is no such N.
-std::vector<SequenceElement> sequence_elements(const SequenceNormals& normals) {
+Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals) {
   constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40, kWidest = 0x1p-60;
   struct Sizes {
     double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;  // over the segments
   };
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());
-  (void)each_segment(normals, [&](std::size_t s, const SegmentForm& form) -> Status {
+  const Status status = each_segment(normals, [&](std::size_t s, const SegmentForm& form) -> Status {
     parallel_each(elements.size(), kBlock, [&](std::size_t e) {
       const ControlNormals n = form.control_normals(e);
       if (elements[e].has_none) {
@@ -39,6 +39,7 @@ std::vector<SequenceElement> sequence_elements(const SequenceNormals& normals) {
     });
     return Success{};
   });
+  if (!status) return status.error();
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto& [at_key_0, smallest, largest] = sizes[e];
     if (elements[e].has_none) {

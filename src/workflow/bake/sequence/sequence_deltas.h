@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "chronormal/core/result.h"
 #include "workflow/bake/sequence/sequence_normals.h"
 
 namespace chronormal::inline internal {
@@ -22,8 +23,8 @@ struct SequenceElement {
   bool has_none = true;     ///< it has no area in the whole sequence
 };
 
-/// Looks at all segments.
-[[nodiscard]] std::vector<SequenceElement> sequence_elements(const SequenceNormals& normals);
+/// Looks at all segments. Errors: those of reading keyframes.
+[[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
 
 /// Of exact: what a key adds to N, from the normals there.
 [[nodiscard]] std::vector<Vec3d> key_deltas(std::span<const SequenceElement> elements, std::span<const Vec3d> at_key);

@@ -2,6 +2,7 @@
 #include "workflow/bake/sequence/sequence_file.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "chronormal/core/views.h"
@@ -50,61 +51,68 @@ std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
   return normals;
 }
 
+// The bend of a segment, as an index into bent_segments; nothing where it has none.
+std::optional<std::size_t> bend_of_segment(const SequenceTargets& targets, std::size_t s) {
+  const auto found = std::lower_bound(targets.bent_segments.begin(), targets.bent_segments.end(), s);
+  if (found == targets.bent_segments.end() || *found != s) return std::nullopt;
+  return static_cast<std::size_t>(found - targets.bent_segments.begin());
+}
+
 // Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
 SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
-  const std::size_t keys = targets.keys, n = targets.count();
-  SequenceTrack track{times, std::vector<float>(keys * 3 * n, 0.0F)};
-  enum Row : std::size_t { kIn, kValue, kOut };
-  const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
-    return track.values[(key * 3 + row) * n + target];
+  enum Row : std::size_t { kIn, kValue, kOut, kRows };
+  const auto fill = [&targets, &times](std::size_t row, std::span<float> values) {
+    const std::size_t key = row / kRows;
+    const auto set_key = [&](std::size_t k, float value) {
+      if (k > 0 || targets.has_key_0) values[targets.of_key(k)] = value;
+    };
+    if (row % kRows == kValue) return set_key(key, 1);
+    const bool is_in = row % kRows == kIn;
+    if (key == (is_in ? 0 : targets.keys - 1)) return;
+    // Per second, with the length of the segment as a reader computes it from the times in the file.
+    const std::size_t s = is_in ? key - 1 : key;
+    const auto slope = static_cast<float>(1 / (double{times[s + 1]} - double{times[s]}));
+    set_key(s, -slope);
+    set_key(s + 1, slope);
+    if (const auto bend = bend_of_segment(targets, s)) values[targets.of_keys() + *bend] = is_in ? -slope : slope;
   };
-  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < keys; ++k) at(k, kValue, targets.of_key(k)) = 1;
-  // Per second, with the length of the segment as a reader computes it from the times in the file.
-  const auto slope = [&](std::size_t s) { return static_cast<float>(1 / (double{times[s + 1]} - double{times[s]})); };
-  for (std::size_t s = 0; s + 1 < keys; ++s) {
-    for (const auto& [key, sign] : {std::pair{s, -1.0F}, std::pair{s + 1, 1.0F}}) {
-      if (key == 0 && !targets.has_key_0) continue;
-      at(s, kOut, targets.of_key(key)) = sign * slope(s);
-      at(s + 1, kIn, targets.of_key(key)) = sign * slope(s);
-    }
-  }
-  for (std::size_t b = 0; b < targets.bent_segments.size(); ++b) {
-    const std::size_t s = targets.bent_segments[b], target = targets.of_keys() + b;
-    at(s, kOut, target) = slope(s);
-    at(s + 1, kIn, target) = -slope(s);
-  }
-  return track;
+  return {times, kRows * targets.keys, targets.count(), fill};
 }
 
 // Of the others: the hats, and in bent segments 4 t (1 - t) at keys between.
 SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
-  const std::size_t n = targets.count();
+  struct TrackKey {
+    std::size_t key;
+    double t;
+  };
   SequenceTrack track;
-  const auto add_key = [&](float time) {
+  std::vector<TrackKey> rows;
+  const auto add = [&](float time, const TrackKey& row) {
     track.times.push_back(time);
-    track.values.resize(track.values.size() + n);
-    return track.values.end() - static_cast<std::ptrdiff_t>(n);
+    rows.push_back(row);
   };
-  const auto set_hat = [&](auto row, std::size_t key, double weight) {
-    if (key > 0 || targets.has_key_0)
-      row[static_cast<std::ptrdiff_t>(targets.of_key(key))] = static_cast<float>(weight);
-  };
-  std::size_t bend = 0;
   for (std::size_t k = 0; k < targets.keys; ++k) {
-    set_hat(add_key(times[k]), k, 1);
-    if (bend == targets.bent_segments.size() || targets.bent_segments[bend] != k) continue;
+    add(times[k], {k, 0});
+    if (!bend_of_segment(targets, k)) continue;
     const double from = times[k], length = double{times[k + 1]} - from;
     for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
       const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
       if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between
-      const double t = (double{time} - from) / length;
-      const auto row = add_key(time);
-      set_hat(row, k, 1 - t);
-      set_hat(row, k + 1, t);
-      row[static_cast<std::ptrdiff_t>(targets.of_keys() + bend)] = static_cast<float>(4 * t * (1 - t));
+      add(time, {k, (double{time} - from) / length});
     }
-    ++bend;
   }
+  track.rows = rows.size();
+  track.width = targets.count();
+  track.fill = [&targets, rows = std::move(rows)](std::size_t row, std::span<float> values) {
+    const auto [key, t] = rows[row];
+    const auto set_key = [&](std::size_t k, double weight) {
+      if (k > 0 || targets.has_key_0) values[targets.of_key(k)] = static_cast<float>(weight);
+    };
+    set_key(key, 1 - t);
+    if (t == 0) return;
+    set_key(key + 1, t);
+    values[targets.of_keys() + *bend_of_segment(targets, key)] = static_cast<float>(4 * t * (1 - t));
+  };
   return track;
 }
 
@@ -143,15 +151,15 @@ std::vector<float> SequenceVertices::vectors(std::span<const Vec3d> of_elements,
   return result;
 }
 
-SequenceFile::SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
-                           const BakeOptions& options)
-    : vertices_(make_vertices(motion.topology, groups)),
+SequenceFile::SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
+                           std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool)
+    : vertices_(make_vertices(topology, groups)),
       dense_zeros_(options.dense_zeros),
       expansion_(options.expansion),
-      builder_(options.most_bytes) {
-  triangles_ = builder_.set_triangles(fan_triangles(motion.topology, vertices_.of_corner), vertices_.size());
+      builder_(options.most_bytes, std::move(spool)) {
+  triangles_ = builder_.set_triangles(fan_triangles(topology, vertices_.of_corner), vertices_.size());
   base_ = {
-      {"POSITION", builder_.add_vectors(vertices_.positions(motion.keyframes[0].positions), {true, true})},
+      {"POSITION", builder_.add_vectors(vertices_.positions(base), {true, true})},
       {"NORMAL", builder_.add_vectors(vertices_.vectors(normals_of(elements), kAnyNormal), {false, true})},
   };
 }
@@ -190,28 +198,31 @@ void SequenceFile::add_target(std::string name, std::size_t positions, std::span
                                   : builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
 }
 
-Status SequenceFile::check_size(std::uint64_t more) const {
+Status SequenceFile::check(std::uint64_t more) const {
+  if (!builder_.status()) return builder_.status();
   if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
   if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
   return invalid_input("", "the file would have more than " + std::to_string(builder_.most_bytes()) +
                                " bytes, which is all that it may have");
 }
 
-Result<std::string> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times) {
+Result<std::size_t> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times,
+                                         const GlbBuilder::Take& take) {
   const bool exact = targets.encoding == BakeEncoding::kExact;
   const std::uint64_t keys = targets.keys + std::uint64_t{targets.bent_segments.size()} * (exact ? 0 : kBendPieces - 1),
                       weights = keys * targets.count() * (exact ? 3 : 1);
-  if (Status status = check_size(sizeof(float) * (keys + weights)); !status) return status.error();
+  if (Status status = check(sizeof(float) * (keys + weights)); !status) return status.error();
   std::vector<int> rest(targets_.size(), 0);
   if (targets.has_key_0) rest[0] = 1;
-  return exact ? finish(spline_track(targets, times), "CUBICSPLINE", mark_of(targets), rest)
-               : finish(linear_track(targets, times), "LINEAR", mark_of(targets), rest);
+  return exact ? finish(spline_track(targets, times), "CUBICSPLINE", mark_of(targets), rest, take)
+               : finish(linear_track(targets, times), "LINEAR", mark_of(targets), rest, take);
 }
 
-Result<std::string> SequenceFile::finish(const SequenceTrack& track, std::string_view interpolation,
-                                         const GltfBakeMark& bake_mark, const std::vector<int>& rest) {
+Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string_view interpolation,
+                                         const GltfBakeMark& bake_mark, const std::vector<int>& rest,
+                                         const GlbBuilder::Take& take) {
   const std::size_t input = builder_.add_scalars(track.times, {true, true}),
-                    output = builder_.add_scalars(track.values, {false, true});
+                    output = builder_.add_table(track.rows, track.width, track.fill);
   Json& document = builder_.document();
   document["scene"] = 0;
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
@@ -219,16 +230,16 @@ Result<std::string> SequenceFile::finish(const SequenceTrack& track, std::string
   Json node = {{"mesh", 0}};
   if (!bake_mark.extras.empty()) node["extras"] = {{"chronormal", mark}};
   document["nodes"] = Json::array({std::move(node)});
-  const Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", targets_}};
-  const Json mesh = {{"primitives", Json::array({primitive})},
-                     {"weights", rest},
-                     {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
-  document["meshes"] = Json::array({mesh});
+  Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", std::move(targets_)}};
+  Json mesh = {{"primitives", Json::array({std::move(primitive)})},
+               {"weights", rest},
+               {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
+  document["meshes"] = Json::array({std::move(mesh)});
   const Json sampler = {{"input", input}, {"interpolation", interpolation}, {"output", output}};
   const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
   document["animations"] =
       Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});
-  return builder_.finish();
+  return builder_.finish(take);
 }
 
 }  // namespace chronormal::inline internal

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -12,9 +13,10 @@
 #include <vector>
 
 #include "chronormal/io/bake_mark.h"
-#include "chronormal/motion/motion.h"
+#include "chronormal/motion/topology.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "io/bytes/spool.h"
 #include "io/gltf/glb/glb_builder.h"
 #include "workflow/bake/sequence/sequence_deltas.h"
 
@@ -49,19 +51,22 @@ struct SequenceVertices {
   [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
 };
 
-/// The keys of an animation, and the values of its weights key by key; for a cubic spline these are in-tangents,
-/// weights and out-tangents.
+/// The keys of an animation, and the values of its weights in rows, with one value for each target. Each key has a row;
+/// of a cubic spline it has three: in-tangents, weights and out-tangents. Rows are computed one by one, since their
+/// number and their width both grow with the number of keys.
 struct SequenceTrack {
-  std::vector<float> times, values;
+  std::vector<float> times;
+  std::size_t rows = 0, width = 0;
+  std::function<void(std::size_t row, std::span<float> values)> fill;  ///< writes one row over zeros
 };
 
-/// The file while it grows, target by target.
+/// The file while it grows, target by target. Its arrays go to the spool as they come.
 class SequenceFile {
  public:
-  /// Writes key 0 with the normals of the elements, and polygons as fans of triangles. (Their normals are those of the
-  /// polygons all the same.)
-  SequenceFile(const Motion& motion, const NormalGroups& groups, std::span<const SequenceElement> elements,
-               const BakeOptions& options);
+  /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles.
+  /// (Their normals are those of the polygons all the same.)
+  SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
+               std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
@@ -73,14 +78,17 @@ class SequenceFile {
   /// Adds a target that moves vertices, (V, 3), and turns no normal.
   void add_velocities(std::size_t key, std::span<const float> velocities);
 
-  /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more.
-  [[nodiscard]] Status check_size(std::uint64_t more = 0) const;
-  /// Adds the animation and puts the file together. targets must say what was added. Errors: kInvalidInput where it
-  /// would be too large.
-  [[nodiscard]] Result<std::string> finish(const SequenceTargets& targets, const std::vector<float>& times);
+  /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more; those of the
+  /// spool.
+  [[nodiscard]] Status check(std::uint64_t more = 0) const;
+  /// Adds the animation, puts the file together and gives its bytes to take. Returns how many there are. targets must
+  /// say what was added. Errors: those of GlbBuilder::finish().
+  [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
+                                           const GlbBuilder::Take& take);
   /// The same with a track and a mark of the caller's; rest are the weights of the mesh that no animation plays.
-  [[nodiscard]] Result<std::string> finish(const SequenceTrack& track, std::string_view interpolation,
-                                           const GltfBakeMark& mark, const std::vector<int>& rest);
+  [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
+                                           const GltfBakeMark& mark, const std::vector<int>& rest,
+                                           const GlbBuilder::Take& take);
 
  private:
   void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);

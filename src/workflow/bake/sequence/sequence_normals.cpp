@@ -1,6 +1,7 @@
 #include "workflow/bake/sequence/sequence_normals.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -29,9 +30,12 @@ Vec3d polygon_normal(std::span<const std::uint32_t> face, const std::vector<Vec3
 
 }  // namespace
 
-Result<SequenceNormals> SequenceNormals::make(const Motion& motion, const NormalGroups& groups, Weighting weighting) {
-  SequenceNormals normals(motion, groups);
+Result<SequenceNormals> SequenceNormals::make(MotionStream& stream, const NormalGroups& groups, Weighting weighting) {
+  SequenceNormals normals(stream, groups);
+  if (const Status status = normals.hold(0, 0); !status) return status.error();
+  normals.base_ = normals.motion().keyframes[0].positions;
   for (std::size_t k = 1; k < normals.keys(); ++k) {
+    if (const Status status = normals.hold(k, k); !status) return status.error();
     const std::vector<float> deltas = normals.deltas(k);
     const auto far = std::find_if(deltas.begin(), deltas.end(), [](float delta) { return !std::isfinite(delta); });
     if (far != deltas.end())
@@ -48,7 +52,8 @@ Status SequenceNormals::fit(Weighting weighting) {
   // Fits have the length of the area at both ends, so that neighbours agree but for rounding.
   constexpr double kSame = 1e-6;
   for (std::size_t s = 0; s + 1 < keys(); ++s) {
-    WeightingFit fit = fit_weighting(motion_->segment(s), *groups_, weighting);
+    if (Status status = hold(s, s + 1); !status) return status;
+    WeightingFit fit = fit_weighting(motion().segment(s), *groups_, weighting);
     std::vector<Vec3d> from(elements()), to(elements()), bends(elements());
     for (std::size_t e = 0; e < elements(); ++e) {
       const ControlNormals& n = fit.normals[e];
@@ -69,10 +74,10 @@ Status SequenceNormals::fit(Weighting weighting) {
 }
 
 std::vector<float> SequenceNormals::deltas(std::size_t key) const {
-  const std::vector<float>& base = motion_->keyframes[0].positions;
-  const std::vector<float>& positions = motion_->keyframes[key].positions;
-  std::vector<float> result(base.size());
-  for (std::size_t i = 0; i < base.size(); ++i) result[i] = positions[i] - base[i];
+  const std::vector<float>& positions = motion().keyframes[key].positions;
+  assert(positions.size() == base_.size());
+  std::vector<float> result(base_.size());
+  for (std::size_t i = 0; i < base_.size(); ++i) result[i] = positions[i] - base_[i];
   return result;
 }
 
@@ -85,7 +90,7 @@ std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
 }
 
 std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
-  const Topology& topology = motion_->topology;
+  const Topology& topology = motion().topology;
   std::vector<Vec3d> faces(topology.face_count()), result(elements());
   parallel_each(faces.size(), kTaskBlock,
                 [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
@@ -100,9 +105,8 @@ std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& posit
 std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
   if (!fitted_keys_.empty()) return fitted_keys_[key];
   std::vector<Vec3d> positions = moved(key);
-  const std::vector<float>& base = motion_->keyframes[0].positions;
   for (std::size_t v = 0; v < positions.size(); ++v)
-    positions[v] = positions[v] + Vec3d{double{base[3 * v]}, double{base[3 * v + 1]}, double{base[3 * v + 2]}};
+    positions[v] = positions[v] + Vec3d{double{base_[3 * v]}, double{base_[3 * v + 1]}, double{base_[3 * v + 2]}};
   return vector_areas(positions);
 }
 

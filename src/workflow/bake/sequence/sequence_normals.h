@@ -11,7 +11,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/motion.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
@@ -20,12 +20,19 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Fits all segments where the weighting is not that of areas. Motion and groups must outlive this. Errors:
-  /// kInvalidInput where a delta is too large for float32; kUsage where the fits of two neighbouring segments do not
-  /// agree at their key, which a hat cannot show.
-  [[nodiscard]] static Result<SequenceNormals> make(const Motion& motion, const NormalGroups& groups,
+  /// Reads all keyframes once, and fits all segments where the weighting is not that of areas. Stream and groups must
+  /// outlive this. Errors: kInvalidInput where a delta is too large for float32; kUsage where the fits of two
+  /// neighbouring segments do not agree at their key, which a hat cannot show; those of the stream. Memory: that of key
+  /// 0, and of the fits.
+  [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting);
 
+  /// Holds the positions of keys first to last, until the next hold. The functions below are about keys and segments
+  /// that are held. Errors: those of the stream.
+  [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
+
+  /// The positions of key 0: (V, 3).
+  [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
   /// The float32 deltas of a key against key 0, as a file has them: (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
 
@@ -33,21 +40,23 @@ class SequenceNormals {
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
 
-  [[nodiscard]] std::size_t keys() const noexcept { return motion_->keyframes.size(); }
+  [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
   /// A bound of what the fits are off, radians: pi where nothing could be proven. One for each segment and element;
   /// empty for areas.
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  SequenceNormals(const Motion& motion, const NormalGroups& groups) : motion_(&motion), groups_(&groups) {}
+  SequenceNormals(MotionStream& stream, const NormalGroups& groups) : stream_(&stream), groups_(&groups) {}
 
+  [[nodiscard]] const Motion& motion() const noexcept { return stream_->motion(); }
   [[nodiscard]] Status fit(Weighting weighting);
   [[nodiscard]] std::vector<Vec3d> moved(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> vector_areas(const std::vector<Vec3d>& positions) const;
 
-  const Motion* motion_;
+  MotionStream* stream_;
   const NormalGroups* groups_;
+  std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
   std::vector<std::vector<double>> bounds_;
 };
@@ -62,11 +71,14 @@ struct SegmentForm {
   }
 };
 
-/// Calls body(segment, form) for every segment, one after the other, until it returns an error.
+/// Calls body(segment, form) for every segment, one after the other, until it returns an error. Holds the keys of one
+/// segment at a time. Errors: those of body, and of the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
-  SegmentForm form{{}, normals.at_key(0), {}};
+  SegmentForm form;
   for (std::size_t s = 0; s + 1 < normals.keys(); ++s) {
+    if (Status status = normals.hold(s, s + 1); !status) return status;
+    if (s == 0) form.to = normals.at_key(0);
     form.from.swap(form.to);
     form.to = normals.at_key(s + 1);
     form.bends = normals.bends(s);

@@ -1,0 +1,72 @@
+// Appends to a file, or to a list of blocks, and reads back from either.
+#include "io/bytes/spool.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <span>
+#include <utility>
+
+#include "io/bytes/temporary_file.h"
+
+namespace chronormal::inline internal {
+
+Result<Spool> Spool::beside(const std::string& target, const std::string& place) {
+  Spool spool;
+  spool.file_ = TemporaryFile::nameless(target);
+  spool.place_ = place;
+  if (spool.file_->is_open()) return spool;
+  Error error = failure(place, errno);
+  error.message = "can not write in its folder: " + error.message;
+  return error;
+}
+
+void Spool::add(std::string bytes) {
+  if (bytes.empty() || !status_) return;
+  const std::uint64_t at = size_;
+  size_ += bytes.size();
+  if (!file_)
+    blocks_.push_back({at, std::move(bytes)});
+  else if (!write_bytes(file_->number(), bytes))
+    status_ = failure(place_, errno);
+}
+
+Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const {
+  constexpr std::uint64_t kPart = std::uint64_t{1} << 20;
+  if (!status_) return status_;
+  assert(at <= size_ && size <= size_ - at);
+  std::string part;
+  if (file_) part.resize(static_cast<std::size_t>(std::min(size, kPart)));
+  auto block = std::upper_bound(blocks_.begin(), blocks_.end(), at,
+                                [](std::uint64_t place, const Block& later) { return place < later.at; });
+  for (const std::uint64_t end = at + size; at < end;) {
+    std::string_view bytes;
+    if (file_) {
+      const auto wanted = std::span(part).first(static_cast<std::size_t>(std::min(end - at, kPart)));
+      const std::optional<std::span<char>> missing = read_at(file_->number(), at, wanted);
+      if (!missing) return failure(place_, errno);
+      if (!missing->empty()) return failure(place_, EIO);  // nobody else has the file
+      bytes = {wanted.data(), wanted.size()};
+    } else {
+      const Block& here = *(block++ - 1);
+      bytes = std::string_view(here.bytes).substr(static_cast<std::size_t>(at - here.at));
+      bytes = bytes.substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), end - at)));
+    }
+    if (Status status = take(bytes); !status) return status;
+    at += bytes.size();
+  }
+  return Success{};
+}
+
+bool Spool::has(std::uint64_t at, std::string_view bytes) {
+  bool are_same = true;
+  Status status = hand_over(at, bytes.size(), [&](std::string_view part) -> Status {
+    are_same = are_same && bytes.starts_with(part);
+    bytes.remove_prefix(part.size());
+    return Success{};
+  });
+  if (!status) status_ = std::move(status);
+  return are_same && status_;
+}
+
+}  // namespace chronormal::inline internal

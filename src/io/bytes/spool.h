@@ -1,0 +1,67 @@
+/// Bytes that are put aside until it is known where they go: in memory, or in a file without a name.
+///
+///     Result<Spool> spool = Spool::beside(path, path);
+///     const std::uint64_t at = spool.value().size();
+///     spool.value().add(bytes);                                       // they lie at `at` now
+///     if (Status status = spool.value().status(); !status) ...        // once, after many of these
+///     spool.value().hand_over(at, size, take);                        // take(bytes) gets them, in parts
+///
+/// Memory     that of the bytes; of a file none, however many there are. The file is gone with the object, and with the
+///            process, however that ends.
+/// Threads    one spool belongs to one thread at a time.
+///
+/// Private to io and workflow.
+#ifndef CHRONORMAL_IO_BYTES_SPOOL_H_
+#define CHRONORMAL_IO_BYTES_SPOOL_H_
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "chronormal/core/result.h"
+#include "io/bytes/descriptor.h"
+
+namespace chronormal::inline internal {
+
+class Spool {
+ public:
+  /// Takes bytes that follow those that it took before.
+  using Take = std::function<Status(std::string_view bytes)>;
+
+  /// Puts bytes aside in memory.
+  Spool() = default;
+  /// Puts bytes aside in a file in the folder of target. Errors, here and later: kFailed with `place` as the place.
+  [[nodiscard]] static Result<Spool> beside(const std::string& target, const std::string& place);
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// Puts bytes behind all others. Where that fails, status() has the error from then on, and nothing more is added.
+  void add(std::string bytes);
+  [[nodiscard]] const Status& status() const noexcept { return status_; }
+
+  /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool. Errors:
+  /// that of status(), and those of take. at + size must not exceed size()
+  [[nodiscard]] Status hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const;
+
+  /// Whether these bytes lie at `at`. Where they cannot be read, status() has the error from then on.
+  [[nodiscard]] bool has(std::uint64_t at, std::string_view bytes);
+
+ private:
+  struct Block {
+    std::uint64_t at;
+    std::string bytes;
+  };
+
+  std::uint64_t size_ = 0;
+  Status status_ = Success{};
+  std::deque<Block> blocks_ = {};        // in memory, none of them empty
+  std::optional<Descriptor> file_ = {};  // in place of them
+  std::string place_ = {};
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_BYTES_SPOOL_H_

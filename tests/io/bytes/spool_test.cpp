@@ -1,0 +1,119 @@
+// Spool: what is put aside comes back, wherever it lies, and nothing of it is ever seen in a folder.
+#include "io/bytes/spool.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+
+namespace chronormal::spool_test {
+namespace {
+
+using test::TemporaryFolder;
+
+std::string all_of(const Spool& spool, std::uint64_t at, std::uint64_t size) {
+  std::string bytes;
+  const Status status = spool.hand_over(at, size, [&](std::string_view part) -> Status {
+    EXPECT_FALSE(part.empty());
+    bytes += part;
+    return Success{};
+  });
+  EXPECT_TRUE(status.ok());
+  return bytes;
+}
+
+// Parts of all lengths, of which one is longer than what a file is read by.
+std::vector<std::string> parts() {
+  std::vector<std::string> result = {"a", "", "bc", "def", std::string(1, '\0'), ""};
+  std::string large;
+  for (std::size_t i = 0; i < 2500000; ++i) large += static_cast<char>(i * 2654435761U >> 13U);
+  result.push_back(std::move(large));
+  result.emplace_back("the end");
+  return result;
+}
+
+class Spools : public testing::TestWithParam<bool> {
+ protected:
+  [[nodiscard]] Spool make() const {
+    return GetParam() ? Spool::beside(folder_ / "out.glb", "out.glb").value() : Spool();
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_P(Spools, give_back_any_part_of_what_they_got) {
+  Spool spool = make();
+  std::string whole;
+  for (const std::string& part : parts()) {
+    EXPECT_EQ(spool.size(), whole.size());
+    spool.add(part);
+    whole += part;
+  }
+  ASSERT_TRUE(spool.status().ok());
+  ASSERT_EQ(spool.size(), whole.size());
+  EXPECT_TRUE(all_of(spool, 0, whole.size()) == whole);
+  for (std::size_t at = 0; at < 9; ++at) {
+    for (std::size_t size = 0; size < 9; ++size) EXPECT_EQ(all_of(spool, at, size), whole.substr(at, size));
+    EXPECT_TRUE(all_of(spool, at, whole.size() - at) == whole.substr(at)) << at;
+    EXPECT_EQ(all_of(spool, whole.size() - at, at), whole.substr(whole.size() - at));
+  }
+  const Spool moved = std::move(spool);
+  EXPECT_TRUE(all_of(moved, 0, whole.size()) == whole);
+}
+
+TEST_P(Spools, know_what_lies_where) {
+  Spool spool = make();
+  std::string whole;
+  for (const std::string& part : parts()) {
+    spool.add(part);
+    whole += part;
+  }
+  EXPECT_TRUE(spool.has(0, whole));
+  EXPECT_TRUE(spool.has(3, "def"));
+  EXPECT_TRUE(spool.has(5, ""));
+  EXPECT_FALSE(spool.has(4, "def"));
+  for (const std::size_t at : {std::size_t{0}, std::size_t{7}, whole.size() / 2, whole.size() - 1}) {
+    std::string other = whole;
+    other[at] = static_cast<char>(other[at] + 1);
+    EXPECT_FALSE(spool.has(0, other)) << at;
+  }
+  EXPECT_TRUE(spool.status().ok());
+}
+
+TEST_P(Spools, end_where_the_taker_does_not_want_more) {
+  Spool spool = make();
+  for (const std::string& part : parts()) spool.add(part);
+  std::size_t calls = 0;
+  const Status status = spool.hand_over(0, spool.size(), [&](std::string_view) -> Status {
+    ++calls;
+    return Error{ErrorCode::kFailed, "taker", "enough"};
+  });
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().text(), "taker: enough");
+  EXPECT_EQ(calls, 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Spool, Spools, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "in_a_file" : "in_memory"; });
+
+TEST(Spool, in_a_file_has_no_name) {
+  const TemporaryFolder folder;
+  Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
+  EXPECT_EQ(folder.entry_count(), 0U);
+  spool.add("bytes");
+  EXPECT_EQ(folder.entry_count(), 0U);
+}
+
+TEST(Spool, in_a_folder_that_is_not_there_says_so) {
+  const TemporaryFolder folder;
+  const Result<Spool> spool = Spool::beside(folder / "none/out.glb", "none/out.glb");
+  ASSERT_FALSE(spool.ok());
+  EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
+}
+
+}  // namespace
+}  // namespace chronormal::spool_test
