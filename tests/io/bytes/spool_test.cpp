@@ -2,13 +2,16 @@
 #include "io/bytes/spool.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::spool_test {
@@ -113,6 +116,30 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   const Result<Spool> spool = Spool::beside(folder / "none/out.glb", "none/out.glb");
   ASSERT_FALSE(spool.ok());
   EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
+}
+
+TEST(Spool, what_could_not_be_written_once_is_an_error_from_then_on) {
+  const TemporaryFolder folder;
+  const test::ChildRun run = test::run_in_child(10, [&]() -> std::string {
+    Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
+    const auto limit_files = [](rlim_t bytes) {
+      rlimit limit{};
+      ::getrlimit(RLIMIT_FSIZE, &limit);
+      limit.rlim_cur = bytes;
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+    };
+    (void)std::signal(SIGXFSZ, SIG_IGN);
+    limit_files(1000);
+    spool.add(std::string(600, 'a'));
+    if (!spool.status()) return "too early";
+    spool.add(std::string(600, 'b'));
+    limit_files(RLIM_INFINITY);
+    spool.add(std::string(600, 'c'));
+    const Status found = spool.hand_over(0, 600, [](std::string_view) -> Status { return Success{}; });
+    return spool.status() || found ? "no error" : spool.status().error().text() + "; " + found.error().text();
+  });
+  ASSERT_TRUE(run.finished) << run.text;
+  EXPECT_EQ(run.text, "out.glb: File too large; out.glb: File too large");
 }
 
 }  // namespace

@@ -239,6 +239,27 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   }
 }
 
+TEST(BakeStream, what_a_motion_in_memory_is_refused_for_a_stream_is_too) {
+  const TemporaryFolder folder;
+  Motion far = waving(5, 6), twice = waving(5, 6);
+  far.keyframes[0].positions[7] = -3e38F;
+  far.keyframes[4].positions[7] = 3e38F;
+  twice.keyframes[3].time = twice.keyframes[2].time;
+  for (const Motion* const motion : {&far, &twice}) {
+    std::string glb = "old";
+    const Result<SequenceBake> expected = bake_sequence(*motion, {}, glb);
+    ASSERT_FALSE(expected.ok());
+    EXPECT_EQ(glb, "old");
+    std::size_t most_held = 0;
+    MotionStream stream = strict(*motion, most_held);
+    const Result<SequenceBake> found = bake_sequence(stream, {}, folder / "out.glb", false);
+    ASSERT_FALSE(found.ok());
+    EXPECT_EQ(found.error().text(), expected.error().text());
+    EXPECT_EQ(found.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(folder.entry_count(), 0U);
+  }
+}
+
 TEST(BakeStream, a_file_that_is_there_stays_unless_it_may_be_replaced) {
   const TemporaryFolder folder;
   folder.write("out.glb", "old");
