@@ -24,12 +24,13 @@ import matplotlib.pyplot as plt  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "build/release/chronormal"
 PAGE, PICTURE = ROOT / "docs/scale.md", ROOT / "docs/pictures/scale_memory.png"
-SMALL, WIDE = 320, 1136  # vertices along a side: 102,400 and 1,290,496 in all
+BAKED, SMALL, WIDE = 224, 320, 1136  # vertices along a side: 50,176, 102,400 and 1,290,496 in all
 MB = 1e6
 
 
-def make_sheet(folder, side, frames):
-    """A square sheet with waves that run over it, as an OBJ file and so many frames of PC2, a frame a second."""
+def make_sheet(folder, side, frames, sways=False):
+    """A square sheet with waves that run over it, as an OBJ file and so many frames of PC2, a frame a second. Where it sways, its
+    vertices move sideways, too, so that their normals bend between the frames."""
     mesh, cache = folder / f"sheet_{side}.obj", folder / f"sheet_{side}_{frames}.pc2"
     x, y = np.meshgrid(np.linspace(0, 10, side), np.linspace(0, 10, side), indexing="ij")
     positions = np.empty((side * side, 3), "<f4")
@@ -39,6 +40,9 @@ def make_sheet(folder, side, frames):
         out.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, side * side, 0, 1, frames))
         for frame in range(frames):
             angle = 0.11 * frame
+            if sways:
+                positions[:, 0] = (x + 0.3 * np.sin(y + 3 * angle)).ravel()
+                positions[:, 1] = (y + 0.3 * np.cos(x + 2 * angle)).ravel()
             positions[:, 2] = np.cos(angle) * shape + np.sin(angle) * slope
             out.write(positions.tobytes())
     if not mesh.exists():
@@ -75,7 +79,7 @@ def measure(command, address_space=0):
 
 def run(folder, words, mesh, cache, address_space=0):
     """Runs a command of the program, with OUT in the folder where it has one, and removes that."""
-    out = folder / "out"
+    out = folder / ("out.glb" if words[0] == "bake" else "out")
     command = [PROGRAM, words[0], mesh, cache, "--quiet", *words[1:]]
     found = measure([*command, "-o", out], address_space)
     size = out.stat().st_size / MB
@@ -145,6 +149,17 @@ def over_frames(folder, is_check):
     return table(["frames", "file, MB", *(f"`{name}`, MB" for name in OVER_FRAMES)], rows)
 
 
+def bakes(folder):
+    """The table of bakes over the number of frames, under `ulimit -v 1000000`, for a sheet of 50,176 vertices."""
+    rows = []
+    for frames in [24, 240, 1000]:
+        mesh, cache = make_sheet(folder, BAKED, frames, sways=True)
+        _, processor, memory, size = run(folder, ["bake", "--encode", "exact", "--no-audit"], mesh, cache, 1000000 * 1024)
+        rows.append([f"{frames:,}", f"{cache.stat().st_size / MB:,.0f}", f"{size:,.0f}", seconds(processor), f"{memory:.0f}"])
+        cache.unlink()
+    return table(["frames", "file, MB", "`.glb`, MB", "processor, s", "memory, MB"], rows)
+
+
 def large(folder, gigabytes):
     """The table of one large sequence, under `ulimit -v 1000000`, beside cat."""
     frames = int(gigabytes * 1e9 / (12 * WIDE * WIDE))
@@ -190,6 +205,7 @@ def main():
             tables["large"] = large(folder, options.large)
         tables["frames"] = over_frames(folder, options.check)
         tables["commands"] = commands(folder)
+        tables["bakes"] = bakes(folder)
     more = 0
     for name, measured in tables.items():
         begin, end = f"<!-- {name} -->\n", "\n<!-- end -->"
