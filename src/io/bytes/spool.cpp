@@ -44,8 +44,8 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
     if (file_) {
       const auto wanted = std::span(part).first(static_cast<std::size_t>(std::min(end - at, kPart)));
       const std::optional<std::span<char>> missing = read_at(file_->number(), at, wanted);
-      if (!missing) return failure(place_, errno);
-      if (!missing->empty()) return failure(place_, EIO);  // nobody else has the file
+      // The file has all that was added, unless somebody else cut it.
+      if (!missing || !missing->empty()) return failure(place_, missing ? EIO : errno);
       bytes = {wanted.data(), wanted.size()};
     } else {
       const Block& here = *(block++ - 1);

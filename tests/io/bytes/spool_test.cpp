@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -116,6 +118,27 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   const Result<Spool> spool = Spool::beside(folder / "none/out.glb", "none/out.glb");
   ASSERT_FALSE(spool.ok());
   EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
+}
+
+// The system names the file of a descriptor, even where it has no name of its own.
+TEST(Spool, bytes_that_are_gone_from_the_file_are_an_error) {
+  const TemporaryFolder folder;
+  Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
+  spool.add(std::string(100, 'a'));
+  std::string found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code none;
+    const std::string file = std::filesystem::read_symlink(entry.path(), none).string();
+    if (file.starts_with(folder / ".chronormal-")) found = entry.path().string();
+  }
+  ASSERT_NE(found, "");
+  ASSERT_EQ(::truncate(found.c_str(), 50), 0);
+  EXPECT_EQ(all_of(spool, 0, 50), std::string(50, 'a'));
+  const Status status = spool.hand_over(0, 51, [](std::string_view) -> Status { return Success{}; });
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().text(), "out.glb: Input/output error");
+  EXPECT_FALSE(spool.has(0, std::string(100, 'a')));
+  EXPECT_FALSE(spool.status().ok());
 }
 
 TEST(Spool, what_could_not_be_written_once_is_an_error_from_then_on) {
