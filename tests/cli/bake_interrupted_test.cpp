@@ -78,8 +78,8 @@ TEST_F(InterruptedBake, full_disk_keeps_its_file) {
   EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
 }
 
-// The arrays wait in a file of their own until the JSON in front of them is known: there the disk has room for these, and
-// not for the file as well.
+// The arrays wait in a file of their own until the JSON in front of them is known: there the disk has room for these,
+// and not for the file as well.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   fs::create_directory(folder_ / "small");
   const std::string size = std::to_string(whole_.size() * 3 / 2 / 1024);

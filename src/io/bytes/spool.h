@@ -42,8 +42,8 @@ class Spool {
   void add(std::string bytes);
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
-  /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool. Errors:
-  /// that of status(), and those of take. at + size must not exceed size()
+  /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool.
+  /// Errors: that of status(), and those of take. at + size must not exceed size()
   [[nodiscard]] Status hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const;
 
   /// Whether these bytes lie at `at`. Where they cannot be read, status() has the error from then on.

@@ -9,8 +9,9 @@
 //     curved_normals      the same of curved paths, whose weights are cubics                  curved_sequence
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 //
-// These are passes over the keyframes, of which a pass holds two at a time, and the arrays that they make go to a spool.
-// So memory does not grow with the number of keyframes; it does with fits of a weighting, for keys, and on curved paths.
+// These are passes over the keyframes, of which a pass holds two at a time, and the arrays that they make go to a
+// spool. So memory does not grow with the number of keyframes; it does with fits of a weighting, for keys, and on
+// curved paths.
 #include <algorithm>
 #include <cmath>
 #include <limits>
