@@ -65,8 +65,8 @@ void shown_angles(const ShownElements& elements, double t, std::span<double> deg
 /// All three must have the same size; no number may be infinite or NaN.
 void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) noexcept;
 
-/// Writes, in radians, the angles of the vectors (x, y): those of portable::atan2(), and NaN where a number is not
-/// finite. All three must have the same size; no y may be below 0.
+/// Writes, in radians, the angles of the vectors (x, y): those of portable::atan2(), but NaN where both are infinite.
+/// All three must have the same size; no y may be below 0.
 void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -134,10 +134,12 @@ TEST(UpperAngles, have_the_bits_of_one_arc_tangent_after_the_other_on_every_inst
     const ScopedTarget scoped(target);
     upper_angles(y, x, angles);
     EXPECT_EQ(angles, expected) << target_name(target);
-    const std::vector<double> one = {1}, infinite = {std::numeric_limits<double>::infinity()};
-    std::vector<double> angle(1);
-    upper_angles(infinite, one, angle);
-    EXPECT_TRUE(std::isnan(angle[0])) << target_name(target);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity(),
+                     kNan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> odd_y = {kInfinity, kNan, 1, kNan, 0}, odd_x = {kInfinity, 1, kNan, kNan, kNan};
+    std::vector<double> odd(odd_y.size());
+    upper_angles(odd_y, odd_x, odd);
+    for (const double angle : odd) EXPECT_TRUE(std::isnan(angle)) << target_name(target);
   }
 }
 
