@@ -36,6 +36,15 @@ class InterruptedBake : public testing::Test {
     EXPECT_EQ(test::read_whole(folder_ / (folder + "/old.glb")), kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
+  // The same where the disk has so little room. Skips the test where none can be mounted.
+  void expect_refused_on_a_disk_of(std::size_t kilobytes) const {
+    fs::create_directory(folder_ / "small");
+    const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";
+    if (run_shell(mount, folder_.path()).exit_code != 0) GTEST_SKIP() << "no small file system can be mounted here";
+    folder_.write("small/old.glb", kOld);
+    expect_refused("small");
+    EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
+  }
   [[nodiscard]] std::ptrdiff_t entries(const std::string& folder) const {
     return std::distance(fs::directory_iterator(folder_ / folder), {});
   }
@@ -69,25 +78,12 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
   EXPECT_EQ(run_shell("umount closed", folder_.path()).exit_code, 0);
 }
 
-TEST_F(InterruptedBake, full_disk_keeps_its_file) {
-  fs::create_directory(folder_ / "small");
-  if (run_shell("mount -t tmpfs -o size=64k none small", folder_.path()).exit_code != 0)
-    GTEST_SKIP() << "no small file system can be mounted here";
-  folder_.write("small/old.glb", kOld);
-  expect_refused("small");
-  EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
-}
+TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
 // The arrays wait in a file of their own until the JSON in front of them is known: there the disk has room for these,
 // and not for the file as well.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
-  fs::create_directory(folder_ / "small");
-  const std::string size = std::to_string(whole_.size() * 3 / 2 / 1024);
-  if (run_shell("mount -t tmpfs -o size=" + size + "k none small", folder_.path()).exit_code != 0)
-    GTEST_SKIP() << "no small file system can be mounted here";
-  folder_.write("small/old.glb", kOld);
-  expect_refused("small");
-  EXPECT_EQ(run_shell("umount small", folder_.path()).exit_code, 0);
+  expect_refused_on_a_disk_of(whole_.size() * 3 / 2 / 1024);
 }
 
 TEST_F(InterruptedBake, files_that_may_not_be_so_large_keep_what_was_there) {

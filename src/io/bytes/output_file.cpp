@@ -150,10 +150,8 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   state->target = follow_links(path);
   // Nobody else may read the new file until it has the permissions of the file that it replaces.
   state->file = std::make_unique<TemporaryFile>(state->target, state->replaces ? 0600 : 0666);
-  if (state->file->is_open()) return OutputFile(std::move(state));
-  Error error = failure(path, errno);
-  error.message = "can not write in its folder: " + error.message;
-  return error;
+  if (!state->file->is_open()) return TemporaryFile::not_opened(path);
+  return OutputFile(std::move(state));
 }
 
 Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::uint64_t kept) {

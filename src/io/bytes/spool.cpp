@@ -15,10 +15,8 @@ Result<Spool> Spool::beside(const std::string& target, const std::string& place)
   Spool spool;
   spool.file_ = TemporaryFile::nameless(target);
   spool.place_ = place;
-  if (spool.file_->is_open()) return spool;
-  Error error = failure(place, errno);
-  error.message = "can not write in its folder: " + error.message;
-  return error;
+  if (!spool.file_->is_open()) return TemporaryFile::not_opened(place);
+  return spool;
 }
 
 void Spool::add(std::string bytes) {

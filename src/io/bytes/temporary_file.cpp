@@ -72,6 +72,12 @@ std::unique_ptr<TemporaryFile> TemporaryFile::of_peer(const std::string& name) {
   return file;
 }
 
+Error TemporaryFile::not_opened(const std::string& place) {
+  Error error = failure(place, errno);
+  error.message = "can not write in its folder: " + error.message;
+  return error;
+}
+
 // The object, which removes the name, ends here, and the descriptor does not.
 Descriptor TemporaryFile::nameless(const std::string& target) {
   TemporaryFile file;

@@ -34,6 +34,8 @@ class TemporaryFile {
   /// Opens a file in the folder of target, to be read and written, whose name is gone when this returns: the file is
   /// there as long as its descriptor, however the process ends. Closed, with errno, on failure.
   [[nodiscard]] static Descriptor nameless(const std::string& target);
+  /// The error of a file that could not be opened, from errno: kFailed with `place` as the place.
+  [[nodiscard]] static Error not_opened(const std::string& place);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   /// Removes the file, unless it was renamed or is one that stays.

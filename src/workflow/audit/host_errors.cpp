@@ -99,7 +99,8 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Of all hosts that play these weights, those that keep alike are judged once.
+    // Hosts that play these weights and keep normals alike show the same, so that one of them is judged for all. These
+    // are the errors that are known so far.
     std::vector<const MotionError*> of_kept(kept_.size());
     double displaced = 0;
     if (now_[h] != source.now()) {

@@ -40,7 +40,7 @@ struct GlbChunks {
 /// the file, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
-/// What stands around the chunks of a file of one JSON chunk and, where it has one, one BIN chunk.
+/// The headers and the padding around the chunks of a file. A file has one JSON chunk and at most one BIN chunk.
 struct GlbFrame {
   std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
   std::uint64_t size = 0;                            ///< of the file
