@@ -85,12 +85,13 @@ struct Inspection {
 /// the positions to float32: where moving them by half a unit in the last place could turn its normal any way.
 ///
 /// Threads    uses all (core/parallel.h); the result is the same on any number of them.
-/// Memory     about 120 bytes a face for each thread; nothing grows with faces x segments.
+/// Memory     that of the NormalCurves of a segment, some 40 bytes a face; nothing grows with faces x segments.
 /// Cost       control normals and NormalCurves of every segment, once; the rest is near linear.
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
-/// The same for a stream, of which one keyframe more is held than threads work. Errors: those of the stream.
+/// The same for a stream, of which two keyframes are held, or where meshes are small as many as keep all threads busy.
+/// Errors: those of the stream.
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 

@@ -1,4 +1,5 @@
-// Looks at every segment of a motion for whatever may cause wrong normals.
+// Looks at every segment of a motion for whatever may cause wrong normals, block by block and in waves of segments, and
+// adds up what it finds in order.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
+#include "core/blocks.h"
 #include "core/portable_math.h"
 
 namespace chronormal {
@@ -24,6 +26,10 @@ namespace {
 // Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) of it, so the edge by twice that,
 // and the cross product of two edges by twice that again, times the longer edge.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
+
+// So many faces, or vertices, are a block: their control normals stay in the second-level cache. A wave has a segment,
+// or where segments are small as many as keep all threads busy.
+constexpr std::size_t kBlock = 4096, kBlocksPerThread = 4;
 
 // What can be wrong with a face, a bit each.
 enum Mark : std::uint8_t {
@@ -51,15 +57,62 @@ struct FaceTally {
     }
     marks[face].fetch_or(mark, std::memory_order_relaxed);
   }
+  // The next faces, of the same keyframe or segment.
+  void add(const FaceTally& next) {
+    if (count == 0) {
+      first_face = next.first_face;
+      first_t = next.first_t;
+    }
+    count += next.count;
+  }
 };
 
 struct KeyframeTally {
   FaceTally no_area, slivers;
+
+  void add(const KeyframeTally& next) {
+    no_area.add(next.no_area);
+    slivers.add(next.slivers);
+  }
 };
 
+void keep_larger(Largest& largest, const Largest& other) {
+  if (other.value > largest.value) largest = other;
+}
+
+// What was found in a block of a segment, or in all of them so far.
 struct SegmentTally {
-  SegmentInspection inspection;
+  KeyframeTally from, to;  // of the keyframes that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
+  Largest motion, turn;
+  std::size_t moved_vertices = 0;
+
+  void add(const SegmentTally& next) {
+    from.add(next.from);
+    to.add(next.to);
+    collapses.add(next.collapses);
+    vanishing.add(next.vanishing);
+    turned_over.add(next.turned_over);
+    turned_far.add(next.turned_far);
+    without_normals.add(next.without_normals);
+    keep_larger(motion, next.motion);
+    keep_larger(turn, next.turn);
+    moved_vertices += next.moved_vertices;
+  }
+  [[nodiscard]] SegmentInspection inspection(const NormalCurves& curves) const {
+    SegmentInspection result;
+    result.moved_vertices = moved_vertices;
+    result.motion = motion;
+    result.turn = turn;
+    result.turned_far = turned_far.count;
+    result.collapses = collapses.count;
+    result.vanishing = vanishing.count;
+    result.turned_over = turned_over.count;
+    result.without_normals = without_normals.count;
+    result.flagged = curves.flagged_count();
+    result.bytes = curves.bytes();
+    return result;
+  }
 };
 
 void add_tally(Places& places, const FaceTally& tally, std::size_t at) {
@@ -94,13 +147,13 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges the faces of one keyframe by the normals that they have there.
+// Judges some faces of one keyframe by the normals that they have there.
 template <class NormalOf>
-KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, NormalOf normal_of,
-                               FaceMarks& marks) {
+KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, IndexRange faces,
+                               NormalOf normal_of, FaceMarks& marks) {
   KeyframeTally tally;
-  for (std::size_t f = 0; f < topology.face_count(); ++f) {
-    const double size = max_abs(normal_of(f));
+  for (std::size_t f = faces.first; f < faces.end(); ++f) {
+    const double size = max_abs(normal_of(f - faces.first));
     if (size == 0)
       tally.no_area.add(f, kNoArea, marks);
     else if (size <= rounding_of(topology.face(f), positions))
@@ -109,13 +162,13 @@ KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float>
   return tally;
 }
 
-void inspect_vertices(const Segment& segment, SegmentInspection& result) {
-  for (std::size_t v = 0; v < segment.from.count; ++v) {
+void inspect_vertices(const Segment& segment, IndexRange vertices, SegmentTally& tally) {
+  for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to_double(segment.to[v]) - to_double(segment.from[v]);
     if (max_abs(step) == 0) continue;
-    ++result.moved_vertices;
-    if (const double distance = length(step); distance > result.motion.value)
-      result.motion = {distance, segment.index, v};
+    ++tally.moved_vertices;
+    if (const double distance = length(step); distance > tally.motion.value)
+      tally.motion = {distance, segment.index, v};
   }
 }
 
@@ -126,18 +179,16 @@ double square_of_cosine_above(double angle) {
   return cosine * cosine * (1 + 1e-12);
 }
 
-SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNormals> normals, FaceMarks& marks) {
-  SegmentTally tally;
-  SegmentInspection& result = tally.inspection;
-  inspect_vertices(segment, result);
+void inspect_faces(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, FaceMarks& marks,
+                   SegmentTally& tally) {
   double most_of_square = square_of_cosine_above(0);
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    const ControlNormals& c = normals[f];
+  for (std::size_t f = faces.first; f < faces.end(); ++f) {
+    const ControlNormals& c = normals[f - faces.first];
     const double along = dot(c.n0, c.n1);
     const bool turns_less = along > 0 && along * along > most_of_square * (dot(c.n0, c.n0) * dot(c.n1, c.n1));
     if (!turns_less) {
-      if (const double angle = angle_between(c.n0, c.n1); angle > result.turn.value) {
-        result.turn = {angle, segment.index, f};
+      if (const double angle = angle_between(c.n0, c.n1); angle > tally.turn.value) {
+        tally.turn = {angle, segment.index, f};
         most_of_square = square_of_cosine_above(angle);
       }
     }
@@ -155,15 +206,6 @@ SegmentTally inspect_segment(const Segment& segment, std::span<const ControlNorm
     const auto over = std::find_if(collapses.at.begin(), end, [](const NearCollapse& each) { return each.turns_over; });
     if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
   }
-  result.turned_far = tally.turned_far.count;
-  result.collapses = tally.collapses.count;
-  result.vanishing = tally.vanishing.count;
-  result.turned_over = tally.turned_over.count;
-  result.without_normals = tally.without_normals.count;
-  const NormalCurves curves(normals);
-  result.flagged = curves.flagged_count();
-  result.bytes = curves.bytes();
-  return tally;
 }
 
 Status inspect_box(MotionStream& stream, Inspection& result) {
@@ -185,8 +227,10 @@ Status inspect_box(MotionStream& stream, Inspection& result) {
   return Success{};
 }
 
-void keep_larger(Largest& largest, const Largest& other) {
-  if (other.value > largest.value) largest = other;
+// The block of this number, of so many faces or vertices; empty behind the last.
+IndexRange block_of(std::size_t number, std::size_t count) {
+  const std::size_t first = std::min(number * kBlock, count);
+  return {first, std::min(kBlock, count - first)};
 }
 
 }  // namespace
@@ -234,8 +278,11 @@ Result<Inspection> inspect(MotionStream& stream,
   FaceMarks marks(result.faces);
   std::vector<KeyframeTally> keyframes(result.keyframes);
   std::vector<SegmentTally> segments(segment_count);
-  const std::size_t total = segment_count + still.size(), wave = std::max<std::size_t>(thread_count(), 1);
-  std::vector<std::vector<ControlNormals>> normals_of_wave(wave);  // kept, since so much memory takes long to get
+  const std::size_t total = segment_count + still.size();
+  const std::size_t blocks = block_count(std::max({result.faces, result.vertices, std::size_t{1}}), kBlock);
+  const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
+  std::vector<SegmentTally> of_blocks(std::min(wave, total) * blocks);
+  std::vector<NormalCurves> curves(std::min(wave, total));  // kept, since so much memory takes long to get
   for (std::size_t first = 0; first < total; first += wave) {
     const std::size_t count = std::min(wave, total - first);
     const auto keys_of = [&](std::size_t s) {
@@ -246,24 +293,45 @@ Result<Inspection> inspect(MotionStream& stream,
     for (std::size_t s = first; s < first + count; ++s)
       keys = {std::min(keys.from, keys_of(s).from), std::max(keys.to, keys_of(s).to)};
     if (const Status status = stream.hold(keys.from, keys.to); !status) return status.error();
-    parallel_for(count, [&](std::size_t i) {
-      const std::size_t s = first + i;
+
+    parallel_for(count * blocks, [&](std::size_t i) {
+      const std::size_t s = first + i / blocks;
       const bool moves = s < segment_count;
       const Segment segment = moves ? motion.segment(s) : still_segment(motion, still[s - segment_count]);
-      std::vector<ControlNormals>& normals = normals_of_wave[i];
-      normals.resize(result.faces);
-      face_control_normals(segment, {0, result.faces}, normals);
-      const auto at_start = [&normals](std::size_t f) { return normals[f].n0; };
-      const auto at_end = [&normals](std::size_t f) { return normals[f].n1; };
-      if (!moves) {
-        keyframes[still[s - segment_count]] = inspect_keyframe(topology, segment.from, at_start, marks);
-        return;
-      }
-      const auto [from, to] = motion.segments[s];
-      if (judge[from] == s) keyframes[from] = inspect_keyframe(topology, segment.from, at_start, marks);
-      if (judge[to] == s) keyframes[to] = inspect_keyframe(topology, segment.to, at_end, marks);
-      segments[s] = inspect_segment(segment, normals, marks);
+      const IndexRange faces = block_of(i % blocks, result.faces);
+      std::vector<ControlNormals> normals(faces.count);
+      face_control_normals(segment, faces, normals);
+      SegmentTally& tally = of_blocks[i] = {};
+      if (!moves || judge[motion.segments[s].from] == s)
+        tally.from = inspect_keyframe(
+            topology, segment.from, faces, [&normals](std::size_t f) { return normals[f].n0; }, marks);
+      if (!moves) return;
+      if (judge[motion.segments[s].to] == s)
+        tally.to = inspect_keyframe(
+            topology, segment.to, faces, [&normals](std::size_t f) { return normals[f].n1; }, marks);
+      inspect_vertices(segment, block_of(i % blocks, result.vertices), tally);
+      inspect_faces(segment, faces, normals, marks, tally);
     });
+    const auto make_curves = [&](std::size_t i, Threads threads) {
+      if (first + i < segment_count)
+        curves[i] = NormalCurves::of_faces(motion.segment(first + i), {}, threads, &curves[i]);
+    };
+    if (count == 1) {
+      make_curves(0, Threads::kAll);
+    } else {
+      parallel_for(count, [&](std::size_t i) { make_curves(i, Threads::kOne); });
+    }
+
+    for (std::size_t i = 0; i < count; ++i) {
+      SegmentTally tally;
+      for (std::size_t b = 0; b < blocks; ++b) tally.add(of_blocks[i * blocks + b]);
+      const auto [from, to] = keys_of(first + i);
+      if (first + i >= segment_count || judge[from] == first + i) keyframes[from] = tally.from;
+      if (first + i >= segment_count) continue;
+      if (judge[to] == first + i) keyframes[to] = tally.to;
+      result.segments.push_back(tally.inspection(curves[i]));
+      segments[first + i] = tally;
+    }
     if (progress) progress(first + count, total);
   }
 
@@ -279,11 +347,10 @@ Result<Inspection> inspect(MotionStream& stream,
     add_tally(result.turned_over, tally.turned_over, s);
     add_tally(result.turned_far, tally.turned_far, s);
     add_tally(result.without_normals, tally.without_normals, s);
-    keep_larger(result.motion, tally.inspection.motion);
-    keep_larger(result.turn, tally.inspection.turn);
-    result.flagged += tally.inspection.flagged;
-    result.normal_bytes += tally.inspection.bytes;
-    result.segments.push_back(tally.inspection);
+    keep_larger(result.motion, tally.motion);
+    keep_larger(result.turn, tally.turn);
+    result.flagged += result.segments[s].flagged;
+    result.normal_bytes += result.segments[s].bytes;
   }
   result.no_area.faces = count_marked(marks, kNoArea);
   result.slivers.faces = count_marked(marks, kSliver);

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
+#include "chronormal/core/parallel.h"
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 
@@ -146,9 +149,7 @@ TEST(Inspect, flagged_and_bytes_are_those_of_normal_curves) {
     const Inspection found = inspect(motion);
     std::size_t flagged = 0, bytes = 0;
     for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-      std::vector<ControlNormals> normals(motion.topology.face_count());
-      face_control_normals(motion.segment(s), {0, normals.size()}, normals);
-      const NormalCurves curves(normals);
+      const NormalCurves curves = NormalCurves::of_faces(motion.segment(s));
       flagged += curves.flagged_count();
       bytes += curves.bytes();
     }
@@ -181,6 +182,46 @@ TEST(Inspect, many_segments_count_each_face_once_and_each_pair) {
   EXPECT_EQ(found.turned_over.faces, 100U);
   EXPECT_EQ(found.turned_over.first_at, 0U);
   EXPECT_EQ(found.turned_over.first_face, 0U);
+}
+
+TEST(Inspect, a_large_mesh_has_the_trouble_of_its_faces_wherever_they_are) {
+  constexpr std::size_t kFaces = 15000;
+  Motion motion;
+  std::vector<std::uint32_t> corners(3 * kFaces);
+  std::iota(corners.begin(), corners.end(), 0U);
+  motion.topology = fixtures::make_triangles(3 * kFaces, corners);
+  for (const std::size_t k : {0U, 1U, 2U}) {
+    Positions positions;
+    for (std::size_t f = 0; f < kFaces; ++f) {
+      const bool is_mirrored = k == 1 && (f == 9000 || f == 12000), is_line = k == 2 && (f == 4097 || f == 13000);
+      const Positions& one = is_mirrored ? kMirrored : is_line ? kLine : kTriangle;
+      positions.insert(positions.end(), one.begin(), one.end());
+    }
+    if (k == 2) positions[3 * (3 * 14000 + 2) + 2] = 10;
+    motion.keyframes.push_back({positions, static_cast<double>(k), ""});
+  }
+  motion.connect_as_sequence();
+  for (const std::size_t threads : {1U, 2U, 5U}) {
+    const ThreadLimit limit(threads);
+    const Inspection found = inspect(motion);
+    EXPECT_EQ(found.turned_over.pairs, 4U);
+    EXPECT_EQ(found.turned_over.faces, 2U);
+    EXPECT_EQ(found.turned_over.first_at, 0U);
+    EXPECT_EQ(found.turned_over.first_face, 9000U);
+    EXPECT_NEAR(found.turned_over.first_t, 0.5, 1e-12);
+    EXPECT_EQ(found.turn.element, 9000U);
+    EXPECT_EQ(found.turn.segment, 0U);
+    EXPECT_EQ(found.no_area.pairs, 2U);
+    EXPECT_EQ(found.no_area.first_at, 2U);
+    EXPECT_EQ(found.no_area.first_face, 4097U);
+    EXPECT_EQ(found.motion.value, 10);
+    EXPECT_EQ(found.motion.segment, 1U);
+    EXPECT_EQ(found.motion.element, 3U * 14000 + 2);
+    ASSERT_EQ(found.segments.size(), 2U);
+    EXPECT_EQ(found.segments[0].moved_vertices, 2U);
+    EXPECT_EQ(found.segments[1].moved_vertices, 5U);
+    EXPECT_EQ(found.segments[1].turned_over, 2U);
+  }
 }
 
 TEST(Inspect, same_shape_in_another_unit_has_the_same_trouble) {
