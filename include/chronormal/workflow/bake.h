@@ -207,10 +207,10 @@ struct SequenceBake {
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// The same of a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several
-/// passes that hold two keyframes at a time; for keys and on curved paths it holds all of them. The arrays wait in a
-/// file without a name in the folder of path until the JSON in front of them is known. So what grows with the number of
-/// keyframes is that JSON, and the fits of a weighting. Where path is a stream or a device, the arrays wait in memory.
-/// Errors: also those of the stream and of write_output()
+/// passes that hold two keyframes at a time, four on curved paths, and for keys as many as lie between two of these. The
+/// arrays wait in a file without a name in the folder of path until the JSON in front of them is known. So what grows
+/// with the number of keyframes is that JSON, and the fits of a weighting. Where path is a stream or a device, the
+/// arrays wait in memory. Errors: also those of the stream and of write_output()
 [[nodiscard]] Result<SequenceBake> bake_sequence(MotionStream& stream, const BakeOptions& options,
                                                  const std::string& path, bool force);
 

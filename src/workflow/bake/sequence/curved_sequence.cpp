@@ -2,7 +2,9 @@
 #include "workflow/bake/sequence/curved_sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "chronormal/normals/path_curves.h"
 #include "core/blocks.h"
 #include "core/float32.h"
+#include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -56,13 +59,79 @@ std::vector<double> times_of(const Motion& motion) {
 
 using Controls = PolynomialNormals<3>;
 
+// Walks over the segments, one after the other, and keeps as many as are still needed: their control normals, and what
+// the target of each key adds to N.
+class CurvedWalk {
+ public:
+  CurvedWalk(const CurvedSource& source, std::span<const SequenceElement> elements)
+      : source_(source), elements_(elements), ends_(elements.size()) {
+    keys_.emplace_back(elements.size());  // key 0 adds nothing
+  }
+
+  // Reads on until the deltas of a key are known. The segment before it is then known, too.
+  Status read_to_key(std::size_t key) {
+    while (key >= first_key_ + keys_.size()) {
+      if (Status status = read_segment(); !status) return status;
+    }
+    return Success{};
+  }
+  // Forgets earlier segments than this, and the keys that neither it nor a later one follows from.
+  void drop_before(std::size_t segment) {
+    for (; first_segment_ < segment && !normals_.empty(); ++first_segment_) normals_.pop_front();
+    for (; first_key_ + 2 < segment && keys_.size() > 1; ++first_key_) keys_.pop_front();
+  }
+
+  [[nodiscard]] const std::vector<Controls>& normals(std::size_t segment) const {
+    return normals_[segment - first_segment_];
+  }
+  [[nodiscard]] const std::vector<Vec3d>& key(std::size_t key) const { return keys_[key - first_key_]; }
+
+ private:
+  // The direction of an element at a key is that in which the segment before ends, or where it has none there, that in
+  // which the next one begins.
+  Status read_segment() {
+    const Motion& motion = source_.stream->motion();
+    const std::size_t s = first_segment_ + normals_.size();
+    if (Status status = hold_paths(*source_.stream, s, s, source_.path); !status) return status;
+    const std::vector<Controls>& normals =
+        normals_.emplace_back(all_path_normals(path_segment(motion, s, source_.path), *source_.groups));
+    if (first_key_ + keys_.size() == s) {
+      parallel_each(ends_.size(), kCurvedBlock, [&](std::size_t e) {
+        if (ends_[e] == Vec3d{}) ends_[e] = unit_normal_at(normals[e], 0).vector;
+      });
+      add_key();
+    }
+    parallel_each(ends_.size(), kCurvedBlock, [&](std::size_t e) { ends_[e] = unit_normal_at(normals[e], 1).vector; });
+    const bool is_last = s + 1 == motion.segments.size();
+    if (is_last || std::find(ends_.begin(), ends_.end(), Vec3d{}) == ends_.end()) add_key();
+    return Success{};
+  }
+
+  // An element without a direction at a key keeps that of the key before.
+  void add_key() {
+    std::vector<Vec3d> deltas(ends_.size());
+    parallel_each(ends_.size(), kCurvedBlock, [&](std::size_t e) {
+      deltas[e] = ends_[e] == Vec3d{} ? keys_.back()[e] : rounded_to_float(ends_[e] - elements_[e].normal);
+    });
+    keys_.push_back(std::move(deltas));
+  }
+
+  CurvedSource source_;
+  std::span<const SequenceElement> elements_;
+  std::deque<std::vector<Controls>> normals_;  // of segments
+  std::deque<std::vector<Vec3d>> keys_;
+  std::size_t first_segment_ = 0, first_key_ = 0;
+  std::vector<Vec3d> ends_;  // directions where the last segment ends
+};
+
 // The sum of the deltas of the keys of a segment for one element, as a cubic.
-Bernstein<Vec3d, 3> shown_by_keys(const CurvedNormals& normals, const SegmentShares& shares, std::size_t element) {
+Bernstein<Vec3d, 3> shown_by_keys(const CurvedWalk& walk, const Vec3d& normal, const SegmentShares& shares,
+                                  std::size_t element) {
   Bernstein<Vec3d, 3> shown;
-  for (Vec3d& c : shown) c = normals.elements[element].normal;
+  for (Vec3d& c : shown) c = normal;
   for (std::size_t k = 0; k < shares.of_key.size(); ++k)
     for (std::size_t i = 0; i < shown.size(); ++i)
-      shown[i] = shown[i] + shares.of_key[k][i] * normals.keys[shares.first + k][element];
+      shown[i] = shown[i] + shares.of_key[k][i] * walk.key(shares.first + k)[element];
   return shown;
 }
 
@@ -115,36 +184,6 @@ ElementBend bend_of_element(const Bernstein<Vec3d, 3>& keys, const Controls& n, 
   return best;
 }
 
-// Finds the directions of all elements at the keys, and takes the first one of each as N.
-void take_keys(const Motion& motion, const NormalGroups& groups, PathKind path, CurvedNormals& result) {
-  const std::size_t count = groups.size(), segments = motion.segments.size();
-  result.elements.resize(count);
-  std::vector<std::vector<Vec3d>> directions(segments + 1, std::vector<Vec3d>(count));
-  for (std::size_t s = 0; s < segments; ++s) {
-    const std::vector<Controls> normals = all_path_normals(path_segment(motion, s, path), groups);
-    parallel_each(count, kCurvedBlock, [&](std::size_t e) {
-      if (directions[s][e] == Vec3d{}) directions[s][e] = unit_normal_at(normals[e], 0).vector;
-      directions[s + 1][e] = unit_normal_at(normals[e], 1).vector;
-      SequenceElement& element = result.elements[e];
-      for (const std::size_t k : {s, s + 1}) {
-        if (!element.has_none || directions[k][e] == Vec3d{}) continue;
-        element.normal = rounded_to_float(directions[k][e]);
-        element.has_none = false;
-      }
-    });
-  }
-  result.keys.assign(segments + 1, std::vector<Vec3d>(count));
-  parallel_each(count, kCurvedBlock, [&](std::size_t e) {
-    SequenceElement& element = result.elements[e];
-    if (element.has_none) element.normal = kAnyNormal;
-    for (std::size_t k = 1; k <= segments; ++k) {
-      // An element without a direction at a key keeps that of the key before.
-      const Vec3d& u = directions[k][e];
-      result.keys[k][e] = u == Vec3d{} ? result.keys[k - 1][e] : rounded_to_float(u - element.normal);
-    }
-  });
-}
-
 }  // namespace
 
 std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path) {
@@ -154,73 +193,108 @@ std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind pat
   return keys;
 }
 
-CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, PathKind path, double tolerance,
-                             const std::function<void(std::size_t done)>& progress) {
-  CurvedNormals result;
-  take_keys(motion, groups, path, result);
+Result<std::vector<SequenceElement>> curved_elements(const CurvedSource& source) {
+  const Motion& motion = source.stream->motion();
+  std::vector<SequenceElement> elements(source.groups->size());
+  const auto has_none = [](const SequenceElement& element) { return element.has_none; };
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    if (std::none_of(elements.begin(), elements.end(), has_none)) break;
+    if (const Status status = hold_paths(*source.stream, s, s, source.path); !status) return status.error();
+    const std::vector<Controls> normals = all_path_normals(path_segment(motion, s, source.path), *source.groups);
+    parallel_each(elements.size(), kCurvedBlock, [&](std::size_t e) {
+      for (const double t : {0.0, 1.0}) {
+        const Vec3d u = elements[e].has_none ? unit_normal_at(normals[e], t).vector : Vec3d{};
+        if (u == Vec3d{}) continue;
+        elements[e].normal = rounded_to_float(u);
+        elements[e].has_none = false;
+      }
+    });
+  }
+  for (SequenceElement& element : elements)
+    if (element.has_none) element.normal = kAnyNormal;
+  return elements;
+}
+
+Status each_curved_key(const CurvedSource& source, std::span<const SequenceElement> elements,
+                       const std::function<Status(std::size_t key, const std::vector<Vec3d>& deltas)>& body) {
+  CurvedWalk walk(source, elements);
+  for (std::size_t k = 1; k < source.stream->motion().keyframes.size(); ++k) {
+    if (Status status = walk.read_to_key(k); !status) return status;
+    if (Status status = body(k, walk.key(k)); !status) return status;
+    walk.drop_before(k);
+  }
+  return Success{};
+}
+
+Result<double> each_curved_bend(
+    const CurvedSource& source, std::span<const SequenceElement> elements, double tolerance,
+    const std::function<Status(const CurveBend& bend, const std::vector<Vec3d>& deltas)>& body,
+    const std::function<void(std::size_t segments)>& done) {
+  const Motion& motion = source.stream->motion();
   const std::vector<double> times = times_of(motion);
   const auto is_given = std::make_unique<bool[]>(times.size());
-  for (const std::size_t k : keys_with_velocities(motion, path)) is_given[k] = true;
+  for (const std::size_t k : keys_with_velocities(motion, source.path)) is_given[k] = true;
+  CurvedWalk walk(source, elements);
+  double largest = 0;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
-    const std::vector<Controls> normals = all_path_normals(path_segment(motion, s, path), groups);
     const SegmentShares shares = shares_of(times, s, {is_given.get(), times.size()});
-    CurveBend even{s, false, std::vector<Vec3d>(groups.size())}, odd{s, true, std::vector<Vec3d>(groups.size())};
+    if (const Status status = walk.read_to_key(shares.first + shares.of_key.size() - 1); !status) return status.error();
+    const std::vector<Controls>& normals = walk.normals(s);
+    std::vector<Vec3d> even(elements.size()), odd(elements.size());
     const double error = parallel_fold<double>(
-        groups.size(), kCurvedBlock,
+        elements.size(), kCurvedBlock,
         [&](std::size_t e, double& worst) {
-          if (result.elements[e].has_none) return;
-          const ElementBend bend = bend_of_element(shown_by_keys(result, shares, e), normals[e], tolerance);
-          even.deltas[e] = bend.even;
-          odd.deltas[e] = bend.odd;
+          if (elements[e].has_none) return;
+          const ElementBend bend =
+              bend_of_element(shown_by_keys(walk, elements[e].normal, shares, e), normals[e], tolerance);
+          even[e] = bend.even;
+          odd[e] = bend.odd;
           worst = std::max(worst, bend.error);
         },
         [](double& all, double each) { all = std::max(all, each); });
-    result.largest_error = std::max(result.largest_error, error);
-    for (CurveBend* bend : {&even, &odd}) {
-      const bool is_empty =
-          std::all_of(bend->deltas.begin(), bend->deltas.end(), [](const Vec3d& d) { return d == Vec3d{}; });
-      if (!is_empty) result.bends.push_back(std::move(*bend));
+    largest = std::max(largest, error);
+    for (const bool is_odd : {false, true}) {
+      const std::vector<Vec3d>& deltas = is_odd ? odd : even;
+      if (std::all_of(deltas.begin(), deltas.end(), [](const Vec3d& d) { return d == Vec3d{}; })) continue;
+      if (const Status status = body({s, is_odd}, deltas); !status) return status.error();
     }
-    progress(s + 1);
+    walk.drop_before(s + 1);
+    done(s + 1);
   }
-  return result;
+  return largest;
 }
 
 SequenceTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
                            std::span<const CurveBend> bends) {
-  const std::size_t keys = times.size(), of_keys = keys - 1, n = of_keys + with_velocities.size() + bends.size();
-  std::vector<float> values(keys * 3 * n, 0.0F);
   enum Row : std::size_t { kIn, kValue, kOut, kRows };
-  const auto at = [&](std::size_t key, Row row, std::size_t target) -> float& {
-    return values[(key * kRows + row) * n + target];
-  };
-  const std::vector<double> seconds(times.begin(), times.end());
-  for (std::size_t k = 1; k < keys; ++k) at(k, kValue, k - 1) = 1;
-  for (std::size_t k = 0; k < keys; ++k) {
-    const auto given = std::find(with_velocities.begin(), with_velocities.end(), k);
+  const std::size_t of_keys = times.size() - 1, of_velocities = of_keys + with_velocities.size();
+  const auto fill = [=, seconds = std::vector<double>(times.begin(), times.end())](std::size_t row,
+                                                                                   std::span<float> values) {
+    const std::size_t key = row / kRows;
+    if (row % kRows == kValue) {
+      if (key > 0) values[key - 1] = 1;  // key 0 is the base
+      return;
+    }
+    const auto given = std::find(with_velocities.begin(), with_velocities.end(), key);
     if (given != with_velocities.end()) {
-      const std::size_t target = of_keys + static_cast<std::size_t>(given - with_velocities.begin());
-      at(k, kIn, target) = at(k, kOut, target) = 1;
-      continue;
+      values[of_keys + static_cast<std::size_t>(given - with_velocities.begin())] = 1;
+    } else {
+      const VelocityShares velocity = velocity_shares(seconds, key);
+      for (std::size_t i = 0; i < velocity.share.size(); ++i)
+        if (velocity.first + i > 0) values[velocity.first + i - 1] = static_cast<float>(velocity.share[i]);
     }
-    const VelocityShares velocity = velocity_shares(seconds, k);
-    for (std::size_t i = 0; i < velocity.share.size(); ++i) {
-      if (velocity.first + i == 0) continue;  // key 0 is the base
-      at(k, kIn, velocity.first + i - 1) = at(k, kOut, velocity.first + i - 1) = static_cast<float>(velocity.share[i]);
+    const bool is_in = row % kRows == kIn;
+    if (is_in && key == 0) return;
+    const std::size_t s = is_in ? key - 1 : key;
+    const auto first = std::lower_bound(bends.begin(), bends.end(), s,
+                                        [](const CurveBend& bend, std::size_t at) { return bend.segment < at; });
+    for (auto bend = first; bend != bends.end() && bend->segment == s; ++bend) {
+      const double slope = (bend->is_odd ? kOdd : kEven) / (seconds[s + 1] - seconds[s]);
+      values[of_velocities + static_cast<std::size_t>(bend - bends.begin())] =
+          static_cast<float>(is_in && !bend->is_odd ? -slope : slope);
     }
-  }
-  for (std::size_t b = 0; b < bends.size(); ++b) {
-    const std::size_t s = bends[b].segment, target = of_keys + with_velocities.size() + b;
-    const double slope = (bends[b].is_odd ? kOdd : kEven) / (seconds[s + 1] - seconds[s]);
-    at(s, kOut, target) = static_cast<float>(slope);
-    at(s + 1, kIn, target) = static_cast<float>(bends[b].is_odd ? slope : -slope);
-  }
-  return {{times.begin(), times.end()},
-          kRows * keys,
-          n,
-          [n, values = std::move(values)](std::size_t row, std::span<float> result) {
-            std::copy_n(values.data() + row * n, n, result.data());
-          }};
+  };
+  return {{times.begin(), times.end()}, kRows * times.size(), of_velocities + bends.size(), fill};
 }
 
 }  // namespace chronormal::inline internal

@@ -11,17 +11,21 @@
 /// make the normals right at t = 1/2, or at 1/3 and 2/3. The error that is left is measured at kCurveInstants of each
 /// segment.
 ///
+/// Each of the functions over a CurvedSource is a pass over the keyframes, of which it holds four at a time.
+///
 /// Threads    on all cores; the same bits on any number of them
+/// Memory     the control normals of two to four segments, 168 bytes for each element of each
+/// Errors     those of reading keyframes, and of body, which ends a pass by one
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_CURVED_SEQUENCE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_CURVED_SEQUENCE_H_
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "chronormal/motion/motion.h"
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/paths.h"
 #include "workflow/bake/sequence/sequence_deltas.h"
@@ -31,31 +35,41 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kCurveInstants = 40;
 
+/// A sequence, whose normals these are, and its paths.
+struct CurvedSource {
+  MotionStream* stream;
+  const NormalGroups* groups;
+  PathKind path;
+};
+
 /// A target that bends the normals of a segment by one of the two weights above.
 struct CurveBend {
   std::size_t segment = 0;
   bool is_odd = false;  ///< whether its weight is the one that changes its sign at t = 1/2
-  std::vector<Vec3d> deltas;
 };
 
-/// The normals of a bake on curved paths.
-struct CurvedNormals {
-  std::vector<SequenceElement> elements;
-  std::vector<std::vector<Vec3d>> keys;  ///< what the target of each key adds to N; key 0 adds nothing
-  std::vector<CurveBend> bends;          ///< in the order of segments
-  double largest_error = 0;              ///< radians
-};
+/// The first direction that each element has is its N. Reads no more keyframes than it takes to find all of them.
+[[nodiscard]] Result<std::vector<SequenceElement>> curved_elements(const CurvedSource& source);
 
-/// Examines all segments. Bends are made where an element is off by more than the tolerance, in radians: the fewest
-/// that keep it, or else those that leave the smallest error. progress gets the number of segments that are done.
-[[nodiscard]] CurvedNormals curved_normals(const Motion& motion, const NormalGroups& groups, PathKind path,
-                                           double tolerance, const std::function<void(std::size_t done)>& progress);
+/// Calls body(key, deltas) for keys 1, 2 ... in order: what the target of the key adds to N.
+[[nodiscard]] Status each_curved_key(
+    const CurvedSource& source, std::span<const SequenceElement> elements,
+    const std::function<Status(std::size_t key, const std::vector<Vec3d>& deltas)>& body);
+
+/// Calls body(bend, deltas) for the bends of all segments in order, and done(segments) after each segment. There are
+/// bends where an element is off by more than the tolerance, in radians: the fewest that keep it, or else those that
+/// leave the smallest error. Returns the largest error that is left, in radians.
+[[nodiscard]] Result<double> each_curved_bend(
+    const CurvedSource& source, std::span<const SequenceElement> elements, double tolerance,
+    const std::function<Status(const CurveBend& bend, const std::vector<Vec3d>& deltas)>& body,
+    const std::function<void(std::size_t segments)>& done);
 
 /// Finds the keys that have velocities of their own, and so one more target: the velocities are its positions, and its
 /// weight has slope 1 at the key.
 [[nodiscard]] std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path);
 
-/// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file.
+/// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file. The
+/// track looks into all three when it is asked for a row.
 [[nodiscard]] SequenceTrack curved_track(std::span<const float> times, std::span<const std::size_t> with_velocities,
                                          std::span<const CurveBend> bends);
 

@@ -48,13 +48,21 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Judges lines between two instants. Times are those of the sequence: keyframe k is k.
+// Holds the keyframes from which the directions at two instants follow, and all between: those of the segments that
+// they lie in or begin, and of the one before the first.
+Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
+  return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
+}
+
+// Judges lines between two instants. Times are those of the sequence: keyframe k is k. Where a keyframe cannot be read,
+// status() says so, and no answer counts.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
       : motion_(motion), normals_(normals), tolerance_(tolerance), left_out_(motion.segments.size()) {
-    Vec3d low = to_double(position(0, 0)), high = low;
+    Vec3d low = to_double(VectorView<const float>::packed(normals.base())[0]), high = low;
     for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+      if (status_ = normals.hold(k, k); !status_) return;
       for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) {
         const Vec3d p = to_double(position(k, v));
         low = {std::fmin(low.x, p.x), std::fmin(low.y, p.y), std::fmin(low.z, p.z)};
@@ -64,10 +72,13 @@ class LineJudge {
     most_off_ = kKeyPositionShare * length(high - low);
   }
 
+  [[nodiscard]] const Status& status() const { return status_; }
+
   // Whether a host may draw one line from a to b.
-  [[nodiscard]] bool holds(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
+  [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
   // The bound of the largest error, radians; above the tolerance it is not followed further.
   [[nodiscard]] double error(double a, double b) {
+    if (!hold(a, b)) return 0;
     const std::vector<Vec3d> from = directions(a), to = directions(b);
     double largest = 0;
     for (std::size_t s = at(a).segment; static_cast<double>(s) < b; ++s) {
@@ -91,6 +102,7 @@ class LineJudge {
   }
   // Leaves out those of one segment for which no line from a to b is within the tolerance.
   void leave_out(double a, double b) {
+    if (!hold(a, b)) return;
     const Instant start = at(a);
     const std::vector<Vec3d> from = directions(a), to = directions(b);
     const std::vector<ControlNormals>& normals = of_segment(start.segment);
@@ -122,6 +134,10 @@ class LineJudge {
     return line_error(n, part.from_t, part.to_t, lerp(from, to, part.from_share), lerp(from, to, part.to_share),
                       tolerance_);
   }
+  [[nodiscard]] bool hold(double a, double b) {
+    if (status_) status_ = hold_between(normals_, at(a), at(b));
+    return status_.ok();
+  }
   [[nodiscard]] Instant at(double time) const { return instant_of(time, motion_.segments.size()); }
   [[nodiscard]] const std::vector<ControlNormals>& of_segment(std::size_t s) {
     const auto found = segments_.find(s);
@@ -139,7 +155,8 @@ class LineJudge {
     return lerp(to_double(position(at.segment, v)), to_double(position(at.segment + 1, v)), at.t);
   }
   // Whether all keyframes between lie on the line.
-  [[nodiscard]] bool is_straight(double a, double b) const {
+  [[nodiscard]] bool is_straight(double a, double b) {
+    if (!hold(a, b)) return false;
     const Instant start = at(a), end = at(b);
     for (std::size_t k = start.segment + 1; static_cast<double>(k) < b; ++k) {
       const double share = (static_cast<double>(k) - a) / (b - a);
@@ -155,6 +172,7 @@ class LineJudge {
   const SequenceNormals& normals_;
   double tolerance_;
   double most_off_ = 0;
+  Status status_ = Success{};
   std::vector<std::vector<char>> left_out_;
   std::map<std::size_t, std::vector<ControlNormals>> segments_;
 };
@@ -166,16 +184,16 @@ std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, st
   std::size_t beyond = to + 1;
   while (beyond - reached > 1) {
     const std::size_t middle = reached + (beyond - reached) / 2;
-    (judge.holds(time_of(from), time_of(middle)) ? reached : beyond) = middle;
+    (judge.may_draw(time_of(from), time_of(middle)) ? reached : beyond) = middle;
   }
   return reached;
 }
 
 std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   const auto keyframe_after = [last](std::size_t step) { return std::min(last, (step / kKeySteps + 1) * kKeySteps); };
-  for (;;) {
+  while (judge.status()) {
     std::size_t reached = from, next = keyframe_after(from);
-    while (reached < last && judge.holds(time_of(from), time_of(next))) {
+    while (reached < last && judge.may_draw(time_of(from), time_of(next))) {
       reached = next;
       next = keyframe_after(next);
     }
@@ -183,6 +201,7 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
     if (reached > from) return reached;
     judge.leave_out(time_of(from), time_of(from + 1));
   }
+  return last;
 }
 
 // Into how many pieces each segment has to be cut where all are cut alike: as many as the one that needs most.
@@ -205,8 +224,8 @@ std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance
 
 }  // namespace
 
-SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
-                         const std::function<void(std::size_t segment)>& progress) {
+Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
+                                 const std::function<void(std::size_t segment)>& progress) {
   LineJudge judge(motion, normals, tolerance);
   const std::size_t segments = motion.segments.size(), last = segments * kKeySteps;
   SequenceKeys keys{{0}, 0, 0, 0};
@@ -219,11 +238,13 @@ SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, d
   }
   keys.beyond = judge.left_out_count();
   keys.even = even_pieces(judge, segments, tolerance) * segments + 1;
+  if (!judge.status()) return judge.status().error();
   return keys;
 }
 
-KeyPose key_pose(const SequenceNormals& normals, std::size_t step) {
+Result<KeyPose> key_pose(const SequenceNormals& normals, std::size_t step) {
   const Instant at = instant_of(time_of(step), normals.keys() - 1);
+  if (const Status status = hold_between(normals, at, at); !status) return status.error();
   std::map<std::size_t, std::vector<ControlNormals>> segments;
   const auto of_segment = [&](std::size_t s) -> const std::vector<ControlNormals>& {
     return segments.emplace(s, control_normals(normals, s)).first->second;

@@ -17,6 +17,7 @@
 #include <functional>
 #include <vector>
 
+#include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/motion.h"
 #include "workflow/bake/sequence/sequence_normals.h"
@@ -36,10 +37,11 @@ struct SequenceKeys {
                            ///< kKeySteps pieces are tried
 };
 
-/// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached. All keyframes
-/// must be held, here and for key_pose().
-[[nodiscard]] SequenceKeys fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
-                                       const std::function<void(std::size_t segment)>& progress);
+/// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached. Reads all keyframes three times,
+/// and holds as many as lie between two keys, with a few around them; key_pose() holds three. Errors, of both: those of
+/// reading keyframes.
+[[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
+                                               const std::function<void(std::size_t segment)>& progress);
 
 /// What a key has: the positions of its instant, as deltas against keyframe 0 in float32, and the directions of all
 /// elements.
@@ -47,7 +49,7 @@ struct KeyPose {
   std::vector<float> deltas;
   std::vector<Vec3d> directions;  ///< (0, 0, 0) where there is none in the segment
 };
-[[nodiscard]] KeyPose key_pose(const SequenceNormals& normals, std::size_t step);
+[[nodiscard]] Result<KeyPose> key_pose(const SequenceNormals& normals, std::size_t step);
 
 }  // namespace chronormal::inline internal
 

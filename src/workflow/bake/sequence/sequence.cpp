@@ -6,12 +6,12 @@
 //     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
-//     curved_normals      the same of curved paths, whose weights are cubics                  curved_sequence
+//     each_curved_*       the same of curved paths, whose weights are cubics                  curved_sequence
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 //
-// These are passes over the keyframes, of which a pass holds two at a time, and the arrays that they make go to a
-// spool. So memory does not grow with the number of keyframes; it does with fits of a weighting, for keys, and on
-// curved paths.
+// These are passes over the keyframes, of which a pass holds two at a time, four on curved paths, and for keys those
+// between two of these. The arrays that they make go to a spool. So memory does not grow with the number of keyframes;
+// it does with fits of a weighting.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -62,8 +62,8 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-Result<HarmlessElements> exact_elements(const SequenceNormals& normals) {
-  Result<std::vector<SequenceElement>> elements = sequence_elements(normals);
+// Elements of which none lacks room.
+Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
 }
@@ -220,8 +220,10 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
                                       const std::vector<SequenceElement>& elements, const std::vector<float>& keyframes,
                                       double tolerance, const Step& step, SequenceFile& file, SequenceBake& report) {
   const std::size_t segments = motion.segments.size();
-  const SequenceKeys keys =
+  const Result<SequenceKeys> found =
       fewest_keys(motion, normals, tolerance / kDegreesPerRadian, [&](std::size_t s) { step(s, 2 * segments); });
+  if (!found) return found.error();
+  const SequenceKeys& keys = found.value();
   report.largest_error = kDegreesPerRadian * keys.largest_error;
   report.keys = {keys.at.size(), 0, 0, keys.even, keys.beyond};
   std::vector<float> times;
@@ -234,8 +236,9 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
                            "float32 has no time for a key between it and the next one");
     if (at % kKeySteps != 0) ++report.keys->in_between;
     if (k == 0) continue;
-    const KeyPose pose = key_pose(normals, at);
-    file.add_key(k, pose.deltas, unit_key_deltas(elements, pose.directions));
+    const Result<KeyPose> pose = key_pose(normals, at);
+    if (!pose) return pose.error();
+    file.add_key(k, pose.value().deltas, unit_key_deltas(elements, pose.value().directions));
     step(segments + s, 2 * segments);
     if (Status status = file.check(); !status) return status.error();
   }
@@ -248,34 +251,44 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
 }
 
 // Adds the targets of curved paths to the file, gives its bytes to take, and notes the results in the report.
-Status write_curved(const Motion& motion, const SequenceNormals& normals, const CurvedNormals& curved, PathKind path,
-                    const std::vector<float>& times, SequenceFile& file, const GlbBuilder::Take& take,
-                    SequenceBake& report) {
-  GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
-  for (std::size_t k = 1; k < normals.keys(); ++k) {
-    file.add_key(k, normals.deltas(k), curved.keys[k]);
-    if (Status status = file.check(); !status) return status;
-  }
-  const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, path);
+Status write_curved(const CurvedSource& source, const SequenceNormals& normals,
+                    const std::vector<SequenceElement>& elements, double tolerance, const std::vector<float>& times,
+                    const Step& step, SequenceFile& file, const GlbBuilder::Take& take, SequenceBake& report) {
+  const Motion& motion = source.stream->motion();
+  const std::size_t segments = motion.segments.size();
+  Status status = each_curved_key(source, elements, [&](std::size_t k, const std::vector<Vec3d>& deltas) {
+    file.add_key(k, normals.deltas(k), deltas);
+    step(k, 2 * segments);
+    return file.check();
+  });
+  if (!status) return status;
+  const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, source.path);
   for (const std::size_t k : with_velocities) {
     file.add_velocities(k, motion.keyframes[k].velocities);
-    if (Status status = file.check(); !status) return status;
+    if (status = file.check(); !status) return status;
   }
-  for (const CurveBend& bend : curved.bends) {
-    GltfExtraTarget& extra = mark.extras.emplace_back();
-    extra.target = normals.keys() - 1 + with_velocities.size() + mark.extras.size() - 1;
-    file.add_bend(bend.segment, bend.deltas);
-    if (Status status = file.check(); !status) return status;
-  }
-  const SequenceTrack track = curved_track(times, with_velocities, curved.bends);
-  if (Status status = file.check(sizeof(float) * (track.times.size() + std::uint64_t{track.rows} * track.width));
-      !status)
+  GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
+  std::vector<CurveBend> bends;
+  const Result<double> error = each_curved_bend(
+      source, elements, tolerance / kDegreesPerRadian,
+      [&](const CurveBend& bend, const std::vector<Vec3d>& deltas) {
+        mark.extras.emplace_back().target = segments + with_velocities.size() + bends.size();
+        bends.push_back(bend);
+        file.add_bend(bend.segment, deltas);
+        return file.check();
+      },
+      [&](std::size_t done) { step(segments + done, 2 * segments); });
+  if (!error) return error.error();
+  const SequenceTrack track = curved_track(times, with_velocities, bends);
+  if (status = file.check(sizeof(float) * (track.times.size() + std::uint64_t{track.rows} * track.width)); !status)
     return status;
-  report.largest_error = kDegreesPerRadian * curved.largest_error;
-  report.targets = normals.keys() - 1 + with_velocities.size();
-  report.extra_targets = curved.bends.size();
-  report.path = path;
-  report.bend = bend_of(motion);
+  const Result<double> bend = bend_of(*source.stream);
+  if (!bend) return bend.error();
+  report.largest_error = kDegreesPerRadian * error.value();
+  report.targets = segments + with_velocities.size();
+  report.extra_targets = bends.size();
+  report.path = source.path;
+  report.bend = bend.value();
   const std::vector<int> rest(report.targets + report.extra_targets, 0);
   const Result<std::size_t> bytes = file.finish(track, "CUBICSPLINE", mark, rest, take);
   if (!bytes) return bytes.error();
@@ -327,8 +340,6 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
   if (is_curved && options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
     return Error{ErrorCode::kUsage, "", "on curved paths normals are weighted by area, and by nothing else"};
   if (const Status status = check_path(motion, options.path); !status) return status.error();
-  const bool needs_all = is_curved || encoding == BakeEncoding::kKeys;
-  if (const Status status = needs_all ? stream.hold_all() : Success{}; !status) return status.error();
   const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
   const Result<SequenceNormals> made =
@@ -339,14 +350,11 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
   Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 
-  CurvedNormals curved;
-  if (is_curved)
-    curved = curved_normals(motion, groups.value(), options.path, tolerance / kDegreesPerRadian,
-                            [&](std::size_t done) { step(done, motion.segments.size()); });
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
-  const Result<HarmlessElements> found = is_curved   ? HarmlessElements{curved.elements, 0}
+  const CurvedSource curved{&stream, &groups.value(), options.path};
+  const Result<HarmlessElements> found = is_curved   ? without_limits(curved_elements(curved))
                                          : are_units ? harmless_elements(normals)
-                                                     : exact_elements(normals);
+                                                     : without_limits(sequence_elements(normals));
   if (!found) return found.error();
   const std::vector<SequenceElement>& elements = found.value().elements;
   report_elements(elements, encoding, report);
@@ -364,7 +372,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (is_curved) {
-    const Status written = write_curved(motion, normals, curved, options.path, times.value(), file, take, report);
+    const Status written = write_curved(curved, normals, elements, tolerance, times.value(), step, file, take, report);
     if (!written) return written.error();
     warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, options.path, report.warnings);
     return report;
