@@ -13,6 +13,7 @@ endif()
 file(GLOB peer_sources CONFIGURE_DEPENDS bench/peers/*.cpp)
 add_library(chronormal_peers STATIC ${peer_sources})
 target_include_directories(chronormal_peers PUBLIC ${PROJECT_SOURCE_DIR}/bench)
-target_link_libraries(chronormal_peers PUBLIC chronormal PRIVATE chronormal_flags OpenMeshCore VTK::CommonCore
+# Without assertions in Release, as the product: OpenMesh checks every handle where there are any.
+target_link_libraries(chronormal_peers PUBLIC chronormal PRIVATE chronormal_product_flags OpenMeshCore VTK::CommonCore
                                                                  VTK::CommonDataModel VTK::FiltersCore VTK::FiltersModeling
                                                                  CGAL::CGAL)

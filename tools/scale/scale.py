@@ -103,6 +103,7 @@ COMMANDS = {
     "`sample --times keys --path catmull-rom`": ["sample", "--times", "keys", "--format", "npy", "--path", "catmull-rom"],
     "`audit --samples 5`": ["audit", "--samples", "5"],
     "`audit --samples 5 --path catmull-rom`": ["audit", "--samples", "5", "--path", "catmull-rom"],
+    "`inspect`": ["inspect"],
     "`compare --schemes linear,quadratic --samples 3`": ["compare", "--schemes", "linear,quadratic", "--samples", "3"],
     "the same with `--path catmull-rom`": ["compare", "--schemes", "linear,quadratic", "--samples", "3", "--path", "catmull-rom"],
 }
