@@ -16,6 +16,7 @@
 #include "chronormal/workflow/sample.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/read_input.h"
+#include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::stream_test {
@@ -74,25 +75,6 @@ InputOptions streamed(InputOptions options) {
   return options;
 }
 
-// A stream that keeps nothing, made from an input that is small enough to stay in memory; it reads keyframes with a
-// reader of its own.
-MotionStream strict(MotionStream& stream, std::size_t& most_held) {
-  Motion outline = stream.motion();
-  for (auto& keyframe : outline.keyframes) keyframe.positions = {};
-  return MotionStream(
-      std::move(outline),
-      [&stream, &most_held](const Motion& motion, std::size_t k, std::span<float> positions) -> Status {
-        std::size_t held = 1;
-        for (const auto& keyframe : motion.keyframes) held += keyframe.positions.empty() ? 0U : 1U;
-        most_held = std::max(most_held, held);
-        if (const Status status = stream.hold(k, k); !status) return status;
-        const std::vector<float>& read = stream.motion().keyframes[k].positions;
-        std::copy(read.begin(), read.end(), positions.begin());
-        return Success{};
-      },
-      0);
-}
-
 TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(5))) {
@@ -128,7 +110,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
   ASSERT_TRUE(input.ok());
   const Motion whole = test::read_motion(test::files(inputs[1])).value();
   std::size_t most_held = 0;
-  MotionStream stream = strict(*input.value().stream().value(), most_held);
+  MotionStream stream = test::strict(*input.value().stream().value(), most_held);
 
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
     CompareOptions options;
@@ -180,7 +162,7 @@ TEST(InputStream, a_pass_over_segments_holds_three_keyframes) {
   const Motion whole = wave(9);
   MotionStream read(whole);
   std::size_t most_held = 0;
-  MotionStream stream = strict(read, most_held);
+  MotionStream stream = test::strict(read, most_held);
   AuditOptions options;
   ASSERT_TRUE(audit(stream, {}, options).ok());
   EXPECT_LE(most_held, 3U);
@@ -213,7 +195,7 @@ TEST(InputStream, curved_paths_need_nothing_but_the_keyframes_around_a_time) {
   for (const double time : {3.25, 5.0, 7.5, 8.0}) {
     MotionStream read(whole);
     std::size_t most_held = 0;
-    MotionStream stream = strict(read, most_held);
+    MotionStream stream = test::strict(read, most_held);
     const Moments moments{{time}, {}};
     ASSERT_TRUE(write_samples(stream, options, moments, {folder / "s.npy", SampleFormat::kNpy, true}).ok());
     ASSERT_TRUE(write_samples(whole, options, moments, {folder / "w.npy", SampleFormat::kNpy, true}).ok());
@@ -226,7 +208,7 @@ TEST(InputStream, curved_paths_are_compared_as_in_memory_and_audited_with_at_mos
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
     MotionStream read(whole);
     std::size_t most_held = 0;
-    MotionStream stream = strict(read, most_held);
+    MotionStream stream = test::strict(read, most_held);
     CompareOptions options;
     options.path = PathKind::kCatmullRom;
     options.elements.kind = kind;
@@ -239,7 +221,7 @@ TEST(InputStream, curved_paths_are_compared_as_in_memory_and_audited_with_at_mos
   for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
     MotionStream read(whole);
     std::size_t most_held = 0;
-    MotionStream stream = strict(read, most_held);
+    MotionStream stream = test::strict(read, most_held);
     AuditOptions options;
     options.path = PathKind::kCatmullRom;
     options.rule = rule;

@@ -115,6 +115,21 @@ TEST(BakeCurved, an_element_without_area_at_the_first_key_is_right_later) {
   }
 }
 
+TEST(BakeCurved, an_element_that_has_no_area_for_a_while_begins_again_in_the_direction_that_it_takes_then) {
+  Motion motion = test::curved_motion({0, 1, 2, 3, 4, 5, 6, 7}, 1, 8, 4);
+  for (const std::size_t k : {2U, 3U, 4U, 5U}) {  // all vertices are at one point
+    std::vector<float>& positions = motion.keyframes[k].positions;
+    for (std::size_t c = 0; c < positions.size(); ++c) positions[c] = c % 3 == 0 ? 1.0F : 0.0F;
+  }
+  // Nothing moves from key 3 to key 4. From there on, vertices go along their velocities at key 5, which lead to key 6.
+  const Baked bake = baked(motion, PathKind::kCatmullRom, 0.5);
+  const ShownGlb glb(bake.glb);
+  const std::vector<double> weights = glb.weights(4);
+  const auto normals = test::normals_of(motion, test::on_curve(motion, 5, 1), true);
+  for (std::size_t v = 0; v < glb.vertices(); ++v)
+    EXPECT_LT(test::angle_of(glb.normal(v, weights), normals[v]), 1e-5) << v;
+}
+
 TEST(BakeCurved, refuses_encodings_and_weightings_that_it_has_not) {
   const Motion motion = test::curved_motion(kTimes, 1, 6, 4);
   std::string glb;

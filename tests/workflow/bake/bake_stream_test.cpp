@@ -18,6 +18,7 @@
 #include "tests/support/cache_bytes.h"
 #include "tests/support/child_process.h"
 #include "tests/support/read_input.h"
+#include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::bake_stream_test {
@@ -66,22 +67,6 @@ Motion waving(std::uint32_t side, std::size_t keyframes, Flat flat = Flat::kNeve
   return motion;
 }
 
-// A stream that keeps nothing, and notes how many keyframes it held at most.
-MotionStream strict(const Motion& whole, std::size_t& most_held) {
-  Motion empty = whole;
-  for (auto& keyframe : empty.keyframes) keyframe.positions = {};
-  return MotionStream(
-      std::move(empty),
-      [&whole, &most_held](const Motion& motion, std::size_t k, std::span<float> positions) -> Status {
-        std::size_t held = 1;
-        for (const auto& keyframe : motion.keyframes) held += keyframe.positions.empty() ? 0U : 1U;
-        most_held = std::max(most_held, held);
-        std::copy(whole.keyframes[k].positions.begin(), whole.keyframes[k].positions.end(), positions.begin());
-        return Success{};
-      },
-      0);
-}
-
 struct Way {
   const char* name;
   BakeOptions options;
@@ -121,7 +106,7 @@ TEST(BakeStream, has_the_bytes_of_a_motion_in_memory_and_holds_few_keyframes) {
       ASSERT_TRUE(expected.ok()) << what << ": " << expected.error().text();
       ASSERT_EQ(expected.value().bytes, glb.size()) << what;
       std::size_t most_held = 0;
-      MotionStream stream = strict(whole, most_held);
+      MotionStream in_memory(whole), stream = test::strict(in_memory, most_held);
       const Result<SequenceBake> found = bake_sequence(stream, way.options, folder / "out.glb", true);
       ASSERT_TRUE(found.ok()) << what << ": " << found.error().text();
       EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb) << what;
@@ -140,7 +125,7 @@ TEST(BakeStream, hosts_with_little_room_get_the_bends_that_gain_most_from_a_stre
   std::string glb;
   EXPECT_EQ(bake_sequence(whole, options, glb).value().extra_targets, 4U);
   std::size_t most_held = 0;
-  MotionStream stream = strict(whole, most_held);
+  MotionStream in_memory(whole), stream = test::strict(in_memory, most_held);
   ASSERT_TRUE(bake_sequence(stream, options, folder / "out.glb", false).ok());
   EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb);
   EXPECT_LE(most_held, 3U);
@@ -245,6 +230,35 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   }
 }
 
+TEST(BakeStream, a_keyframe_that_cannot_be_read_ends_it_in_whatever_pass) {
+  const TemporaryFolder folder;
+  const Motion whole = waving(4, 8);
+  for (const Way& way : ways()) {
+    std::string glb;
+    ASSERT_TRUE(bake_sequence(whole, way.options, glb).ok()) << way.name;
+    for (std::size_t failing = 0, read = 1; failing < read; ++failing) {
+      read = 0;
+      MotionStream stream(
+          outline(4, 8),
+          [&](const Motion&, std::size_t k, std::span<float> positions) -> Status {
+            if (read++ == failing)
+              return Error{ErrorCode::kFailed, "keyframe " + std::to_string(k), "the disk is gone"};
+            std::copy(whole.keyframes[k].positions.begin(), whole.keyframes[k].positions.end(), positions.begin());
+            return Success{};
+          },
+          0);
+      const Result<SequenceBake> baked = bake_sequence(stream, way.options, folder / "out.glb", false);
+      if (baked.ok()) {  // what failed was read ahead and not needed
+        EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb) << way.name << failing;
+        std::filesystem::remove(folder / "out.glb");
+        continue;
+      }
+      EXPECT_EQ(baked.error().message, "the disk is gone") << way.name << failing;
+      EXPECT_EQ(folder.entry_count(), 0U) << way.name << failing;
+    }
+  }
+}
+
 TEST(BakeStream, what_a_motion_in_memory_is_refused_for_a_stream_is_too) {
   const TemporaryFolder folder;
   Motion far = waving(5, 6), twice = waving(5, 6);
@@ -257,7 +271,7 @@ TEST(BakeStream, what_a_motion_in_memory_is_refused_for_a_stream_is_too) {
     ASSERT_FALSE(expected.ok());
     EXPECT_EQ(glb, "old");
     std::size_t most_held = 0;
-    MotionStream stream = strict(*motion, most_held);
+    MotionStream in_memory(*motion), stream = test::strict(in_memory, most_held);
     const Result<SequenceBake> found = bake_sequence(stream, {}, folder / "out.glb", false);
     ASSERT_FALSE(found.ok());
     EXPECT_EQ(found.error().text(), expected.error().text());
