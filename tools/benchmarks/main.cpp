@@ -52,7 +52,9 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"quick", results.quick ? " **Repetitions were few and short in this quick run; its figures are rough.**" : ""},
        {"meshes", meshes_part(results, folder)},
        {"frames", frames_part(results, folder)},
-       {"blend", blend_part(results, folder)}});
+       {"blend", blend_part(results, folder)},
+       {"curved", curved_part(results, folder)},
+       {"uses", uses_part(results, folder)}});
   add_costs(part, results);
   add_aims(part, results);
   add_memory(part, results);
@@ -62,13 +64,14 @@ std::string machine_part(const Results& results, const std::string& folder) {
 }
 
 void write_page(const fs::path& results, const std::string& folder) {
+  const std::vector<Results> all = all_results(results);
   std::string machines;
-  for (const Results& machine : all_results(results)) {
+  for (const Results& machine : all) {
     if (!machines.empty()) machines += '\n';
     machines += machine_part(machine, folder);
   }
   Page page("benchmarks/benchmarks.md.in", folder);
-  page.set("machines", machines);
+  page.set({{"side_by_side", side_by_side(all)}, {"machines", machines}});
   page.write("benchmarks.md");
 }
 

@@ -23,6 +23,13 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 [[nodiscard]] std::string meshes_part(const Results& results, const std::string& folder);
 [[nodiscard]] std::string frames_part(const Results& results, const std::string& folder);
 
+/// The parts on curved paths, and on answers for whole intervals of time; both are empty where no run measured them.
+[[nodiscard]] std::string curved_part(const Results& results, const std::string& folder);
+[[nodiscard]] std::string uses_part(const Results& results, const std::string& folder);
+
+/// The same rows of all machines, a column for each.
+[[nodiscard]] std::string side_by_side(const std::vector<Results>& machines);
+
 [[nodiscard]] std::string nanoseconds(double ns);
 /// The median, and the distance between the quartiles in percent of it; "-" where there is no row.
 [[nodiscard]] std::string cell(const Row* row);
