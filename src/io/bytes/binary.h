@@ -77,7 +77,7 @@ template <class Real>
 }
 
 /// The place of a byte: "NAME, byte N".
-[[nodiscard]] inline std::string place(const std::string& name, std::size_t at) {
+[[nodiscard]] inline std::string place(const std::string& name, std::uint64_t at) {
   return name + ", byte " + std::to_string(at);
 }
 

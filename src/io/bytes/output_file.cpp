@@ -122,7 +122,7 @@ struct internal::OutputFile::State {
   }
 };
 
-namespace internal {
+inline namespace internal {
 
 OutputFile::OutputFile(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 OutputFile::OutputFile(OutputFile&&) noexcept = default;

@@ -24,8 +24,8 @@ std::string item(const std::string& list, std::size_t index) {
 std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   const std::string text = edit.text(pointer);
   double value = 0;  // 4.0 is an index too
-  from_chars(text.data(), text.data() + text.size(), value);
-  return static_cast<std::size_t>(value);
+  const bool is_number = from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
+  return is_number ? static_cast<std::size_t>(value) : 0;
 }
 
 // How many items an array of the source has.
