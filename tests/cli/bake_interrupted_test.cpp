@@ -36,7 +36,7 @@ class InterruptedBake : public testing::Test {
     EXPECT_EQ(test::read_whole(folder_ / (folder + "/old.glb")), kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
-  // The same where the disk has so little room. Skips the test where none can be mounted.
+  // The same where the disk has so little room. Only root may mount one, so that the test is skipped for other users.
   void expect_refused_on_a_disk_of(std::size_t kilobytes) const {
     fs::create_directory(folder_ / "small");
     const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";

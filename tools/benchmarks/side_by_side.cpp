@@ -1,4 +1,4 @@
-// The same rows of all machines beside each other.
+// Writes the same rows of all machines beside each other.
 
 #include <fmt/core.h>
 

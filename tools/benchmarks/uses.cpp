@@ -1,4 +1,5 @@
-// What curved paths cost, and what answers for whole intervals cost beside samples, where a run measured them.
+// Writes what curved paths cost, and what answers for whole intervals cost beside samples. A run that did not measure
+// them gets no such parts.
 
 #include <fmt/core.h>
 

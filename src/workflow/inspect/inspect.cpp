@@ -80,7 +80,7 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// What was found in a block of a segment, or in all of them so far.
+// A tally has what was found in one block of a segment, or in all of its blocks so far.
 struct SegmentTally {
   KeyframeTally from, to;  // of the keyframes that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
