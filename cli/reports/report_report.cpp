@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_words.h"
 #include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"

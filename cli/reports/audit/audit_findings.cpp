@@ -1,10 +1,10 @@
 // A face has dozens of targets that lack the same thing: one line says it of all of them, and names the worst.
-#include "cli/reports/audit_findings.h"
+#include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_words.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/table.h"
 #include "workflow/inspect/trouble.h"

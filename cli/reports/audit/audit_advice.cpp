@@ -1,4 +1,4 @@
-#include "cli/reports/audit_advice.h"
+#include "cli/reports/audit/audit_advice.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/bake.h"
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_words.h"
 #include "cli/terminal/format.h"
 
 namespace chronormal::cli {

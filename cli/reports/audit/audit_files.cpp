@@ -1,11 +1,11 @@
-#include "cli/reports/audit_files.h"
+#include "cli/reports/audit/audit_files.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "cli/reports/audit_advice.h"
-#include "cli/reports/audit_findings.h"
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_advice.h"
+#include "cli/reports/audit/audit_findings.h"
+#include "cli/reports/audit/audit_words.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "cli/reports/audit_report.h"
+#include "cli/reports/audit/audit_report.h"
 #include "workflow/json/audit_json.h"
 
 namespace chronormal::cli {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "cli/reports/audit_report.h"
+#include "cli/reports/audit/audit_report.h"
 
 namespace chronormal::cli {
 

@@ -1,4 +1,4 @@
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_words.h"
 
 #include <vector>
 

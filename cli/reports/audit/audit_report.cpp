@@ -1,5 +1,5 @@
 // Prints the result of `audit` as tables and lists.
-#include "cli/reports/audit_report.h"
+#include "cli/reports/audit/audit_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "chronormal/normals/weighting.h"
-#include "cli/reports/audit_advice.h"
-#include "cli/reports/audit_findings.h"
-#include "cli/reports/audit_words.h"
+#include "cli/reports/audit/audit_advice.h"
+#include "cli/reports/audit/audit_findings.h"
+#include "cli/reports/audit/audit_words.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"

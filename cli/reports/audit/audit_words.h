@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/reports/audit_report.h"
+#include "cli/reports/audit/audit_report.h"
 
 namespace chronormal::cli {
 
