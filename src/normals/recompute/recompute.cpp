@@ -96,7 +96,7 @@ QuickNormal thin_normal(const Segment& segment, std::size_t f, double t, float a
   if (!(max_abs(exact) <= kLargestNormal)) return {};
   const Vec3f n = to_float(exact);
   const float product = a * b, square = dot(n, n);
-  if (!(product <= kMaxThinProduct * square && in_range(std::min({square, a, b}), square))) return {};
+  if (!(product * (1 / kMaxThinProduct) <= square && in_range(std::min({square, a, b}), square))) return {};
   const double half_square = 0.5 * dot(exact, exact);
   double y = 1 / std::sqrt(square);
   for (int step = 0; step < 2; ++step) y = y * (1.5 - half_square * y * y);

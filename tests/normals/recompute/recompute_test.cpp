@@ -24,6 +24,8 @@
 #include "tests/support/elements.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
 
 namespace chronormal::recompute_test {
 namespace {
@@ -89,7 +91,18 @@ struct Family {
 
 constexpr std::size_t kFaces = 203;
 
-const std::array<Family, 17> kFamilies{
+// Two sides are nearly the same, and so long that the product of their squares overflows float32.
+Motion soup_with_far_first_corners() {
+  Motion motion = fixtures::large_soup(kFaces);
+  for (Motion::Keyframe& keyframe : motion.keyframes) {
+    for (std::size_t f = 0; f < kFaces; ++f) {
+      for (std::size_t k = 0; k < 3; ++k) keyframe.positions[9 * f + k] *= 1e13F;
+    }
+  }
+  return motion;
+}
+
+const std::array<Family, 18> kFamilies{
     Family{"random, independent ends", [] { return fixtures::large_soup(kFaces); }},
     Family{"random, motion 0.2", [] { return fixtures::moderate_soup(kFaces); }},
     Family{"needles", [] { return fixtures::needle_soup(kFaces); }},
@@ -107,6 +120,7 @@ const std::array<Family, 17> kFamilies{
     Family{"motion of 1e-9 to 1", [] { return fixtures::graded_soup(kFaces); }},
     Family{"thinnest needles", [] { return fixtures::thinnest_soup(false, kFaces); }},
     Family{"thinnest needles in a plane", [] { return fixtures::thinnest_soup(true, kFaces); }},
+    Family{"first corners far away", soup_with_far_first_corners},
 };
 
 const std::array<double, 7> kTimes{0, 1, 0.5, 1.0 / 3, 0x1p-30, 0.7300000190734863, 0.9};
@@ -122,6 +136,29 @@ TEST(Recompute, faces_are_within_the_promise_of_exact_arithmetic) {
         const exact::Vector expected = exact_normal(segment, f, t);
         if (!exact::is_zero(expected)) worst = std::max(worst, angle(normals[f], expected));
         EXPECT_NEAR(length(to_double(normals[f])), 1, 3e-7) << family.name;
+      }
+    }
+    EXPECT_LE(worst, kPromised) << family.name;
+  }
+}
+
+TEST(Recompute, hard_motions_are_within_the_promise_of_whole_numbers) {
+  constexpr std::size_t kFewest = 4000;  // faces of a family
+  for (const test::HardMotions& family : test::hard_motions()) {
+    fixtures::Random random(8200);
+    double worst = 0;
+    for (std::size_t done = 0; done < kFewest;) {
+      const Motion motion = family.make(random);
+      const Segment segment = motion.segment(0);
+      done += motion.topology.face_count();
+      const test::IntegerNormals oracle(segment);
+      for (const double t : {0.0, 1.0, 0.5, 1 - 0x1p-30, random.uniform(0, 1), random.uniform(0, 1)}) {
+        const std::vector<test::IntegerVector> expected = oracle.at(test::IntegerTime::of(t));
+        const Normals normals = of_faces(segment, t);
+        for (std::size_t f = 0; f < normals.size(); ++f) {
+          if (test::is_zero(expected[f])) continue;
+          worst = std::max(worst, test::angle_between(normals[f], test::direction_of(expected[f])));
+        }
       }
     }
     EXPECT_LE(worst, kPromised) << family.name;

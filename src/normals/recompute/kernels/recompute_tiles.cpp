@@ -282,7 +282,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMaxThinProduct), fine.square));
+  // Not the square times the largest share, which may be infinite, and then no less than a product that is.
+  const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
   const Floats scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(fine.trusted, fine.square, one)));
