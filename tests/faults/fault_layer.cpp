@@ -7,7 +7,8 @@
 //     CHRONORMAL_FAULT=mmap:1:short        the file that is mapped first is empty from then on
 //     CHRONORMAL_FAULT=any:7:signal15      before the seventh call of any kind but malloc, the process gets SIGTERM
 //     CHRONORMAL_FAULT=A,B                 two of these
-//     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind
+//     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
+//                                          "start" how many times memory was asked for before the first other call
 //
 // Calls count from main() on: what the libraries need to start is not ours. close() closes before it fails, as Linux
 // does. fsync() only counts, since no power will be cut. Nothing here allocates, and all goes to the kernel directly.
@@ -52,6 +53,7 @@ struct Fault {
 constexpr int kMostFaults = 2;
 Fault faults[kMostFaults];
 std::atomic<long> counts[kKinds];
+std::atomic<long> mallocs_at_start{-1};  // -1: there was no other call yet
 std::atomic<bool> is_armed{false};
 
 long number_at(const char*& text) {
@@ -88,23 +90,25 @@ __attribute__((constructor)) void read_faults() {
   }
 }
 
+void write_count(long file, const char* name, long number) {
+  char line[64];
+  std::size_t end = 0;
+  for (const char* c = name; *c != '\0'; ++c) line[end++] = *c;
+  line[end++] = ' ';
+  char digits[24];
+  int count = 0;
+  for (long rest = number; rest > 0 || count == 0; rest /= 10) digits[count++] = static_cast<char>('0' + rest % 10);
+  while (count > 0) line[end++] = digits[--count];
+  line[end++] = '\n';
+  (void)::syscall(SYS_write, file, line, end);
+}
+
 __attribute__((destructor)) void write_counts() {
   const char* path = std::getenv("CHRONORMAL_FAULT_COUNTS");
   if (path == nullptr) return;
   const long file = ::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  for (int kind = 0; kind < kKinds; ++kind) {
-    char line[64];
-    std::size_t end = 0;
-    for (const char* c = kNames[kind]; *c != '\0'; ++c) line[end++] = *c;
-    line[end++] = ' ';
-    char digits[24];
-    int count = 0;
-    for (long rest = counts[kind]; rest > 0 || count == 0; rest /= 10)
-      digits[count++] = static_cast<char>('0' + rest % 10);
-    while (count > 0) line[end++] = digits[--count];
-    line[end++] = '\n';
-    (void)::syscall(SYS_write, file, line, end);
-  }
+  for (int kind = 0; kind < kKinds; ++kind) write_count(file, kNames[kind], counts[kind]);
+  write_count(file, "start", mallocs_at_start >= 0 ? mallocs_at_start.load() : counts[kMalloc].load());
   (void)::syscall(SYS_close, file);
 }
 
@@ -112,6 +116,7 @@ __attribute__((destructor)) void write_counts() {
 const Fault* fault_at(int kind) {
   if (!is_armed) return nullptr;
   const long number = ++counts[kind], any = kind == kMalloc ? 0 : ++counts[kAny];
+  if (any == 1) mallocs_at_start = counts[kMalloc].load();
   const Fault* found = nullptr;
   for (const Fault& fault : faults) {
     const long now = fault.kind == kind ? number : fault.kind == kAny ? any : 0;
