@@ -64,8 +64,8 @@ TEST_F(QueryCli, collapses_are_rows_of_segment_and_face) {
 }
 
 TEST_F(QueryCli, a_span_asks_about_its_own_time_only) {
-  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from 1").at("arrays").at("segment"), Json({1}));
-  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --to 0.75").at("arrays").at("segment"), Json({0}));
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from 1").at("arrays").at("segment"), Json::array({1}));
+  EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --to 0.75").at("arrays").at("segment"), Json::array({0}));
   EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from .6 --to 1.4").at("summary").at("segments"), 2);
   EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from .6 --to 1.4").at("summary").at("collapses"), 0);
   EXPECT_EQ(json_of("collapse a.obj b.obj c.obj --from 5 --to 15 --fps .1").at("summary").at("collapses"), 2);
