@@ -1,6 +1,10 @@
 // Ranks by MPI. Texts go as bytes: first how many, then the bytes themselves in blocks that MPI can count; an error is
-// one message. Whoever waits sleeps between looks, since the ranks of one machine share its cores, and the first rank
-// looks for errors of the others whenever it waits.
+// one message. Whoever waits sleeps between looks, since the ranks of one machine share its cores, and looks for errors
+// whenever it waits: the first rank for those of the others, the others for word from the first that all must end.
+//
+// They must hear of it from the first rank. mpirun would send them SIGTERM, and soon after that SIGKILL; Open MPI means
+// to wait a second in between, but when one rank ends, the signal that says so cuts this short for all others. On a busy
+// machine they lost before they had removed their files.
 #include <mpi.h>
 
 #include <algorithm>
@@ -20,9 +24,10 @@ namespace chronormal::cli {
 namespace {
 
 constexpr int kFirst = 0;
-constexpr int kText = 1, kError = 2;  // what a message is
+constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // what a message is
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 30U;
 constexpr std::chrono::milliseconds kNap{1};
+constexpr std::chrono::seconds kGrace{5};  // for ranks that look for word of the first only now and then
 
 struct State {
   int rank = 0, count = 1;
@@ -43,12 +48,45 @@ bool was_started_as_rank() {
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Says an error and ends all ranks: mpirun sends SIGTERM to the others.
+// Whether there is a message of this kind; it is taken.
+bool take_signal(int from, int kind) {
+  int is_there = 0;
+  MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
+  if (is_there != 0) MPI_Recv(nullptr, 0, MPI_BYTE, from, kind, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return is_there != 0;
+}
+
+// Returns when the other ranks have removed their files, or when the time for that is over.
+void end_others() {
+  for (int rank = 1; rank < state().count; ++rank) {
+    MPI_Request request{};  // nobody waits for it: some ranks may never look
+    MPI_Isend(nullptr, 0, MPI_BYTE, rank, kEnd, MPI_COMM_WORLD, &request);
+    MPI_Request_free(&request);
+  }
+  const auto end = std::chrono::steady_clock::now() + kGrace;
+  for (int ready = 1; ready < state().count && std::chrono::steady_clock::now() < end;) {
+    if (take_signal(MPI_ANY_SOURCE, kReady))
+      ++ready;
+    else
+      std::this_thread::sleep_for(kNap);
+  }
+}
+
+// Says an error and ends all ranks; mpirun sends signals to those that do not answer.
 [[noreturn]] void end_all(const Error& error) {
   const int code = state().report(error);
   remove_temporaries();
+  end_others();
   (void)MPI_Abort(MPI_COMM_WORLD, code);
   std::_Exit(code);
+}
+
+// Waits for mpirun to end this rank where the first rank has said that all must end.
+void look_for_end() {
+  if (!take_signal(kFirst, kEnd)) return;
+  remove_temporaries();
+  MPI_Send(nullptr, 0, MPI_BYTE, kFirst, kReady, MPI_COMM_WORLD);
+  for (;;) std::this_thread::sleep_for(kGrace);
 }
 
 void look_for_errors();
@@ -116,7 +154,10 @@ Error of_rank(int rank, Error error) {
 }
 
 void look_for_errors() {
-  if (!is_first()) return;
+  if (!is_first()) {
+    look_for_end();
+    return;
+  }
   MPI_Status message{};
   int is_there = 0, size = 0;
   MPI_Iprobe(MPI_ANY_SOURCE, kError, MPI_COMM_WORLD, &is_there, &message);

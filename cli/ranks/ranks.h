@@ -55,7 +55,7 @@ void maximize_numbers(std::span<double> numbers);
   return has_ranks() ? &peers : nullptr;
 }
 
-/// The same progress callback, which on the first rank also looks for errors of the others.
+/// The same progress callback, which also looks whether a rank has failed.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 
