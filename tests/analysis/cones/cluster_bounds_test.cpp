@@ -45,9 +45,10 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The tests as meshoptimizer.h has them, in float32.
+// The tests as meshoptimizer.h has them, in float32. Only squares are summed in double: those of lengths below 1e-19
+// underflow float32, and then any test that divides by a length, or adds one, is wrong, whatever the bounds are.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-float length_of(const Vec3f& v) { return std::sqrt(dot(v, v)); }
+float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
 bool rejects_by_apex(const meshopt_Bounds& b, const Vec3f& camera) {
   return dot(normalized_of(vector_of(b.cone_apex) - camera), vector_of(b.cone_axis)) >= b.cone_cutoff;
