@@ -24,6 +24,9 @@ Results parsed(const Json& json) {
   Results results;
   results.quick = json.at("quick");
   results.machine = pairs(json.at("machine"));
+  for (auto& [key, value] : results.machine) {
+    if (key == "instruction_set" && value == "AVX3") value = "AVX-512";  // which Highway calls AVX3
+  }
   results.rivals = pairs(json.at("rivals"));
   for (const Json& one : json.at("bandwidths"))
     results.bandwidths.push_back({one.at("bytes"), one.at("read_gb_s"), one.at("stream_gb_s"), one.at("copy_gb_s")});
