@@ -72,9 +72,14 @@ struct Facing {
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }
 };
 
-/// Decides for one face. The second takes its control normals, as face_control_normals() makes them of this segment.
-/// Cost: for faces that clearly keep their side, three or six dot products; some 0.2 microseconds for one that changes
-/// sides, and several of integers where it touches edge-on, or is so at 0, 1/2 or 1.
+/// Decides for a range of faces. normals are theirs, as face_control_normals() makes them of this segment; result has an
+/// element for each face.
+/// Cost: about that of unit_normal_at() for each face; several times that where it changes sides twice or more, and some
+/// microseconds of integers where it touches edge-on, or is so at 0, 1/2 or 1.
+void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
+                  std::span<Facing> result) noexcept;
+
+/// The same for one face, which costs several times what it costs among others.
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const View& view) noexcept;
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;

@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "analysis/signs/exact_roots.h"
 #include "chronormal/core/polynomial.h"
@@ -23,22 +22,20 @@ namespace chronormal::inline internal {
 template <std::size_t M>
 class CertainRoots {
  public:
-  /// The roots of all polynomials with coefficients within error of these; nothing where they differ in the number of
-  /// roots, or where it takes more to see that they do not. (A root has no part in 0 or 1 then.)
-  [[nodiscard]] static std::optional<ExactRoots> of(const std::array<double, M>& p, double error) noexcept {
+  /// Finds the roots of all polynomials with coefficients within error of these; false where they differ in the number
+  /// of roots, or where it takes more to see that they do not. (A root has no part in 0 or 1 then.)
+  [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
-    for (const double b : p) size = std::fmax(size, std::fabs(b));
+    for (const double b : p) size = std::max(size, std::fabs(b));
     // A halving adds three roundings to a coefficient, and an evaluation nine.
     constexpr double kRoundings = 3 * kMostHalvings + 16;
-    CertainRoots search(error + kRoundings * kUnitRoundoff * size);
-    if (!search.settle(p, 0, 1, kMostHalvings)) return std::nullopt;
-    return search.found_;
+    return CertainRoots(error + kRoundings * kUnitRoundoff * size, found).settle(p, 0, 1, kMostHalvings);
   }
 
  private:
   static constexpr int kMostHalvings = 10, kMostSteps = 20;
 
-  explicit CertainRoots(double error) noexcept : error_(error) {}
+  CertainRoots(double error, ExactRoots& found) noexcept : error_(error), found_(found) {}
 
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
@@ -73,34 +70,48 @@ class CertainRoots {
     double root = 0, slope = 0;  // slope: of p there, without its sign
   };
 
-  // By Newton's method, kept between values of different signs by bisection; rounding decides how good it is.
-  static Guess only_root(const std::array<double, M>& p) noexcept {
-    const Power<double, M - 1> power = to_power(p);
-    double low = 0, high = 1, t = p[0] / (p[0] - p[M - 1]), slope = 0;
+  // The only root of a quadratic with values of different signs at its ends: that of p2 s^2 + 2 p1 s + p0 with
+  // s = t / (1 - t) > 0, in the form in which nothing cancels.
+  static double root_of_quadratic(double p0, double p1, double p2) noexcept {
+    const double w = p1 + std::copysign(std::sqrt(p1 * p1 - p0 * p2), p1);
+    return (w < 0) == (p2 < 0) ? p0 / (p0 - w) : w / (w - p2);
+  }
+
+  static Guess only_root(const std::array<double, 3>& p) noexcept {
+    const double t = root_of_quadratic(p[0], p[1], p[2]);
+    return {t, std::fabs(2 * ((1 - t) * (p[1] - p[0]) + t * (p[2] - p[1])))};
+  }
+
+  // By Newton's method from the root of the quadratic that is closest at the ends and in the middle, kept between values
+  // of different signs by bisection; rounding decides how good it is.
+  static Guess only_root(const std::array<double, 4>& p) noexcept {
+    constexpr double kLastStep = 0x1p-28;  // the error of what follows such a step is about its square
+    const double a1 = 3 * (p[1] - p[0]), a2 = 3 * ((p[2] - p[1]) - (p[1] - p[0])),
+                 a3 = (p[3] - p[0]) - 3 * (p[2] - p[1]);
+    double low = 0, high = 1, slope = 0;
+    double t = root_of_quadratic(p[0], 0.25 * (3 * (p[1] + p[2]) - (p[0] + p[3])), p[3]);
     for (int i = 0; i < kMostSteps; ++i) {
-      double value = power.a[M - 1];
-      slope = 0;
-      for (std::size_t k = M - 1; k > 0; --k) {
-        slope = slope * t + value;
-        value = value * t + power.a[k - 1];
-      }
+      const double value = ((a3 * t + a2) * t + a1) * t + p[0];
+      slope = (3 * a3 * t + 2 * a2) * t + a1;
       ((value < 0) == (p[0] < 0) ? low : high) = t;
       double next = t - value / slope;
       if (!(low <= next && next <= high)) next = low + (high - low) / 2;
-      if (std::fabs(next - t) <= 2 * kUnitRoundoff) break;
+      const double step = std::fabs(next - t);
       t = next;
+      if (step <= kLastStep) break;
     }
     return {t, std::fabs(slope)};
   }
 
   bool add_root(const std::array<double, M>& p, double t0, double width, int before) noexcept {
     const auto [root, slope] = only_root(p);
+    const double per_width = 1 / width;  // a power of two
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
       // The sums may round; the fractions of the part that they stand for are exact again.
-      const double lower = std::fmax(t0 + width * std::fmax(root - step, 0.0), t0);
-      const double upper = std::fmin(t0 + width * std::fmin(root + step, 1.0), t0 + width);
-      const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) / width)); };
+      const double lower = std::max(t0 + width * std::max(root - step, 0.0), t0);
+      const double upper = std::min(t0 + width * std::min(root + step, 1.0), t0 + width);
+      const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) * per_width)); };
       if (sign_at(lower) == before && sign_at(upper) == -before) {
         if (found_.count == M - 1) return false;
         found_.at[found_.count++] = {lower, upper, before, -before};
@@ -111,7 +122,7 @@ class CertainRoots {
   }
 
   double error_;
-  ExactRoots found_;
+  ExactRoots& found_;
 };
 
 }  // namespace chronormal::inline internal

@@ -1,23 +1,24 @@
 // Three stages, of which each decides what it is sure of.
 //
 // 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
-// where
-//    all are clearly positive, or all negative, so is f. This is the answer for almost every face.
-// 2. The same coefficients with the bound that the face's own rounding has, and their roots
-// (analysis/signs/certain_roots.h). 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at
-// an end or in the middle, or has no area.
+//    where all are clearly positive, or all negative, so is f. This is the answer for most faces.
+// 2. The same coefficients with the bound that the face's own rounding has, and their roots: the only one in lanes
+//    (analysis/signs/kernels/facing_lanes.h), several one face at a time (analysis/signs/certain_roots.h).
+// 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has
+//    no area.
 
 #include "chronormal/analysis/facing.h"
-#include "analysis/signs/length_1.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "analysis/signs/certain_roots.h"
 #include "analysis/signs/exact_roots.h"
+#include "analysis/signs/kernels/facing_lanes.h"
 #include "core/rounding.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/polygon_normals.h"
@@ -25,76 +26,41 @@
 namespace chronormal {
 namespace {
 
-// By how much a dot product with a control normal may be off, against the length_1 of that and the largest component of
-// the other vector: sqrt(3) 2^-26 and a few roundings.
-constexpr double kDotShare = 0x1p-25;
-
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// The way to the eye at both ends.
-struct Ways {
-  Vec3d from, to;
-};
-
-Ways ways_to_eye(const Segment& segment, std::size_t face, const View& view) noexcept {
-  const std::uint32_t corner = segment.topology->face(face)[0];
-  return {to_double(view.from) - to_double(segment.from[corner]), to_double(view.to) - to_double(segment.to[corner])};
-}
-
-// Bernstein coefficients, each times its binomial coefficient, and how far each may be off.
-template <std::size_t M>
-struct Bounded {
-  std::array<double, M> values, bounds;
-};
-
-// 1 or -1 where all are beyond their bounds on that side.
-template <std::size_t M>
-int common_sign(const Bounded<M>& f) noexcept {
-  bool is_front = true, is_back = true;
-  for (std::size_t k = 0; k < M; ++k) {
-    is_front &= f.values[k] > f.bounds[k];
-    is_back &= f.values[k] < -f.bounds[k];
+// The coefficients of f by the control normals of a block of faces.
+void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
+            FacingCoefficients& result) noexcept {
+  if (!view.is_eye) {
+    facing_of_direction(normals, faces.count, to_double(view.from), result);
+    return;
   }
-  return static_cast<int>(is_front) - static_cast<int>(is_back);
-}
-
-Bounded<3> from_far(const ControlNormals& c, const Vec3d& w) noexcept {
-  const double share = kDotShare * max_abs(w);
-  return {{dot(c.n0, w), 2 * dot(c.m, w), dot(c.n1, w)},
-          {share * length_1(c.n0), 2 * share * length_1(c.m), share * length_1(c.n1)}};
-}
-
-Bounded<4> from_eye(const ControlNormals& c, const Ways& w) noexcept {
-  const double share = kDotShare * std::fmax(max_abs(w.from), max_abs(w.to));
-  const double n0 = share * length_1(c.n0), m = 2 * share * length_1(c.m), n1 = share * length_1(c.n1);
-  return {{dot(c.n0, w.from), dot(c.n0, w.to) + 2 * dot(c.m, w.from), 2 * dot(c.m, w.to) + dot(c.n1, w.from),
-           dot(c.n1, w.to)},
-          {n0, n0 + m, m + n1, n1}};
-}
-
-// Calls body with the coefficients of f by the control normals.
-template <class Body>
-auto glance(const Segment& segment, std::size_t face, const ControlNormals& normals, const View& view,
-            const Body& body) noexcept {
-  if (view.is_eye) return body(from_eye(normals, ways_to_eye(segment, face, view)));
-  return body(from_far(normals, to_double(view.from)));
+  FacingWays ways{};
+  const Vec3d from = to_double(view.from), to = to_double(view.to);
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const std::uint32_t corner = segment.topology->face(faces.first + i)[0];
+    const Vec3d at_start = from - to_double(segment.from[corner]), at_end = to - to_double(segment.to[corner]);
+    ways.at[0][i] = at_start.x, ways.at[1][i] = at_start.y, ways.at[2][i] = at_start.z;
+    ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
+  }
+  facing_of_eye(normals, faces.count, ways, result);
 }
 
 // What a shutter sees by the control normals alone, where they can tell.
 template <std::size_t M>
-std::optional<ShutterSide> side_by_glance(const Bounded<M>& f, double t0, double t1) noexcept {
-  if (const int sign = common_sign(f); sign != 0) return static_cast<ShutterSide>(sign);
-  const auto is_clear = [&f](std::size_t k) { return std::fabs(f.values[k]) > f.bounds[k]; };
-  const bool differ = (f.values[0] < 0) != (f.values[M - 1] < 0);
+std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
+  if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
+  const auto is_clear = [&f, i](std::size_t k) { return std::fabs(f.values[k][i]) > f.bounds[k][i]; };
+  const bool differ = (f.values[0][i] < 0) != (f.values[M - 1][i] < 0);
   if (t0 == 0 && t1 == 1 && differ && is_clear(0) && is_clear(M - 1)) return ShutterSide::kBoth;
   if (!(t0 < t1)) return std::nullopt;
   std::array<double, M> p;
   double size = 0, bound = 0;
   for (std::size_t k = 0; k < M; ++k) {
     constexpr double kShareOfInner = 1.0 / (M - 1);
-    p[k] = k == 0 || k == M - 1 ? f.values[k] : kShareOfInner * f.values[k];
-    size = std::fmax(size, std::fabs(p[k]));
-    bound = std::fmax(bound, f.bounds[k]);
+    p[k] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
+    size = std::max(size, std::fabs(p[k]));
+    bound = std::max(bound, f.bounds[k][i]);
   }
   constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
@@ -107,27 +73,46 @@ std::optional<ShutterSide> side_by_glance(const Bounded<M>& f, double t0, double
     shows_back |= value < -bound;
     if (shows_front && shows_back) return ShutterSide::kBoth;
   }
-  Bounded<M> part{restrict_to(p, t0, t1), {}};
-  part.bounds.fill(bound);
-  const int sign = common_sign(part);
-  return sign != 0 ? std::optional(static_cast<ShutterSide>(sign)) : std::nullopt;
+  const std::array<double, M> part = restrict_to(p, t0, t1);
+  if (std::all_of(part.begin(), part.end(), [bound](double b) { return b > bound; })) return ShutterSide::kFront;
+  if (std::all_of(part.begin(), part.end(), [bound](double b) { return b < -bound; })) return ShutterSide::kBack;
+  return std::nullopt;
 }
 
-std::optional<ExactRoots> in_double(const Segment& segment, std::size_t face, const View& view) noexcept {
-  const PolygonNormals own = polygon_control_normals(segment, segment.topology->face(face));
-  const auto& [n0, m, n1] = own.normals;
-  const double error = *std::max_element(own.errors.begin(), own.errors.end());
-  const double size = std::fmax(max_abs(n0), std::fmax(max_abs(m), max_abs(n1)));
-  constexpr double kRoundings = 16;  // of w, of the products and sums of a dot product, and of a mean of three
-  const auto bound = [&](double w) { return (error + kRoundings * kUnitRoundoff * size) * w; };
-  if (!view.is_eye) {
-    const Vec3d w = to_double(view.from);
-    return CertainRoots<3>::of({dot(n0, w), dot(m, w), dot(n1, w)}, bound(length_1(w)));
+// How far any component of the control normals of a triangle may be off. Each is a sum of products of a component of
+// one edge and a component of the other, of two of them in n0 and n1, and half of a sum of four of them in m: at most
+// 48 u of the largest such product by core/rounding.h, and less for what was made of integers.
+double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
+  const auto largest_edge = [&segment, corners](std::size_t c) {
+    const auto edge = [corners, c](const VectorView<const float>& points) {
+      return max_abs(to_double(points[corners[c]]) - to_double(points[corners[0]]));
+    };
+    return std::max(edge(segment.from), edge(segment.to));
+  };
+  return 64 * kUnitRoundoff * largest_edge(1) * largest_edge(2);
+}
+
+double rounding_of(const Segment& segment, std::size_t face) noexcept {
+  const auto corners = segment.topology->face(face);
+  if (corners.size() == 3) return rounding_of_triangle(segment, corners);
+  const PolygonNormals polygon = polygon_control_normals(segment, corners);
+  return *std::max_element(polygon.errors.begin(), polygon.errors.end());
+}
+
+// Puts the polynomial of face i of a block into a lane.
+template <std::size_t M>
+void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, std::size_t i, std::size_t lane,
+         SingleRoots& roots) noexcept {
+  double bound = 0;
+  for (std::size_t k = 0; k < M; ++k) {
+    constexpr double kShareOfInner = 1.0 / (M - 1);
+    roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
+    bound = std::max(bound, f.bounds[k][i]);
   }
-  const Ways w = ways_to_eye(segment, face, view);
-  return CertainRoots<4>::of({dot(n0, w.from), (dot(n0, w.to) + 2 * dot(m, w.from)) / 3,
-                              (2 * dot(m, w.to) + dot(n1, w.from)) / 3, dot(n1, w.to)},
-                             bound(std::fmax(length_1(w.from), length_1(w.to))));
+  // Up to 16 roundings of the way, of the products and sums of a dot product, and of a mean of three: the terms of one
+  // are at most bound / kDotShare.
+  constexpr double kRoundings = 16;
+  roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
 constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kWayDigits = 14;
@@ -176,14 +161,47 @@ ExactRoots in_integers(const Segment& segment, std::size_t face, const View& vie
   return exact_roots(IntegerPolynomial<3, kNormalDigits + kWayDigits + 1>{f});
 }
 
-Facing behind_glance(const Segment& segment, std::size_t face, const View& view) noexcept {
-  const std::optional<ExactRoots> quick = in_double(segment, face, view);
-  const ExactRoots roots = quick ? *quick : in_integers(segment, face, view);
+// All roots of one face.
+template <std::size_t M>
+Facing facing_by_roots(const Segment& segment, std::size_t face, const View& view, const SingleRoots& from,
+                       std::size_t lane) noexcept {
+  std::array<double, M> p;
+  for (std::size_t k = 0; k < M; ++k) p[k] = from.p[k][lane];
+  ExactRoots roots;
+  if (!CertainRoots<M>::find(p, from.error[lane], roots)) roots = in_integers(segment, face, view);
   Facing facing;
   facing.side = side_of(roots.sign);
   for (const ExactRoot& root : roots.all())
     facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
   return facing;
+}
+
+template <std::size_t M>
+void find_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
+                   Facing* result) noexcept {
+  FacingCoefficients f;
+  glance(segment, faces, normals, view, f);
+  SingleRoots roots{};
+  std::array<std::uint8_t, kFacingBlock> face_of_lane;
+  std::size_t lanes = 0;
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    result[i].count = 0;
+    result[i].side = side_of(f.signs[i]);
+    if (f.signs[i] != 0) continue;
+    put<M>(segment, faces.first + i, f, i, lanes, roots);
+    face_of_lane[lanes++] = static_cast<std::uint8_t>(i);
+  }
+  find_single_roots(M - 1, lanes, roots);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const std::size_t i = face_of_lane[lane];
+    const int before = roots.before[lane];
+    if (before == 0) {
+      result[i] = facing_by_roots<M>(segment, faces.first + i, view, roots, lane);
+    } else {
+      result[i].count = 1;
+      result[i].at[0] = {roots.lower[lane], roots.upper[lane], side_of(before), side_of(-before)};
+    }
+  }
 }
 
 // The sides that may be seen in [t0, t1].
@@ -202,12 +220,37 @@ ShutterSide side_over(const Facing& facing, double t0, double t1) noexcept {
   return shows_back ? ShutterSide::kBoth : ShutterSide::kFront;
 }
 
+template <std::size_t M>
+void sides_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
+                    double t0, double t1, ShutterSide* result) noexcept {
+  FacingCoefficients f;
+  glance(segment, faces, normals, view, f);
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    if (const std::optional<ShutterSide> quick = side_by_glance<M>(f, i, t0, t1))
+      result[i] = *quick;
+    else
+      result[i] = side_over(find_facing(segment, faces.first + i, normals[i], view), t0, t1);
+  }
+}
+
 }  // namespace
 
+void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
+                  std::span<Facing> result) noexcept {
+  assert(normals.size() == faces.count && result.size() == faces.count);
+  for (std::size_t i = 0; i < faces.count; i += kFacingBlock) {
+    const IndexRange block{faces.first + i, std::min(kFacingBlock, faces.count - i)};
+    if (view.is_eye)
+      find_in_block<4>(segment, block, &normals[i], view, &result[i]);
+    else
+      find_in_block<3>(segment, block, &normals[i], view, &result[i]);
+  }
+}
+
 Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals, const View& view) noexcept {
-  const int sign = glance(segment, face, normals, view, [](const auto& f) { return common_sign(f); });
-  if (sign != 0) return {{}, 0, side_of(sign)};
-  return behind_glance(segment, face, view);
+  Facing facing;
+  find_facings(segment, {face, 1}, {&normals, 1}, view, {&facing, 1});
+  return facing;
 }
 
 Facing find_facing(const Segment& segment, std::size_t face, const View& view) noexcept {
@@ -219,11 +262,12 @@ Facing find_facing(const Segment& segment, std::size_t face, const View& view) n
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept {
   assert(normals.size() == faces.count && result.size() == faces.count && 0 <= t0 && t0 <= t1 && t1 <= 1);
-  for (std::size_t i = 0; i < faces.count; ++i) {
-    const std::size_t face = faces.first + i;
-    const auto quick =
-        glance(segment, face, normals[i], view, [&](const auto& f) { return side_by_glance(f, t0, t1); });
-    result[i] = quick ? *quick : side_over(behind_glance(segment, face, view), t0, t1);
+  for (std::size_t i = 0; i < faces.count; i += kFacingBlock) {
+    const IndexRange block{faces.first + i, std::min(kFacingBlock, faces.count - i)};
+    if (view.is_eye)
+      sides_in_block<4>(segment, block, &normals[i], view, t0, t1, &result[i]);
+    else
+      sides_in_block<3>(segment, block, &normals[i], view, t0, t1, &result[i]);
   }
 }
 

@@ -4,12 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "analysis/signs/kernels/facing_lanes.h"
+#include "simd/targets.h"
 #include "tests/support/exact_cases.h"
+#include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/whole_polynomial.h"
 
@@ -155,6 +161,86 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
       },
       5);
   EXPECT_EQ(wrong, 0U);
+}
+
+std::string text_of(const Facing& facing) {
+  std::string text = std::to_string(sign_of(facing.side));
+  for (const FacingChange& change : facing.changes()) {
+    std::array<char, 80> line;
+    std::snprintf(line.data(), line.size(), ", %a to %a: %d %d", change.lower, change.upper, sign_of(change.before),
+                  sign_of(change.after));
+    text += line.data();
+  }
+  return text;
+}
+
+TEST(Facing, a_face_among_others_has_the_bits_of_the_face_alone_on_every_instruction_set) {
+  constexpr std::size_t kFaces = 203;
+  std::map<std::size_t, std::size_t> faces_by_changes;
+  for (const Motion& motion : {fixtures::moderate_soup(kFaces), fixtures::large_soup(kFaces),
+                               fixtures::soup({.face_count = kFaces, .seed = 43, .needle = 1e-6})}) {
+    const Segment segment = motion.segment(0);
+    std::vector<ControlNormals> normals(kFaces);
+    face_control_normals(segment, {0, kFaces}, normals);
+    for (const View& view : {View::of_direction({1, 2, -1}), View::of_moving_eye({1, -1, 0.5F}, {-1, 0.5F, 1})}) {
+      std::vector<std::string> alone;
+      for (std::size_t f = 0; f < kFaces; ++f) {
+        const Facing facing = find_facing(segment, f, view);
+        ++faces_by_changes[facing.count];
+        alone.push_back(text_of(facing));
+      }
+      for (const auto target : supported_targets()) {
+        const ScopedTarget scope(target);
+        for (const IndexRange range : {IndexRange{0, kFaces}, IndexRange{1, 32}, IndexRange{7, 101}, {200, 3}}) {
+          std::vector<Facing> found(range.count);
+          find_facings(segment, range, std::span(normals).subspan(range.first, range.count), view, found);
+          for (std::size_t i = 0; i < range.count; ++i)
+            ASSERT_EQ(text_of(found[i]), alone[range.first + i]) << range.first + i << ", " << target_name(target);
+        }
+      }
+    }
+  }
+  for (const std::size_t count : {0U, 1U, 2U}) EXPECT_GT(faces_by_changes[count], 30U) << count;
+}
+
+// The value of a polynomial in Bernstein form, exactly.
+exact::Rational exact_value(const std::vector<double>& p, double at) {
+  std::vector<exact::Rational> row(p.begin(), p.end());
+  const exact::Rational t(at), s = 1 - t;
+  for (std::size_t level = p.size() - 1; level > 0; --level) {
+    for (std::size_t k = 0; k < level; ++k) row[k] = s * row[k] + t * row[k + 1];
+  }
+  return row[0];
+}
+
+TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
+  // Nothing but the rounding of the search itself is left to go wrong.
+  constexpr std::size_t kBlocks = 200;
+  fixtures::Random random(4711);
+  std::size_t found = 0;
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    for (const std::size_t degree : {2U, 3U}) {
+      SingleRoots roots{};
+      for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
+        for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
+        // Some ends that are hardly on their side.
+        if (lane % 4 == 0)
+          roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
+      }
+      find_single_roots(degree, kFacingBlock, roots);
+      for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
+        if (roots.before[lane] == 0) continue;
+        ++found;
+        std::vector<double> p;
+        for (std::size_t k = 0; k <= degree; ++k) p.push_back(roots.p[k][lane]);
+        const exact::Rational below = exact_value(p, roots.lower[lane]), above = exact_value(p, roots.upper[lane]);
+        EXPECT_TRUE(roots.before[lane] > 0 ? below > 0 && above < 0 : below < 0 && above > 0)
+            << "block " << block << ", degree " << degree << ", lane " << lane;
+        EXPECT_LT(roots.upper[lane] - roots.lower[lane], 1e-4);
+      }
+    }
+  }
+  EXPECT_GT(found, kBlocks * kFacingBlock / 2);
 }
 
 // A triangle in the plane z = 0 of which the corner c moves as given.
