@@ -74,9 +74,8 @@ void add_silhouettes(const Silhouette& edge, const std::array<const Facing*, 2>&
 std::vector<Silhouette> find_silhouettes(const Segment& segment, std::span<const ControlNormals> normals,
                                          const View& view) {
   assert(normals.size() == segment.topology->face_count());
-  std::vector<Facing> facing;
-  facing.reserve(normals.size());
-  for (std::size_t f = 0; f < normals.size(); ++f) facing.push_back(find_facing(segment, f, normals[f], view));
+  std::vector<Facing> facing(normals.size());
+  find_facings(segment, {0, normals.size()}, normals, view, facing);
   const std::vector<EdgeOfFace> edges = edges_of(*segment.topology);
   std::vector<Silhouette> result;
   for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {

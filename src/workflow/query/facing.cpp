@@ -64,11 +64,12 @@ View view_in(const Segment& segment, const View& view, double first, double last
 Found facing_of(const Segment& segment, const View& view, bool with_silhouettes, const SegmentPart& part) {
   std::vector<ControlNormals> normals(segment.topology->face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
+  std::vector<Facing> facings(normals.size());
+  find_facings(segment, {0, normals.size()}, normals, view, facings);
   Found found;
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const Facing facing = find_facing(segment, f, normals[f], view);
-    add_fronts(facing, f, part, found.fronts);
-    if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
+    add_fronts(facings[f], f, part, found.fronts);
+    if (facings[f].count == 0) ++(facings[f].side == Side::kFront ? found.always_front : found.always_back);
   }
   if (!with_silhouettes) return found;
   for (Silhouette& one : find_silhouettes(segment, normals, view)) {
