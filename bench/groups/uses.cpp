@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -24,9 +25,10 @@ struct Question {
   Segment segment;
   std::vector<ControlNormals> normals;
   std::vector<ShutterSide> sides;
+  std::vector<Facing> facings;  // of a part of the faces at a time
 
   explicit Question(const Segment& of)
-      : segment(of), normals(of.topology->face_count()), sides(of.topology->face_count()) {
+      : segment(of), normals(of.topology->face_count()), sides(of.topology->face_count()), facings(1024) {
     face_control_normals(segment, {0, normals.size()}, normals);
   }
 };
@@ -118,7 +120,12 @@ void run_uses(Suite& suite, const Size& size) {
     made(fmt::format("facing over a shutter, {}", name), culled(q->sides), all_sides);
     made(fmt::format("facing, when it changes, {}", name), "brackets of every change", [=, view = view] {
       std::size_t changes = 0;
-      for (std::size_t f = 0; f < count; ++f) changes += find_facing(q->segment, f, q->normals[f], view).count;
+      for (std::size_t first = 0; first < count; first += q->facings.size()) {
+        const IndexRange part{first, std::min(q->facings.size(), count - first)};
+        find_facings(q->segment, part, std::span(q->normals).subspan(first, part.count), view,
+                     std::span(q->facings).first(part.count));
+        for (std::size_t i = 0; i < part.count; ++i) changes += q->facings[i].count;
+      }
       if (changes > 3 * count) throw std::runtime_error("uses: a cubic has three roots");
     });
   }
