@@ -167,7 +167,7 @@ template <std::size_t M>
 HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   constexpr double kRoundings = 46;  // as in CertainRoots
   const Doubles zero = hn::Zero(kDoubles), one = hn::Set(kDoubles, 1);
-  // Those that begin below zero are turned over.
+  // A polynomial that is negative at 0 is multiplied by -1, so that each of them falls from positive to negative.
   const Doubles sign = hn::CopySign(one, hn::Load(kDoubles, roots.p[0] + at));
   Doubles p[M], size = zero;
   for (std::size_t k = 0; k < M; ++k) {
@@ -182,7 +182,7 @@ HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   const Doubles lower = hn::Max(zero, hn::Sub(root, step)), upper = hn::Min(one, hn::Add(root, step));
   const auto is_bracketed = hn::And(hn::Gt(ValueAt(p, lower), error), hn::Lt(ValueAt(p, upper), below));
   const auto changes = hn::And(hn::Gt(p[0], error), hn::Lt(p[M - 1], below));
-  // A bracket that is wide though there is one root: the guess was none.
+  // Where the guess is not near the root, the bracket may be right and yet too wide to be of use.
   const auto is_narrow = hn::Lt(step, hn::Set(kDoubles, 0x1p-16));
   const auto is_found = hn::And(hn::And(changes, is_bracketed), hn::And(is_narrow, HasOneRoot(p, error)));
   hn::Store(lower, kDoubles, roots.lower + at);
