@@ -100,6 +100,35 @@ HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #endif
 }
 
+// Of two vectors, the 128 bits in even places, and those in odd ones.
+HWY_INLINE Doubles EvenPairs(Doubles a, Doubles b) {
+#if HWY_TARGET == HWY_AVX3
+  return Doubles{_mm512_shuffle_f64x2(a.raw, b.raw, 0b10001000)};
+#else
+  return hn::ConcatLowerLower(kDoubles, b, a);
+#endif
+}
+HWY_INLINE Doubles OddPairs(Doubles a, Doubles b) {
+#if HWY_TARGET == HWY_AVX3
+  return Doubles{_mm512_shuffle_f64x2(a.raw, b.raw, 0b11011101)};
+#else
+  return hn::ConcatUpperUpper(kDoubles, b, a);
+#endif
+}
+
+// The k-th of four vectors with all rows of four doubles at row(i), in the order in which interleaving neighbours and
+// then EvenPairs() and OddPairs() leave lane i of row i.
+template <class RowOf>
+HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
+#if HWY_TARGET == HWY_AVX3
+  const std::size_t first = k < 2 ? k : k + 2;
+  const __m512d lower = _mm512_castpd256_pd512(_mm256_loadu_pd(row(first)));
+  return Doubles{_mm512_insertf64x4(lower, _mm256_loadu_pd(row(first + 2)), 1)};
+#else
+  return hn::LoadU(kDoubles, row(k));
+#endif
+}
+
 // Of each pair of lanes the 128 bits go to rows of their own.
 template <class V>
 HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {

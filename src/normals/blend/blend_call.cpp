@@ -12,6 +12,7 @@
 #include "core/blocks.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
+#include "normals/blend/kernels/blend_rows.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -19,22 +20,22 @@ namespace {
 constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements or faces
 constexpr std::size_t kBlockOfVertices = 16384;
 
+constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
+constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
+constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
 // Float32 terms promise 1e-6 rad where their bound is at most so many times |n(w)|: 14 x 2^-24, and what the rounding
 // of the result adds.
-constexpr double kMostBound = 14;
-constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
+constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
-
-// Nanoseconds, fitted to a face of 19,158 vertices with up to 102 targets, as quads and as triangles, on one core of
-// the machine of docs/benchmarks.md.
+// Nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
+// docs/benchmarks.md. Only what they are to each other counts.
 constexpr double kCopiedElement = 0.35;   // of the base normals
-constexpr double kTargetElement = 1.6;    // the terms of a target
-constexpr double kPairElement = 2.1;      // the term of a pair
+constexpr double kTargetElement = 3;      // the terms of a target
+constexpr double kPairElement = 1.4;      // the term of a pair
 constexpr double kFinishedElement = 5.5;  // from the base to length 1
-constexpr double kMovedVertex = 2.4;      // of a target, and back again
-constexpr double kFace = 1.5, kTriangle = 1.9, kTermOfSum = 1.1, kSummedElement = 2.5;
-constexpr double kRim = 1.04;  // a part of the elements has more faces than its share
+constexpr double kMovedVertex = 1.7;      // of a target, and back again
+constexpr double kPathPoint = 1.8;        // of the path around an element
+constexpr double kWrittenElement = 5;     // from the sum over its path
 
 // What of an ascending list lies inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
@@ -46,69 +47,22 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// The weights of the four lanes of a coefficient.
-std::array<double, kBlendLanes> lane_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
-
-// Adds the terms of one target to the sums of the elements of a range.
-void add_target(const StoredTerm& term, double weight, IndexRange range, double* sums) {
-  const auto a = lane_weights(weight * term.scale), c = lane_weights(weight * weight * term.scale);
-  const IndexRange part = part_of(term.elements, range);
-  for (std::size_t i = part.first; i < part.end(); ++i) {
-    const float* const lanes = term.lanes.data() + 2 * kBlendLanes * i;
-    double* const sum = sums + kBlendLanes * term.elements[i];
-    for (std::size_t k = 0; k < kBlendLanes; ++k)
-      sum[k] += a[k] * static_cast<double>(lanes[k]) + c[k] * static_cast<double>(lanes[kBlendLanes + k]);
+// Elements are made from points four at a time, those that nobody asked for included.
+std::size_t lanes_of(const IndexBits& elements) {
+  std::size_t count = 0;
+  for (const std::uint64_t word : elements.words()) {
+    const std::uint64_t pairs = word | word >> 1U;
+    count += 4 * static_cast<std::size_t>(std::popcount((pairs | pairs >> 2U) & 0x1111111111111111U));
   }
+  return count;
 }
 
-void add_pair(const StoredTerm& term, double weight, IndexRange range, double* sums) {
-  const auto c = lane_weights(weight * term.scale);
-  const IndexRange part = part_of(term.elements, range);
-  for (std::size_t i = part.first; i < part.end(); ++i) {
-    const float* const lanes = term.lanes.data() + kBlendLanes * i;
-    double* const sum = sums + kBlendLanes * term.elements[i];
-    for (std::size_t k = 0; k < kBlendLanes; ++k) sum[k] += c[k] * static_cast<double>(lanes[k]);
-  }
+std::span<const std::uint32_t> in(IndexRange part, std::span<const std::uint32_t> list) {
+  return list.subspan(part.first, part.count);
 }
 
-// Brings sums to length 1, a few at a time, and says which float32 could not carry.
-class Finish {
- public:
-  Finish(VectorView<float> result, std::span<std::uint64_t> again) : result_(result), again_(again) {}
-
-  void add(std::size_t e, const double* sum) {
-    elements_[count_] = e;
-    x_[count_] = sum[0], y_[count_] = sum[1], z_[count_] = sum[2], bound_[count_] = sum[3];
-    if (++count_ == kTile) flush();
-  }
-
-  void flush() {
-    for (std::size_t i = 0; i < kTile; ++i) {
-      const double square = x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i];
-      square_[i] = square;
-      inverse_[i] = 1 / std::sqrt(square);
-    }
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t e = elements_[i];
-      const bool is_good = square_[i] >= kSmallestSquare && square_[i] <= kLargestSquare &&
-                           bound_[i] * bound_[i] <= kMostBound * kMostBound * square_[i];
-      if (is_good)
-        result_.set(e, to_float({inverse_[i] * x_[i], inverse_[i] * y_[i], inverse_[i] * z_[i]}));
-      else
-        again_[e / kBitsOfWord] |= std::uint64_t{1} << (e % kBitsOfWord);
-    }
-    count_ = 0;
-  }
-
- private:
-  static constexpr std::size_t kTile = 16;
-
-  VectorView<float> result_;
-  std::span<std::uint64_t> again_;
-  std::size_t count_ = 0;
-  std::array<std::size_t, kTile> elements_{};
-  std::array<double, kTile> x_{}, y_{}, z_{}, bound_{}, square_{}, inverse_{};
-};
+// The weights of the four lanes of a coefficient, of which the last is a bound.
+RowWeights row_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
 class Call {
  public:
@@ -125,7 +79,7 @@ class Call {
       in_blocks(scratch_.touched.words().size(), kBlockOfWords, [this](IndexRange words) { add_terms(words); });
     }
     done.recomputed_elements = scratch_.again.count();
-    if (done.recomputed_elements > 0) recompute(done.path);
+    if (done.recomputed_elements > 0) recompute();
     done.zeros = zeros_;
     done.uncertain_elements = uncertain_;
     return done;
@@ -162,16 +116,20 @@ class Call {
     for (const std::uint32_t i : scratch_.active) {
       const StoredTarget& target = source_.storage.targets()[i];
       if (!target.term.is_stored) continue;
-      add_target(target.term, weights_[i], elements, sums);
+      const double weight = weights_[i];
+      const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
+      IndexRange part = part_of(target.term.elements, elements);
+      add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
+                      row_weights(linear), row_weights(square), sums);
       for (const StoredPair& pair : target.pairs) {
-        if (scratch_.is_active[pair.other] && pair.term.is_stored)
-          add_pair(pair.term, weights_[i] * weights_[pair.other], elements, sums);
+        if (!scratch_.is_active[pair.other] || !pair.term.is_stored) continue;
+        part = part_of(pair.term.elements, elements);
+        add_pair_rows(in(part, pair.term.elements), pair.term.lanes.data() + kBlendLanes * part.first,
+                      row_weights(weight * weights_[pair.other] * pair.term.scale), sums);
       }
     }
-    Finish finish(result_, again);
     for (std::size_t i = words.first; i < words.end(); ++i)
-      for_bits(touched[i] & ~again[i], i, [&](std::size_t e) { finish.add(e, sums + kBlendLanes * e); });
-    finish.flush();
+      again[i] |= unit_normals_of_rows(touched[i] & ~again[i], i, sums, kLimitsOfTerms, result_);
   }
 
   void copy_base(IndexRange elements) const {
@@ -184,90 +142,81 @@ class Call {
       result_.set(e, {units[3 * e], units[3 * e + 1], units[3 * e + 2]});
   }
 
-  void recompute(BlendPath path) {
-    blend_positions();
-    if (path == BlendPath::kWhole) {
-      in_blocks(scratch_.normals.size(), kBlockOfWords * kBitsOfWord, [this](IndexRange faces) {
-        for (std::size_t f = faces.first; f < faces.end(); ++f) make_face(f);
-      });
-    } else {
-      list_faces(path);
-      in_blocks(scratch_.faces.words().size(), kBlockOfWords, [this](IndexRange words) {
-        for_bits(scratch_.faces.words(), words, [this](std::size_t f) { make_face(f); });
-      });
-    }
-    in_blocks(scratch_.again.words().size(), kBlockOfWords, [this](IndexRange words) {
+  void recompute() {
+    blend_points();
+    const RingSlices rings = source_.storage.rings().view();
+    in_blocks(scratch_.again.words().size(), kBlockOfWords, [this, rings](IndexRange words) {
       std::size_t zeros = 0, uncertain = 0;
-      for_bits(scratch_.again.words(), words, [&](std::size_t e) { make_element(e, zeros, uncertain); });
+      for (std::size_t i = words.first; i < words.end(); ++i) {
+        const std::uint64_t doubtful = unit_normals_of_rings(
+            rings, scratch_.again.words()[i], i, scratch_.points.data(), 4 * point_noise_, kLimitsOfPoints, result_);
+        for_bits(doubtful, i, [&](std::size_t e) { make_element(e, zeros, uncertain); });
+      }
       zeros_ += zeros;
       uncertain_ += uncertain;
     });
-    restore_positions();
+    restore_points();
   }
 
-  // The faces of the elements that are made again.
-  void list_faces(BlendPath path) {
-    scratch_.faces.clear();
-    if (path == BlendPath::kTouched) {
-      for (const std::uint32_t i : scratch_.active) scratch_.faces.add(source_.storage.targets()[i].faces);
-      return;
-    }
-    for_bits(scratch_.again.words(), {0, scratch_.again.words().size()},
-             [this](std::size_t e) { for_faces_of(e, [this](std::size_t f) { scratch_.faces.set(f); }); });
-  }
-
-  // Positions at the weights, with the rounding of each in position_noise_.
-  void blend_positions() {
+  // Points at the weights, with the rounding of each in point_noise_.
+  void blend_points() {
     double reach = source_.base.reach;
     for (const std::uint32_t i : scratch_.active) reach += std::fabs(weights_[i]) * source_.storage.targets()[i].reach;
-    position_noise_ = kUnitRoundoff * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
-    for_moved([this](std::size_t i, const BlendTarget& target, IndexRange part) {
-      const double weight = weights_[i];
-      for (std::size_t n = part.first; n < part.end(); ++n) {
-        double* const p = scratch_.positions.data() + 3 * std::size_t{target.vertices[n]};
-        const float* const d = target.deltas.data() + 3 * n;
-        for (std::size_t k = 0; k < 3; ++k) p[k] += weight * static_cast<double>(d[k]);
-      }
+    point_noise_ = kUnitRoundoff * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
+    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
+      for_moved(vertices, [this](std::size_t i, const BlendTarget& target, IndexRange part) {
+        move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, weights_[i],
+                    scratch_.points.data());
+      });
     });
   }
 
-  void restore_positions() {
-    for_moved([this](std::size_t, const BlendTarget& target, IndexRange part) {
-      for (std::size_t n = part.first; n < part.end(); ++n) {
-        const std::size_t first = 3 * std::size_t{target.vertices[n]};
-        for (std::size_t k = first; k < first + 3; ++k)
-          scratch_.positions[k] = static_cast<double>(source_.set.base[k]);
-      }
+  // Points that many targets moved are put back faster in order.
+  void restore_points() {
+    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
+      std::size_t moved = 0;
+      for_moved(vertices, [&moved](std::size_t, const BlendTarget&, IndexRange part) { moved += part.count; });
+      if (moved >= vertices.count) return reset_points(source_.set.base, vertices, scratch_.points.data());
+      for_moved(vertices, [this](std::size_t, const BlendTarget& target, IndexRange part) {
+        for (const std::uint32_t v : in(part, target.vertices)) {
+          for (std::size_t k = 0; k < 3; ++k)
+            scratch_.points[kBlendLanes * v + k] = static_cast<double>(source_.set.base[3 * std::size_t{v} + k]);
+        }
+      });
     });
   }
 
-  // Calls body(i, target, part) for the part of each active target in a block of vertices.
+  // Calls body(i, target, part) for the part of each active target in a range of vertices.
   template <class Body>
-  void for_moved(const Body& body) const {
-    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange vertices) {
-      for (const std::uint32_t i : scratch_.active) {
-        const BlendTarget& target = source_.set.targets[i];
-        body(i, target, part_of(target.vertices, vertices));
-      }
-    });
+  void for_moved(IndexRange vertices, const Body& body) const {
+    for (const std::uint32_t i : scratch_.active) {
+      const BlendTarget& target = source_.set.targets[i];
+      body(i, target, part_of(target.vertices, vertices));
+    }
   }
 
-  [[nodiscard]] Vec3d position(std::uint32_t v) const {
-    const double* const p = scratch_.positions.data() + 3 * std::size_t{v};
+  [[nodiscard]] Vec3d point(std::uint32_t v) const {
+    const double* const p = scratch_.points.data() + kBlendLanes * std::size_t{v};
     return {p[0], p[1], p[2]};
   }
 
+  // The normal of a face, and how far it may be off.
+  struct BlendedFace {
+    Vec3d normal;
+    double noise = 0;
+  };
+
   // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
-  // each triangle adds a rounding, and positions bring their own.
-  void make_face(std::size_t f) {
+  // each triangle adds a rounding, and points bring their own.
+  [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {
       Vec3d vector;
       double size;
     };
-    const Vec3d a = position(face[0]);
+    const Vec3d a = point(face[0]);
     const auto edge_to = [&](std::size_t c) {
-      const Vec3d edge = position(face[c]) - a;
+      const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
     BlendedFace result;
@@ -278,9 +227,9 @@ class Call {
       edges += 2 * g.size;
     });
     const auto corners = static_cast<double>(face.size());
-    const double moved = 4 * position_noise_;
+    const double moved = 4 * point_noise_;
     result.noise = kUnitRoundoff * (10 + corners) * products + moved * (edges + corners * moved);
-    scratch_.normals[f] = result;
+    return result;
   }
 
   template <class Body>
@@ -289,11 +238,12 @@ class Call {
     for (const std::uint32_t f : source_.groups->faces(e)) body(f);
   }
 
+  // An element that lanes promise nothing of, with a bound of its own for each face.
   void make_element(std::size_t e, std::size_t& zeros, std::size_t& uncertain) {
     Vec3d n;
     double noise = 0, count = 0;
     for_faces_of(e, [&](std::size_t f) {
-      const BlendedFace& face = scratch_.normals[f];
+      const BlendedFace face = make_face(f);
       n = n + face.normal;
       noise += face.noise;
       ++count;
@@ -323,7 +273,7 @@ class Call {
   BlendScratch& scratch_;
   VectorView<float> result_;
   Threads threads_;
-  double position_noise_ = 0;
+  double point_noise_ = 0;
   std::atomic<std::size_t> zeros_ = 0, uncertain_ = 0;
 };
 
@@ -361,19 +311,17 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   choice.touched_elements = scratch.touched.count();
   choice.unstored_elements = scratch.again.count();
 
-  const Topology& topology = source.set.topology;
   const auto of = [](std::size_t count) { return static_cast<double>(count); };
-  const double elements = of(source.storage.terms().size()), faces = of(topology.face_count());
-  const double corners = of(topology.corner_count());
-  choice.whole_ns = kFace * faces + kTriangle * (corners - 2 * faces) +
-                    kTermOfSum * (source.groups == nullptr ? faces : corners) + kSummedElement * elements;
-  const double copied = kCopiedElement * elements, moved = kMovedVertex * of(moved_vertices);
-  const double anew = elements > 0 ? kRim * choice.whole_ns / elements : 0;  // an element from positions
+  const Rings& rings = source.storage.rings();
+  const std::size_t elements = source.storage.terms().size();
+  const double whole = kPathPoint * of(kRingLanes * rings.row_count()) + kWrittenElement * of(elements);
+  const double anew = elements > 0 ? whole / of(elements) : 0;  // an element from points
+  const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +
                     kFinishedElement * of(choice.touched_elements - choice.unstored_elements);
-  if (choice.unstored_elements > 0) choice.terms_ns += moved + anew * of(choice.unstored_elements);
-  choice.touched_ns = copied + moved + anew * of(choice.touched_elements);
-  choice.whole_ns += moved;
+  if (choice.unstored_elements > 0) choice.terms_ns += moved + anew * of(lanes_of(scratch.again));
+  choice.touched_ns = copied + moved + anew * of(lanes_of(scratch.touched));
+  choice.whole_ns = moved + whole;
   if (source.forced)
     choice.path = *source.forced;
   else if (choice.terms_ns <= std::min(choice.touched_ns, choice.whole_ns))

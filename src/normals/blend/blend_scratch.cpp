@@ -6,6 +6,7 @@
 #include "core/rounding.h"
 #include "normals/blend/blend_storage.h"
 #include "normals/blend/blend_terms.h"
+#include "normals/blend/kernels/blend_rows.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -40,18 +41,16 @@ std::size_t base_bytes(const BlendShape& shape) noexcept {
 
 BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
     : sums(kBlendLanes * shape.elements),
-      positions(set.base.begin(), set.base.end()),
-      normals(shape.faces),
+      points(kBlendLanes * shape.vertices),
       touched(shape.elements),
       again(shape.elements),
-      faces(shape.faces),
       is_active(shape.targets) {
   active.reserve(shape.targets);
+  reset_points(set.base, {0, shape.vertices}, points.data());
 }
 
 std::size_t scratch_bytes(const BlendShape& shape) noexcept {
-  return shape.elements * kBlendLanes * sizeof(double) + shape.vertices * 3 * sizeof(double) +
-         shape.faces * sizeof(BlendedFace) + 2 * bits_bytes(shape.elements) + bits_bytes(shape.faces) +
+  return kBlendLanes * (shape.elements + shape.vertices) * sizeof(double) + 2 * bits_bytes(shape.elements) +
          shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/rounding.h"
 #include "normals/blend/blend_scratch.h"
+#include "normals/blend/kernels/blend_rows.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -23,7 +24,7 @@ std::size_t bytes_of(const StoredTerm& term) {
 }
 
 std::size_t bytes_of_lists(const StoredTarget& target) {
-  return target.elements.bytes() + target.faces.bytes() + target.pairs.capacity() * sizeof(StoredPair);
+  return target.elements.bytes() + target.pairs.capacity() * sizeof(StoredPair);
 }
 
 // A power of two that takes the largest value below 1.
@@ -68,7 +69,10 @@ struct BlendStorage::Candidate {
 };
 
 BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes)
-    : set_(set), groups_(groups), max_bytes_(max_bytes), terms_(groups ? BlendTerms(set, *groups) : BlendTerms(set)) {
+    : set_(set),
+      max_bytes_(max_bytes),
+      terms_(groups ? BlendTerms(set, *groups) : BlendTerms(set)),
+      rings_(groups ? Rings::of_groups(set.topology, *groups) : Rings::of_faces(set.topology)) {
   targets_.reserve(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) targets_.push_back(listed(i));
   const auto counts = terms_.pair_elements();
@@ -90,17 +94,9 @@ BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std:
 StoredTarget BlendStorage::listed(std::size_t i) const {
   StoredTarget target;
   const std::vector<std::uint32_t> elements = terms_.elements(i);
-  IndexBits touched(terms_.size()), faces(set_.topology.face_count());
-  for (const std::uint32_t e : elements) {
-    touched.set(e);
-    if (groups_ == nullptr) {
-      faces.set(e);
-      continue;
-    }
-    for (const std::uint32_t f : groups_->faces(e)) faces.set(f);
-  }
+  IndexBits touched(terms_.size());
+  for (const std::uint32_t e : elements) touched.set(e);
   target.elements = touched.sparse();
-  target.faces = faces.sparse();
   target.element_count = elements.size();
   target.moved_faces = terms_.faces(i).size();
   for (const std::uint32_t f : terms_.faces(i)) target.moved_corners += set_.topology.face(f).size();
@@ -181,7 +177,7 @@ void BlendStorage::target_added() {
 }
 
 std::size_t BlendStorage::list_bytes() const noexcept {
-  std::size_t bytes = terms_.bytes() + targets_.capacity() * sizeof(StoredTarget);
+  std::size_t bytes = terms_.bytes() + rings_.bytes() + targets_.capacity() * sizeof(StoredTarget);
   for (const StoredTarget& target : targets_) bytes += bytes_of_lists(target);
   return bytes;
 }
@@ -197,8 +193,7 @@ std::size_t BlendStorage::bytes() const noexcept {
 
 void BlendStorage::update_cost() {
   cost_ = {};
-  const BlendShape shape = {terms_.size(), set_.topology.face_count(), set_.topology.vertex_count(),
-                            set_.targets.size()};
+  const BlendShape shape = {terms_.size(), set_.topology.vertex_count(), set_.targets.size()};
   std::size_t terms = 0, largest_work = 0;
   for (const StoredTarget& target : targets_) {
     cost_.target_elements += target.element_count;

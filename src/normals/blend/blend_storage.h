@@ -12,6 +12,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "normals/blend/blend_terms.h"
 #include "normals/blend/index_bits.h"
+#include "normals/groups/rings.h"
 
 namespace chronormal::inline internal {
 
@@ -34,7 +35,6 @@ struct StoredPair {
 
 struct StoredTarget {
   SparseBits elements;  ///< that the target touches
-  SparseBits faces;     ///< all faces of these
   std::size_t element_count = 0;
   std::size_t moved_faces = 0, moved_corners = 0;
   double reach = 0;  ///< the largest absolute component of its deltas
@@ -54,6 +54,8 @@ class BlendStorage {
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
+  /// The paths around all elements.
+  [[nodiscard]] const Rings& rings() const noexcept { return rings_; }
   [[nodiscard]] const BlendCost& cost() const noexcept { return cost_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -68,9 +70,9 @@ class BlendStorage {
   void update_cost();
 
   const BlendSet& set_;
-  const NormalGroups* groups_;
   std::size_t max_bytes_;
   BlendTerms terms_;
+  Rings rings_;
   std::vector<StoredTarget> targets_;
   BlendCost cost_;
 };

@@ -25,9 +25,6 @@
 
 namespace chronormal::inline internal {
 
-/// Stored vectors have this many floats each, the last of which is a bound or nothing.
-inline constexpr std::size_t kBlendLanes = 4;
-
 /// The elements where a coefficient is not zero, ascending, and its values there.
 struct BlendTerm {
   std::vector<std::uint32_t> elements;

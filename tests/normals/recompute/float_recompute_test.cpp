@@ -18,7 +18,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "core/memory.h"
-#include "normals/recompute/kernels/rings.h"
+#include "normals/recompute/kernels/float_rings.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"

@@ -1,5 +1,5 @@
 // Adds up cross products along paths in lanes of float32.
-#include "normals/recompute/kernels/rings.h"
+#include "normals/recompute/kernels/float_rings.h"
 
 #include <hwy/cache_control.h>
 
@@ -7,7 +7,7 @@
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "normals/recompute/kernels/rings.cpp"
+#define HWY_TARGET_INCLUDE "normals/recompute/kernels/float_rings.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

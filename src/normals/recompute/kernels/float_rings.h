@@ -1,37 +1,21 @@
 /// Normals of faces and of groups in float32 from points, sixteen at a time: the inner loops of FloatRecompute.
-///
-/// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
-/// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
-/// neighbours in turn. Pieces of a path that do not join are connected through the centre, which adds nothing, and
-/// shorter paths are filled up to the longest of sixteen with points that add nothing either:
-///
-///     slice    centres        of 16 elements, as indices of points
-///              first points   of the paths
-///              second ...     as many rows as the longest path has points
-#ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RINGS_H_
-#define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RINGS_H_
+/// See groups/rings.h for the paths that they go along.
+#ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
+#define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
 
 #include <cstddef>
 #include <cstdint>
 
 #include "chronormal/core/views.h"
+#include "normals/groups/rings.h"
 
 namespace chronormal::inline internal {
-
-inline constexpr std::size_t kRingLanes = 16;  // elements of a slice
 
 /// Points in rows x y z _, and whether points of neighbouring elements are scattered in memory and should be
 /// prefetched.
 struct RingPoints {
   const float* rows = nullptr;
   bool fetch = false;
-};
-
-/// Slices: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s + 1]; at least two.
-struct RingSlices {
-  const std::uint32_t* indices = nullptr;
-  const std::size_t* first_row = nullptr;
-  std::size_t count = 0;
 };
 
 /// Writes rows x y z _ of a range of points: s from + t to in float32. result begins with the first of them.
@@ -52,4 +36,4 @@ std::size_t triangle_unit_normals(const RingPoints& points, const std::uint32_t*
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RINGS_H_
+#endif  // CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_

@@ -1,0 +1,59 @@
+/// The inner loops of BlendNormals, on rows of four doubles: terms added up, points moved, and unit normals.
+///
+/// A row is x y z and a fourth: of a sum of terms a bound in the unit of blend_storage.h, of a point 0. Every loop gives
+/// the same bits on all instruction sets.
+#ifndef CHRONORMAL_NORMALS_BLEND_KERNELS_BLEND_ROWS_H_
+#define CHRONORMAL_NORMALS_BLEND_KERNELS_BLEND_ROWS_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/core/views.h"
+#include "normals/groups/rings.h"
+
+namespace chronormal::inline internal {
+
+/// A row has so many numbers, and so has a coefficient in float32.
+inline constexpr std::size_t kBlendLanes = 4;
+using RowWeights = std::array<double, kBlendLanes>;
+
+/// Adds to the row of each element of a target `linear` times its first four coefficients and `square` times the other
+/// four. coefficients must have eight for each element
+void add_target_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
+                     const RowWeights& square, double* rows) noexcept;
+/// Adds to the row of each element of a pair `weight` times its four coefficients.
+void add_pair_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& weight,
+                   double* rows) noexcept;
+
+/// Adds to the point of each vertex `weight` times its delta. deltas must have three floats for each vertex
+void move_points(std::span<const std::uint32_t> vertices, const float* deltas, double weight, double* points) noexcept;
+/// Puts a range of points back to the base, (V, 3). base must not end before the last of them
+void reset_points(std::span<const float> base, IndexRange vertices, double* points) noexcept;
+
+/// Which rows become unit normals.
+struct UnitLimits {
+  double smallest_square, largest_square;  ///< of n
+  double largest_error;                    ///< the most that the error of n may be, times |n|
+};
+
+/// Writes the unit normals of the elements whose bits are set in word `place` of all, from a row for each element, whose
+/// fourth component is its error. Returns the bits of those that are beyond the limits, of which nothing is written.
+std::uint64_t unit_normals_of_rows(std::uint64_t elements, std::size_t place, const double* rows,
+                                   const UnitLimits& limits, VectorView<float> result) noexcept;
+
+/// The same from the points on the path around each element. `moved` is how far an edge may be off by the rounding of
+/// its points. With u = 2^-53, c the number of points of the longest of sixteen paths with the centre, and m the largest
+/// component of the edges from the centre of the element, the error is at most that of a polygon with c corners,
+///
+///     u (10 + c) (c - 2) (3 m)^2 + moved (3 m (2 c - 3) + c moved)
+///
+/// which is far more than that of most elements, and far less than what matters.
+std::uint64_t unit_normals_of_rings(const RingSlices& slices, std::uint64_t elements, std::size_t place,
+                                    const double* points, double moved, const UnitLimits& limits,
+                                    VectorView<float> result) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_BLEND_KERNELS_BLEND_ROWS_H_

@@ -1,0 +1,61 @@
+/// The points around elements as paths, sixteen elements at a time, for kernels that go along them in lanes.
+///
+/// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
+/// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
+/// neighbours in turn. Pieces of a path that do not join are connected through the centre, which adds nothing, and
+/// shorter paths are filled up to the longest of sixteen with points that add nothing either:
+///
+///     slice    centres        of 16 elements, as indices of points
+///              first points   of the paths
+///              second ...     as many rows as the longest path has points
+///
+/// Paths follow from the topology and the groups alone, and so does the order of every sum.
+#ifndef CHRONORMAL_NORMALS_GROUPS_RINGS_H_
+#define CHRONORMAL_NORMALS_GROUPS_RINGS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "chronormal/motion/topology.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal::inline internal {
+
+inline constexpr std::size_t kRingLanes = 16;  // elements of a slice
+
+/// Slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s + 1]; at
+/// least two.
+struct RingSlices {
+  const std::uint32_t* indices = nullptr;
+  const std::size_t* first_row = nullptr;
+  std::size_t count = 0;
+};
+
+class Rings {
+ public:
+  /// Creates the rings of no elements.
+  Rings() = default;
+  /// Makes the paths of all faces. O(corners), as for groups.
+  [[nodiscard]] static Rings of_faces(const Topology& topology);
+  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners.
+  [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups);
+
+  [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
+  [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }
+  [[nodiscard]] std::size_t row_count() const noexcept { return first_row_.back(); }
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return indices_.capacity() * sizeof(std::uint32_t) + first_row_.capacity() * sizeof(std::size_t);
+  }
+
+ private:
+  template <class PathOf>
+  Rings(std::size_t count, const PathOf& path_of);
+
+  std::vector<std::uint32_t> indices_;
+  std::vector<std::size_t> first_row_ = {0};
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_GROUPS_RINGS_H_

@@ -1,0 +1,96 @@
+// Rows of four doubles: vectors x y z and a fourth, anywhere in memory. One row is added to by itself; or a row for each
+// lane becomes columns.
+//
+// Included once for each instruction set, as lanes-inl.h is.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+#include "simd/intrinsics-inl.h"
+#include "simd/lanes-inl.h"
+#include "simd/rows-inl.h"
+
+#if defined(CHRONORMAL_SIMD_DOUBLE_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_SIMD_DOUBLE_ROWS_INL_H_
+#undef CHRONORMAL_SIMD_DOUBLE_ROWS_INL_H_
+#else
+#define CHRONORMAL_SIMD_DOUBLE_ROWS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace chronormal::inline internal::HWY_NAMESPACE {
+
+// A row takes one register where that holds four doubles, else two, or four where Highway is plain C++.
+inline constexpr std::size_t kRowStep = kDoubleLanes < 4 ? kDoubleLanes : 4;
+using DoubleRowTag = hn::CappedTag<double, kRowStep>;
+
+struct DoubleRow {
+  hn::Vec<DoubleRowTag> parts[4 / kRowStep];
+};
+
+// Makes a row of part(i) for each register.
+template <class PartOf>
+HWY_INLINE DoubleRow MakeRow(const PartOf& part) {
+  DoubleRow row;
+  for (std::size_t i = 0; i < 4 / kRowStep; ++i) row.parts[i] = part(i);
+  return row;
+}
+
+HWY_INLINE DoubleRow LoadDoubleRow(const double* from) {
+  return MakeRow([from](std::size_t i) HWY_ATTR { return hn::LoadU(DoubleRowTag(), from + kRowStep * i); });
+}
+// Four floats, as doubles.
+HWY_INLINE DoubleRow LoadDoubleRow(const float* from) {
+  return MakeRow([from](std::size_t i) HWY_ATTR {
+    const hn::Rebind<float, DoubleRowTag> some;
+    return hn::PromoteTo(DoubleRowTag(), hn::LoadU(some, from + kRowStep * i));
+  });
+}
+HWY_INLINE void StoreDoubleRow(const DoubleRow& row, double* to) {
+  for (std::size_t i = 0; i < 4 / kRowStep; ++i) hn::StoreU(row.parts[i], DoubleRowTag(), to + kRowStep * i);
+}
+
+HWY_INLINE DoubleRow operator+(const DoubleRow& a, const DoubleRow& b) {
+  return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Add(a.parts[i], b.parts[i]); });
+}
+// Component by component.
+HWY_INLINE DoubleRow operator*(const DoubleRow& a, const DoubleRow& b) {
+  return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Mul(a.parts[i], b.parts[i]); });
+}
+
+struct DoubleColumns {
+  Doubles3 xyz;
+  Doubles w;
+};
+
+// Lane i is from the row at row(i).
+template <class RowOf>
+HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
+#if HWY_TARGET == HWY_SCALAR
+  const double* const r = row(0);
+  return {{hn::Load(kDoubles, r), hn::Load(kDoubles, r + 1), hn::Load(kDoubles, r + 2)}, hn::Load(kDoubles, r + 3)};
+#else
+  if constexpr (kDoubleLanes == 2) {
+    const double *const r0 = row(0), *const r1 = row(1);
+    const Doubles xy0 = hn::LoadU(kDoubles, r0), xy1 = hn::LoadU(kDoubles, r1);
+    const Doubles zw0 = hn::LoadU(kDoubles, r0 + 2), zw1 = hn::LoadU(kDoubles, r1 + 2);
+    return {{hn::InterleaveLower(kDoubles, xy0, xy1), hn::InterleaveUpper(kDoubles, xy0, xy1),
+             hn::InterleaveLower(kDoubles, zw0, zw1)},
+            hn::InterleaveUpper(kDoubles, zw0, zw1)};
+  } else {
+    Doubles rows[4];  // of 256 bits: rows 0 to 3; or 0 and 2, 1 and 3, 4 and 6, 5 and 7
+    for (std::size_t k = 0; k < 4; ++k) rows[k] = LoadTransposable(row, k);
+    const Doubles xz0 = hn::InterleaveLower(kDoubles, rows[0], rows[1]);
+    const Doubles xz1 = hn::InterleaveLower(kDoubles, rows[2], rows[3]);
+    const Doubles yw0 = hn::InterleaveUpper(kDoubles, rows[0], rows[1]);
+    const Doubles yw1 = hn::InterleaveUpper(kDoubles, rows[2], rows[3]);
+    return {{EvenPairs(xz0, xz1), EvenPairs(yw0, yw1), OddPairs(xz0, xz1)}, OddPairs(yw0, yw1)};
+  }
+#endif
+}
+
+}  // namespace chronormal::inline internal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // CHRONORMAL_SIMD_DOUBLE_ROWS_INL_H_
