@@ -11,8 +11,10 @@
 ///
 /// Paths      Where many targets overlap, making normals anew from blended positions is cheaper: those of the touched
 ///            part, or of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure
-///            function of the set, the weights and the options. Its constants were measured on one core of the machine
-///            of docs/benchmarks.md.
+///            function of the set, the weights and the options. Its constants were measured on one core of a machine
+///            of docs/benchmarks.md, and only what they are to each other counts.
+/// Speed      normals are made anew in lanes of double, along the paths around elements; those that these lanes do not
+///            promise 1e-6 rad of are made one by one.
 /// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
 ///            fit are not kept, the largest first, and their elements are made from blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path. Terms are
@@ -21,7 +23,8 @@
 /// Degenerate n(w) below its own rounding error, and an element without faces, gives (0, 0, 0), which is counted.
 ///            Weights that are not finite, or so large that n(w) is not, give (0, 0, 0), at least where they act.
 /// Ownership  the set and the groups are moved in, and are kept. What was moved from may only be destroyed or assigned.
-/// Threads    unit_normals() uses scratch of the object: one call at a time. The same bits on any number of threads.
+/// Threads    unit_normals() uses scratch of the object: one call at a time. The same bits on any number of threads and
+///            every instruction set.
 #ifndef CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 #define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 
@@ -73,7 +76,8 @@ struct BlendCost {
   friend bool operator==(const BlendCost&, const BlendCost&) = default;
 };
 
-/// Pure; lists the faces of each target and nothing else. set must be valid, groups those of its topology.
+/// Pure; lists the faces of each target and the paths around elements, and nothing else. set must be valid, groups those
+/// of its topology, with their corners.
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
                                            const BlendNormalsOptions& options = {});
@@ -95,8 +99,8 @@ struct BlendEvaluation : BlendChoice {
 
 class BlendNormals {
  public:
-  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/blend_set.h), the groups of its
-  /// topology. Throws std::bad_alloc only.
+  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/blend_set.h), the groups must be
+  /// of its topology and keep their corners. Throws std::bad_alloc only.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
                                               const BlendNormalsOptions& options = {});

@@ -20,6 +20,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/normals/normal_groups.h"
 #include "io/gltf/gltf_motion.h"
+#include "simd/targets.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/blend_oracle.h"
 #include "tests/support/read_input.h"
@@ -505,6 +506,25 @@ TEST(BlendNormals, planes_have_the_bits_of_packed_results) {
     (void)normals.unit_normals(weights, view);
     for (std::size_t e = 0; e < normals.size(); ++e)
       ASSERT_EQ(packed.of(e), (std::vector<float>{view[e].x, view[e].y, view[e].z}));
+  }
+}
+
+// The elements fill vectors only in part, and the faces are triangles and polygons.
+TEST(BlendNormals, every_instruction_set_gives_the_same_bits) {
+  for (const std::size_t cells : {1U, 2U, 5U, 12U}) {
+    const BlendSet set = test::random_blend_set(cells, {.cells = cells, .targets = 6, .reach = 0.7});
+    const NormalGroups vertices = test::vertices_of(set);
+    const std::vector<double> weights = test::random_weights(cells, 6, 4);
+    for (const NormalGroups* groups : {&vertices, static_cast<const NormalGroups*>(nullptr)}) {
+      for (const BlendPath path : kPaths) {
+        BlendNormals normals = normals_of(set, groups, {kUnlimited, path});
+        const std::vector<float> expected = evaluate(normals, weights).xyz;
+        for (const std::int64_t target : supported_targets()) {
+          const ScopedTarget scope(target);
+          EXPECT_EQ(evaluate(normals, weights).xyz, expected) << target_name(target) << ", " << name_of(path);
+        }
+      }
+    }
   }
 }
 
