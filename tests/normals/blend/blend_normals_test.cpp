@@ -212,6 +212,47 @@ TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   EXPECT_GT(sure, 3U);
 }
 
+// All edges of a face bring their rounding, also those that follow a short one.
+TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_is_counted) {
+  BlendSet set;
+  set.base = {0, 0, 0, 1, 0, 0, 3000, 1000, 500};
+  for (float& c : set.base) c += 0x1p20F;
+  set.targets = {{"", {2}, {0, -1000, -500}}, {"", {1}, {0, 0, 100}}, {"", {1}, {0, 0, 100}}};
+  std::size_t far = 0, sure = 0;
+  for (const std::vector<std::uint32_t>& corners :
+       {std::vector<std::uint32_t>{0, 1, 2}, std::vector<std::uint32_t>{1, 2, 0}}) {
+    set.topology = fixtures::make_triangles(3, corners);
+    for (const BlendPath path : kPaths) {
+      BlendNormals normals = BlendNormals::of_faces(set, {kUnlimited, path});
+      for (int bits = 4; bits < 48; ++bits) {
+        const std::vector<double> weights = {1 - std::ldexp(0.7, -bits), 0.7, 1e-12 - 0.7};
+        const Evaluated done = evaluate(normals, weights);
+        const Errors errors = errors_of(done, test::exact_normals(set, nullptr, weights));
+        EXPECT_LE(errors.far, done.evaluation.uncertain_elements + done.evaluation.zeros) << bits << " bits";
+        far += errors.far;
+        sure += 1 - done.evaluation.uncertain_elements - done.evaluation.zeros;
+      }
+    }
+  }
+  EXPECT_GT(far, 3U);
+  EXPECT_GT(sure, 3U);
+}
+
+// The square of such a normal is no normal number of double, or zero.
+TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
+  BlendSet set;
+  set.topology = fixtures::make_triangles(3, {0, 1, 2});
+  set.base.assign(9, 0);
+  set.targets = {{"", {1, 2}, {1, 2, 3, 3, 1, -2}}};
+  for (const BlendPath path : kPaths) {
+    BlendNormals normals = BlendNormals::of_faces(set, {kUnlimited, path});
+    for (const double weight : {1e-20, 1e-70, 1e-78, 1e-82, 1e-100, 1e-140}) {
+      const std::vector<double> weights = {weight};
+      expect_exact(evaluate(normals, weights), test::exact_normals(set, nullptr, {{1.0}}), std::string(name_of(path)));
+    }
+  }
+}
+
 // Each of very many targets rounds the position anew, here all in one direction: a vertex goes to 256, on in 250 steps
 // of 1 + 127 eps that lose 127 eps each, and all the way back.
 TEST(BlendNormals, rounding_of_every_target_counts) {
