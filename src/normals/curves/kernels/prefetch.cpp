@@ -16,8 +16,12 @@ std::size_t PrefetchRule::best() const noexcept {
 }
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
-  if (trials_.load(std::memory_order_relaxed) >= kTrials * kDistances.size()) return std::nullopt;
-  return trials_.fetch_add(1, std::memory_order_relaxed) % kDistances.size();
+  constexpr std::size_t kAll = kTrials * kDistances.size();
+  // Several threads may get as far as the second line at once, each with a number of its own; later ones do not count on.
+  if (trials_.load(std::memory_order_relaxed) >= kAll) return std::nullopt;
+  const std::size_t trial = trials_.fetch_add(1, std::memory_order_relaxed);
+  if (trial >= kAll) return std::nullopt;
+  return trial % kDistances.size();
 }
 
 void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {

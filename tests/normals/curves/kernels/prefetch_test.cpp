@@ -32,21 +32,34 @@ TEST(PrefetchRule, the_shortest_of_all_trials_decides) {
   }
 }
 
+// Threads meet at the last trial in some of many rounds only, in which they begin together and with few trials left.
 TEST(PrefetchRule, threads_share_trials) {
-  PrefetchRule rule;
-  std::vector<std::thread> threads;
-  std::atomic<std::size_t> count = 0;
-  for (int i = 0; i < 4; ++i) {
-    threads.emplace_back([&] {
-      while (const std::optional<std::size_t> trial = rule.next()) {
-        rule.take(*trial, *trial == 2 ? 1.0f : 2.0f);
-        ++count;
-      }
-    });
+  constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
+  constexpr std::size_t kThreads = 4, kLeft = 3;
+  for (int round = 0; round < 2000; ++round) {
+    PrefetchRule rule;
+    std::atomic<std::size_t> count = 0, ready = 0;
+    const auto try_one = [&] {
+      const std::optional<std::size_t> trial = rule.next();
+      if (!trial) return false;
+      rule.take(*trial, *trial == 2 ? 1.0f : 2.0f);
+      ++count;
+      return true;
+    };
+    while (count < kAll - kLeft) ASSERT_TRUE(try_one());
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < kThreads; ++i) {
+      threads.emplace_back([&] {
+        ++ready;
+        while (ready < kThreads) std::this_thread::yield();
+        while (try_one()) {
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_EQ(count, kAll) << "round " << round;
+    ASSERT_EQ(rule.best(), PrefetchRule::kDistances[2]) << "round " << round;
   }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(count, PrefetchRule::kTrials * PrefetchRule::kDistances.size());
-  EXPECT_EQ(rule.best(), PrefetchRule::kDistances[2]);
 }
 
 TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
