@@ -54,6 +54,10 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   ASSERT_EQ(run(sample + "-o one_%02d.ply").exit_code, 0);
   EXPECT_TRUE(file("part_39.ply") == file("one_39.ply"));
   EXPECT_EQ(run("merge compare1.json compare2.json").exit_code, 2);
+  ASSERT_EQ(run(audit + "--tolerance 2 --shard 3/3 -o other.json").exit_code, 0);
+  const ProcessResult mixed = run("merge audit1.json audit2.json other.json");
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_NE(mixed.err.find("these are shards of two different audits"), std::string::npos) << mixed.err;
   EXPECT_EQ(run("merge sample1.npy sample3.npy -o x.npy").exit_code, 2);
   EXPECT_EQ(run("merge compare1.json w_0.obj").exit_code, 3);
   EXPECT_EQ(run("merge sample1.npy gone.npy -o x.npy").exit_code, 1);
@@ -61,13 +65,15 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
 }
 
 TEST_F(Merge, shards_are_refused_where_they_divide_nothing) {
+  ASSERT_EQ(run("bake 'w_*.obj' -o m.glb").exit_code, 0);
   for (const char* const arguments :
        {"compare 'w_*.obj' --shard 0/3", "compare 'w_*.obj' --shard 4/3", "compare 'w_*.obj' --shard 3",
         "compare 'w_*.obj' --shard 1/2x", "compare --each w_0.obj --shard 1/2",
         "compare 'w_*.obj' --shard 1/2 --errors e.npz", "compare 'w_*.obj' --truth 2 --shard 1/2",
         "audit 'w_*.obj' --shard 1/2 --errors e.npz", "audit --base w_0.obj w_1.obj --shard 1/2",
         "sample 'w_*.obj' --times 1 --shard 1/2 -o n.npz", "compare 'w_*.obj' --shard 1/2 --json",
-        "compare 'w_*.obj' --shard 1/2 --csv", "audit 'w_*.obj' --shard 1/2 --json", "merge"}) {
+        "compare 'w_*.obj' --shard 1/2 --csv", "audit 'w_*.obj' --shard 1/2 --json", "audit m.glb --shard 1/2",
+        "merge"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
     EXPECT_TRUE(result.out.empty()) << arguments;

@@ -93,6 +93,15 @@ TEST_F(Paths, all_warn_where_keyframes_are_too_far_apart) {
   }
 }
 
+TEST_F(Paths, bake_refuses_what_curves_cannot_have) {
+  write_turn(0.2);
+  for (const std::string option : {"--weighting angle", "--encode exact"}) {
+    const ProcessResult result = run("bake 'f*.obj' --path catmull-rom -o out.glb " + option);
+    EXPECT_EQ(result.exit_code, 2) << option;
+    EXPECT_NE(result.err.find("on curved paths n"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Paths, certificates_hold_what_samples_find_and_the_curve_is_the_cheapest_where_no_other_is_near) {
   write_turn(0.3);
   const Json result =

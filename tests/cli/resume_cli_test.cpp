@@ -138,6 +138,7 @@ TEST_F(Resume, what_cannot_go_on_is_refused_at_once) {
   folder_.write("t.obj", file("w_1.obj"));
   folder_.write("cache.xml", "<Autodesk_Cache_File/>");
   ASSERT_EQ(run_shell("mkfifo pipe.obj", folder_.path()).exit_code, 0);
+  ASSERT_EQ(run("bake 'w_*.obj' -o m.glb").exit_code, 0);
   for (const char* const arguments :
        {"audit 'w_*.obj' --resume", "sample 'w_*.obj' --times 1 --resume -o n.npz",
         "sample 'w_*.obj' --times 1 --resume -o n.ply", "sample 'w_*.obj' --times 1 --resume --format npy -o -",
@@ -145,7 +146,9 @@ TEST_F(Resume, what_cannot_go_on_is_refused_at_once) {
         "compare 'w_*.obj' --resume --errors e.npz -o x", "audit 'w_*.obj' --resume --errors e.npz -o x",
         "audit --base w_0.obj t.obj --resume -o x", "compare --base w_0.obj t.obj --resume -o x",
         "compare --sample shapes --blend 5 --resume -o x", "audit w_0.obj - --resume -o x < t.obj",
-        "audit w_0.obj pipe.obj --resume -o x", "audit w_0.obj cache.xml --resume -o x"}) {
+        "audit w_0.obj pipe.obj --resume -o x", "audit w_0.obj cache.xml --resume -o x", "audit m.glb --resume -o x",
+        "audit m.glb w_0.glb --resume -o x", "compare m.glb --resume -o x",
+        "sample --base w_0.obj t.obj --weights 1 --resume --format npy -o x"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
     EXPECT_FALSE(exists("x.journal")) << arguments;

@@ -3,15 +3,19 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,6 +23,8 @@
 #include <vector>
 
 #include "chronormal/io/output.h"
+#include "io/bytes/output_file.h"
+#include "io/bytes/positioned_file.h"
 #include "io/bytes/temporary_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -257,6 +263,50 @@ TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
   }
   ::close(full);
   EXPECT_EQ(error, "<stdout>: No space left on device");
+}
+
+// Nobody listens at such a socket, so that it cannot be opened; and nothing is put in its place.
+TEST(WriteOutput, a_socket_is_no_place_for_a_file) {
+  const TemporaryFolder folder;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = folder / "socket";
+  if (path.size() >= sizeof(address.sun_path)) GTEST_SKIP() << "the path of the folder is too long for a socket";
+  path.copy(address.sun_path, path.size());
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  EXPECT_EQ(error_of(write_output(path, "bytes", true)), path + ": No such device or address");
+  ::close(socket);
+  EXPECT_TRUE(std::filesystem::is_socket(path));
+  EXPECT_EQ(folder.entry_count(), 1U);
+}
+
+TEST(OutputFile, a_link_to_itself_is_not_gone_on_with) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("loop", folder / "loop");
+  const Result<OutputFile> file = OutputFile::go_on(folder / "loop", true, 0);
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().text(), folder / "loop" + ": Too many levels of symbolic links");
+}
+
+TEST(OutputFile, a_folder_that_is_gone_at_the_end_is_an_error) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "there");
+  Result<OutputFile> file = OutputFile::create(folder / "there/out", false);
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file.value().append("bytes").ok());
+  std::filesystem::remove_all(folder / "there");
+  EXPECT_EQ(error_of(file.value().finish()), folder / "there/out" + ": No such file or directory");
+}
+
+TEST(PositionedFile, a_place_that_no_file_has_is_an_error_with_the_path) {
+  const TemporaryFolder folder;
+  const std::optional<PositionedFile> file = PositionedFile::open(folder.write("a", "bytes"));
+  ASSERT_TRUE(file.has_value());
+  std::string bytes(2, '?');
+  EXPECT_TRUE(file->read(3, bytes).ok());
+  EXPECT_EQ(bytes, "es");
+  EXPECT_EQ(error_of(file->read(std::uint64_t{1} << 63U, bytes)), folder / "a" + ": Invalid argument");
 }
 
 TEST(WriteOutput, standard_output_and_its_other_names_are_streams) {

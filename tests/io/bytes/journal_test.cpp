@@ -2,7 +2,10 @@
 #include "io/bytes/journal.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -78,6 +81,35 @@ TEST(Journal, belongs_to_one_run_at_a_time) {
   const Result<Journal> two = Journal::open(folder / "out.journal", kRun);
   ASSERT_FALSE(two.ok());
   EXPECT_NE(two.error().message.find("another run is writing"), std::string::npos);
+}
+
+// The system refuses bytes beyond a limit, as it would on a full disk.
+TEST(Journal, a_record_that_the_disk_refuses_is_an_error_with_the_path) {
+  const test::TemporaryFolder folder;
+  Result<Journal> journal = Journal::open(folder / "out.journal", kRun);
+  ASSERT_TRUE(journal.ok());
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{64, before.rlim_max};
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Status appended = journal.value().append(std::string(1000, 'x'));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  ASSERT_FALSE(appended.ok());
+  EXPECT_EQ(appended.error().code, ErrorCode::kFailed);
+  EXPECT_EQ(appended.error().text(), folder / "out.journal" + ": File too large");
+}
+
+TEST(Journal, one_that_cannot_be_removed_is_an_error_and_one_that_is_gone_is_none) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "runs");
+  Result<Journal> journal = Journal::open(folder / "runs/out.journal", kRun);
+  ASSERT_TRUE(journal.ok());
+  std::filesystem::remove_all(folder / "runs");
+  EXPECT_TRUE(journal.value().remove().ok());
+  folder.write("runs", "a file now");
+  EXPECT_EQ(journal.value().remove().error().text(), folder / "runs/out.journal" + ": Not a directory");
 }
 
 }  // namespace

@@ -43,6 +43,13 @@ TEST(ReadMdd, errors_say_where_and_what) {
             "walk.mdd, byte 8: the header declares 2 samples of 2147483647 vertices, for which the file is too short");
   EXPECT_EQ(error_of(test::small_mdd(0, 1) + "xxxx"),
             "walk.mdd, byte 8: the header declares 2 samples of 3 vertices, for which the file is too long");
+  // The start of a file is enough for the places of its positions, but not without its times.
+  const auto layout = [](std::size_t count) {
+    const std::string bytes = test::small_mdd(0, 1);
+    return find_mdd_layout(std::string_view(bytes).substr(0, count), bytes.size(), "walk.mdd", {});
+  };
+  EXPECT_TRUE(layout(16).ok());
+  EXPECT_EQ(layout(15).error().text(), "walk.mdd, byte 15: the times are not here");
   EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is not a finite number");
   EXPECT_EQ(error_of(patched(20, "\xFF\xC0\0\0"s)),
             "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is not a finite number");

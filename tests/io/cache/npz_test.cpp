@@ -347,6 +347,18 @@ TEST(WriteNpz, refuses_faces_of_different_numbers_of_corners) {
   EXPECT_NE(bytes.error().message.find("face 0 has 3 and face 1 has 4"), std::string::npos);
 }
 
+// Such an array is read whole, and not keyframe by keyframe.
+TEST(Npy, no_keyframe_lies_in_one_piece_in_the_order_of_Fortran) {
+  for (const bool fortran : {false, true}) {
+    const std::string bytes = npy(npy_header("<f4", "(2, 3, 3)", fortran), std::string(72, '\0'));
+    const Result<CacheLayout> layout = find_npy_layout(bytes, bytes.size(), "walk.npy", {});
+    EXPECT_EQ(layout.ok(), !fortran);
+    if (fortran) {
+      EXPECT_EQ(layout.error().text(), "walk.npy, positions: they are in the order of Fortran");
+    }
+  }
+}
+
 // Files of more than 4 GiB have zip64 fields; here everything has from some byte on.
 TEST(Zip, members_with_zip64_fields_read_back) {
   const std::array<zip::Part, 3> parts = {{{"positions.npy", kPositions}, {"faces.npy", kFaces}, {"empty", ""}}};

@@ -14,7 +14,9 @@
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/json.h"
 #include "chronormal/workflow/sample.h"
+#include "io/input/input_identity.h"
 #include "tests/support/cache_bytes.h"
+#include "tests/support/gltf_documents.h"
 #include "tests/support/read_input.h"
 #include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
@@ -326,6 +328,36 @@ TEST(InputFrames, only_sequences_have_keyframes_to_choose_among) {
   options.every = 2;
   EXPECT_EQ(open_input(options).error().text(),
             "--every: it chooses among the keyframes of a sequence, which this is not");
+  InputOptions still = test::files({folder / "walk_00.obj"});
+  still.allow_mesh = true;
+  still.from = 1;
+  EXPECT_EQ(open_input(still).error().text(),
+            "--from: it chooses among the keyframes of a sequence, which this is not");
+  InputOptions document = test::files({folder.write("face.glb", test::sparse_document().glb())});
+  document.to = 1;
+  EXPECT_EQ(open_input(document).error().text(),
+            "--to: it chooses among the keyframes of a sequence, which this is not");
+}
+
+TEST(InputFrames, a_step_of_zero_leads_nowhere) {
+  const TemporaryFolder folder;
+  for (const auto& names : write_all(folder, wave(3))) {
+    InputOptions options = test::files(names);
+    options.every = 0;
+    EXPECT_EQ(test::read_motion(options).error().text(),
+              "--every: the step from one keyframe to the next must be 1 or more");
+  }
+}
+
+// A pattern finds the names of links, wherever they lead.
+TEST(InputIdentity, of_a_link_that_leads_nowhere_is_an_error_with_its_path) {
+  const TemporaryFolder folder;
+  write_all(folder, wave(2));
+  std::filesystem::create_symlink("gone.obj", folder / "walk_99.obj");
+  const auto files = identify_files(test::files({folder / "walk_*.obj"}));
+  ASSERT_FALSE(files.ok());
+  EXPECT_EQ(files.error().code, ErrorCode::kFailed);
+  EXPECT_EQ(files.error().text(), folder / "walk_99.obj" + ": No such file or directory");
 }
 
 }  // namespace

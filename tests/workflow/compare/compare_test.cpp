@@ -177,6 +177,11 @@ TEST(Compare, refuses_what_makes_no_table) {
   EXPECT_EQ(compare(motion, {{"linear"}, 1, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
   EXPECT_EQ(compare(motion, {{""}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
   EXPECT_EQ(compare(motion, {{"bicubic"}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
+  CompareOptions shard;
+  shard.shard = Shard{};
+  shard.keep_samples = true;
+  EXPECT_EQ(compare(motion, shard).error().text(),
+            "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion");
 }
 
 // Elements as the oracle has them: the corners of each, and the first vertex or corner that shows it.
