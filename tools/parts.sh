@@ -59,12 +59,12 @@ run_ctest() {
 
 # expect_skipped PRESET NAME: no test of run_ctest was skipped but those on real meshes where CHRONORMAL_DATA is not set,
 # and a few that ask for a file system or a terminal of a kind, so that nothing that is missing drops a test unseen.
-real_mesh_tests=48
+real_mesh_tests=47
 expect_skipped() {
   local log=build/$1/$2.log expected=$real_mesh_tests skipped
   [ -z "${CHRONORMAL_DATA-}" ] || expected=0
   skipped=$(sed -nE 's/^[[:space:]]+[0-9]+ - (.*) \(Skipped\)$/\1/p' "$log" |
-    grep -vE '^InterruptedBake|_on_a_terminal_|more_than_a_glb_can_hold|full_device_is_an_error' || true)
+    grep -vE '^InterruptedBake|_on_a_terminal_|more_than_a_glb_can_hold|full_device_is_an_error|all_keys_only' || true)
   [ "$(grep -c . <<<"$skipped")" -eq "$expected" ] || {
     say "$expected tests may be skipped here, and these were:"
     say "$skipped"
@@ -77,7 +77,7 @@ tests_without_sanitizers=12
 expect_skipped_under_sanitizers() {
   local reasons elsewhere
   reasons=$(sed -nE 's/.*<skipped message="([^"]*)".*/\1/p' build/"$1"/sanitized_*.xml)
-  elsewhere=$(grep -vE 'sanitizer|/dev/full|no terminal|may not mount|no small file system|files of 4 GiB' <<<"$reasons" || true)
+  elsewhere=$(grep -vE 'sanitizer|/dev/full|no terminal|may not mount|no small file system|files of 4 GiB|all keys only' <<<"$reasons" || true)
   [ -n "${CHRONORMAL_DATA-}" ] || elsewhere=$(grep -v CHRONORMAL_DATA <<<"$elsewhere" || true)
   [ -z "$elsewhere" ] || {
     say "under sanitizers, tests were skipped for another reason than those that tools/parts.sh knows:"
