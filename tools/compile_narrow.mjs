@@ -9,8 +9,9 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 
 const run = promisify(execFile);
-const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(
-  ({ file, command }) => /\/src\//.test(file) && !/\/python\//.test(file) && !/_sanitized\.dir/.test(command),
+// Their sources, one by one or several in a file that is made for it.
+const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(({ command }) =>
+  / -o CMakeFiles\/chronormal(_io)?\.dir\//.test(command),
 );
 const failed = [];
 
