@@ -1,5 +1,5 @@
-// Rows of four doubles: vectors x y z and a fourth, anywhere in memory. One row is added to by itself; or a row for each
-// lane becomes columns.
+// A row of four doubles is a vector x y z with a fourth number, and stands anywhere in memory. Rows are added to one by
+// one, or a row for each lane becomes columns.
 //
 // Included once for each instruction set, as lanes-inl.h is.
 
@@ -78,6 +78,12 @@ HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
     return {{hn::InterleaveLower(kDoubles, xy0, xy1), hn::InterleaveUpper(kDoubles, xy0, xy1),
              hn::InterleaveLower(kDoubles, zw0, zw1)},
             hn::InterleaveUpper(kDoubles, zw0, zw1)};
+  } else if constexpr (kDoubleLanes > 4 && HWY_TARGET != HWY_AVX3) {
+    alignas(64) double columns[4][kDoubleLanes];
+    for (std::size_t i = 0; i < kDoubleLanes; ++i)
+      for (std::size_t c = 0; c < 4; ++c) columns[c][i] = row(i)[c];
+    return {{hn::Load(kDoubles, columns[0]), hn::Load(kDoubles, columns[1]), hn::Load(kDoubles, columns[2])},
+            hn::Load(kDoubles, columns[3])};
   } else {
     Doubles rows[4];  // of 256 bits: rows 0 to 3; or 0 and 2, 1 and 3, 4 and 6, 5 and 7
     for (std::size_t k = 0; k < 4; ++k) rows[k] = LoadTransposable(row, k);

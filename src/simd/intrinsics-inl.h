@@ -100,7 +100,7 @@ HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #endif
 }
 
-// Of two vectors, the 128 bits in even places, and those in odd ones.
+// Of two vectors of four doubles or of AVX-512, the 128 bits in even places, and those in odd ones.
 HWY_INLINE Doubles EvenPairs(Doubles a, Doubles b) {
 #if HWY_TARGET == HWY_AVX3
   return Doubles{_mm512_shuffle_f64x2(a.raw, b.raw, 0b10001000)};
@@ -117,7 +117,7 @@ HWY_INLINE Doubles OddPairs(Doubles a, Doubles b) {
 }
 
 // The k-th of four vectors with all rows of four doubles at row(i), in the order in which interleaving neighbours and
-// then EvenPairs() and OddPairs() leave lane i of row i.
+// then EvenPairs() and OddPairs() leave lane i of row i. Vectors have four doubles, or those of AVX-512.
 template <class RowOf>
 HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #if HWY_TARGET == HWY_AVX3

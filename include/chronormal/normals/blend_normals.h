@@ -12,9 +12,10 @@
 /// Paths      Where many targets overlap, making normals anew from blended positions is cheaper: those of the touched
 ///            part, or of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure
 ///            function of the set, the weights and the options. Its constants were measured on one core of a machine
-///            of docs/benchmarks.md, and only what they are to each other counts.
-/// Speed      normals are made anew in lanes of double, along the paths around elements; those that these lanes do not
-///            promise 1e-6 rad of are made one by one.
+///            of docs/benchmarks.md, and only their ratios matter.
+/// Speed      normals are made anew in lanes of double, along rings of points around elements. An element for which these
+///            do not guarantee 1e-6 rad, or with a ring of more than 64 points, is made by itself, which takes some
+///            eight times as long.
 /// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
 ///            fit are not kept, the largest first, and their elements are made from blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path. Terms are
@@ -45,8 +46,8 @@ namespace chronormal {
 
 enum class BlendPath {
   kTerms,    ///< the terms of the active targets, for the elements that these touch
-  kTouched,  ///< blended positions, and the faces around these elements
-  kWhole,    ///< blended positions, and all faces
+  kTouched,  ///< blended positions, and rings around these elements
+  kWhole,    ///< blended positions, and rings around all elements
 };
 
 /// "terms", "touched" or "whole".
@@ -69,14 +70,14 @@ struct BlendCost {
   std::size_t pair_elements = 0;      ///< of these faces, added up over pairs
   std::size_t stored_targets = 0;     ///< whose terms fit into max_bytes: small ones first
   std::size_t stored_pairs = 0;       ///< of stored targets, likewise
-  std::size_t least_bytes = 0;        ///< kept without any term: base normals, lists, scratch
+  std::size_t least_bytes = 0;        ///< kept without any term: base normals, lists, rings, scratch
   std::size_t bytes = 0;              ///< kept with the stored terms, at most
   std::size_t peak_bytes = 0;         ///< while they are made, at most
 
   friend bool operator==(const BlendCost&, const BlendCost&) = default;
 };
 
-/// Pure; lists the faces of each target and the paths around elements, and nothing else. set must be valid, groups those
+/// Pure; lists the faces of each target and the rings around elements, and nothing else. set must be valid, groups those
 /// of its topology, with their corners.
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,

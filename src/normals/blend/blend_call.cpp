@@ -1,7 +1,6 @@
 #include "normals/blend/blend_call.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -17,8 +16,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements or faces
-constexpr std::size_t kBlockOfVertices = 16384;
+constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements
+constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
@@ -28,7 +27,7 @@ constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLarges
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
 // Nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
-// docs/benchmarks.md. Only what they are to each other counts.
+// docs/benchmarks.md. Only their ratios matter.
 constexpr double kCopiedElement = 0.35;   // of the base normals
 constexpr double kTargetElement = 3;      // the terms of a target
 constexpr double kPairElement = 1.4;      // the term of a pair
@@ -47,7 +46,8 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// Elements are made from points four at a time, those that nobody asked for included.
+// How many elements are made from points where they are made four at a time, as if every machine did so: those that
+// nobody asked for are included.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -144,6 +144,10 @@ class Call {
 
   void recompute() {
     blend_points();
+    const auto large = source_.storage.large_faces();
+    in_blocks(large.size(), kBlockOfLargeFaces, [this, large](IndexRange faces) {
+      for (std::size_t i = faces.first; i < faces.end(); ++i) scratch_.large[i] = make_face(large[i]);
+    });
     const RingSlices rings = source_.storage.rings().view();
     in_blocks(scratch_.again.words().size(), kBlockOfWords, [this, rings](IndexRange words) {
       std::size_t zeros = 0, uncertain = 0;
@@ -200,12 +204,6 @@ class Call {
     return {p[0], p[1], p[2]};
   }
 
-  // The normal of a face, and how far it may be off.
-  struct BlendedFace {
-    Vec3d normal;
-    double noise = 0;
-  };
-
   // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
   // each triangle adds a rounding, and points bring their own.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
@@ -232,6 +230,13 @@ class Call {
     return result;
   }
 
+  // Each corner of a large face asks for it.
+  [[nodiscard]] BlendedFace face_at(std::size_t f) const {
+    if (source_.set.topology.face(f).size() <= kMostRingPoints) return make_face(f);
+    const auto large = source_.storage.large_faces();
+    return scratch_.large[static_cast<std::size_t>(std::lower_bound(large.begin(), large.end(), f) - large.begin())];
+  }
+
   template <class Body>
   void for_faces_of(std::size_t e, const Body& body) const {
     if (source_.groups == nullptr) return body(e);
@@ -243,7 +248,7 @@ class Call {
     Vec3d n;
     double noise = 0, count = 0;
     for_faces_of(e, [&](std::size_t f) {
-      const BlendedFace face = make_face(f);
+      const BlendedFace face = face_at(f);
       n = n + face.normal;
       noise += face.noise;
       ++count;

@@ -42,7 +42,7 @@ struct BlendNormals::Parts {
   }
 
   [[nodiscard]] BlendShape shape() const {
-    return {storage.terms().size(), set.topology.vertex_count(), set.targets.size()};
+    return {storage.terms().size(), set.topology.vertex_count(), set.targets.size(), storage.large_faces().size()};
   }
   [[nodiscard]] BlendInput source() const { return {set, groups ? &*groups : nullptr, storage, base, options.forced}; }
 
@@ -97,7 +97,7 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
 BlendChoice BlendNormals::choose(std::span<const double> weights) const {
   assert(weights.size() == set().targets.size());
   const BlendShape shape = parts_->shape();
-  BlendScratch scratch({}, {shape.elements, 0, shape.targets});
+  BlendScratch scratch({}, {shape.elements, 0, shape.targets, 0});
   return choose_path(parts_->source(), weights, scratch);
 }
 

@@ -41,6 +41,7 @@ std::size_t base_bytes(const BlendShape& shape) noexcept {
 
 BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
     : sums(kBlendLanes * shape.elements),
+      large(shape.large_faces),
       points(kBlendLanes * shape.vertices),
       touched(shape.elements),
       again(shape.elements),
@@ -51,7 +52,7 @@ BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
 
 std::size_t scratch_bytes(const BlendShape& shape) noexcept {
   return kBlendLanes * (shape.elements + shape.vertices) * sizeof(double) + 2 * bits_bytes(shape.elements) +
-         shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
+         shape.large_faces * sizeof(BlendedFace) + shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 
 }  // namespace chronormal::inline internal

@@ -15,7 +15,7 @@ namespace chronormal::inline internal {
 class BlendTerms;
 
 struct BlendShape {
-  std::size_t elements = 0, vertices = 0, targets = 0;
+  std::size_t elements = 0, vertices = 0, targets = 0, large_faces = 0;
 };
 
 struct BlendBase {
@@ -28,10 +28,17 @@ struct BlendBase {
 [[nodiscard]] BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms);
 [[nodiscard]] std::size_t base_bytes(const BlendShape& shape) noexcept;
 
+/// The normal of a face at some weights, and how far it may be off.
+struct BlendedFace {
+  Vec3d normal;
+  double noise = 0;
+};
+
 struct BlendScratch {
   BlendScratch(const BlendSet& set, const BlendShape& shape);
 
   std::vector<double> sums;           ///< of terms, as those of the base
+  std::vector<BlendedFace> large;     ///< large_faces() of the storage
   std::vector<double> points;         ///< rows of vertices, those of the base between two calls
   IndexBits touched;                  ///< elements that active targets touch
   IndexBits again;                    ///< elements that are made from positions

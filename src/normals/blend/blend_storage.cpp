@@ -72,7 +72,11 @@ BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std:
     : set_(set),
       max_bytes_(max_bytes),
       terms_(groups ? BlendTerms(set, *groups) : BlendTerms(set)),
-      rings_(groups ? Rings::of_groups(set.topology, *groups) : Rings::of_faces(set.topology)) {
+      rings_(groups ? Rings::of_groups(set.topology, *groups, kMostRingPoints)
+                    : Rings::of_faces(set.topology, kMostRingPoints)) {
+  for (std::size_t f = 0; f < set.topology.face_count(); ++f)
+    if (set.topology.face(f).size() > kMostRingPoints) large_faces_.push_back(static_cast<std::uint32_t>(f));
+  large_faces_.shrink_to_fit();
   targets_.reserve(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) targets_.push_back(listed(i));
   const auto counts = terms_.pair_elements();
@@ -177,7 +181,8 @@ void BlendStorage::target_added() {
 }
 
 std::size_t BlendStorage::list_bytes() const noexcept {
-  std::size_t bytes = terms_.bytes() + rings_.bytes() + targets_.capacity() * sizeof(StoredTarget);
+  std::size_t bytes = terms_.bytes() + rings_.bytes() + large_faces_.capacity() * sizeof(std::uint32_t) +
+                      targets_.capacity() * sizeof(StoredTarget);
   for (const StoredTarget& target : targets_) bytes += bytes_of_lists(target);
   return bytes;
 }
@@ -193,7 +198,7 @@ std::size_t BlendStorage::bytes() const noexcept {
 
 void BlendStorage::update_cost() {
   cost_ = {};
-  const BlendShape shape = {terms_.size(), set_.topology.vertex_count(), set_.targets.size()};
+  const BlendShape shape = {terms_.size(), set_.topology.vertex_count(), set_.targets.size(), large_faces_.size()};
   std::size_t terms = 0, largest_work = 0;
   for (const StoredTarget& target : targets_) {
     cost_.target_elements += target.element_count;

@@ -16,10 +16,12 @@
 
 namespace chronormal::inline internal {
 
-/// Bounds of rounding are kept in this unit, that of float32.
+/// The most points of a path around an element.
+inline constexpr std::size_t kMostRingPoints = 64;
 
 /// Coefficients at some elements, `scale` times what stands there: for a target A and C_ii, for a pair C_ij. A
-/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff of it.
+/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff of it. All bounds are kept in this
+/// unit.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;
@@ -54,8 +56,10 @@ class BlendStorage {
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
-  /// The paths around all elements.
+  /// The paths around all elements but those of more than kMostRingPoints points, which have one that adds nothing.
   [[nodiscard]] const Rings& rings() const noexcept { return rings_; }
+  /// The faces of more than kMostRingPoints corners, ascending: none of their elements has a path.
+  [[nodiscard]] std::span<const std::uint32_t> large_faces() const noexcept { return large_faces_; }
   [[nodiscard]] const BlendCost& cost() const noexcept { return cost_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -73,6 +77,7 @@ class BlendStorage {
   std::size_t max_bytes_;
   BlendTerms terms_;
   Rings rings_;
+  std::vector<std::uint32_t> large_faces_;
   std::vector<StoredTarget> targets_;
   BlendCost cost_;
 };

@@ -14,7 +14,8 @@ using Path = std::vector<std::uint32_t>;   // the first point is the centre
 // The paths around elements, one after the other.
 class PathMaker {
  public:
-  PathMaker(const Topology& topology, const NormalGroups& groups) : topology_(topology), groups_(groups) {}
+  PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)
+      : topology_(topology), groups_(groups), most_points_(most_points) {}
 
   const Path& make(std::size_t element) {
     path_.clear();
@@ -22,6 +23,12 @@ class PathMaker {
     pieces_.clear();
     const auto corners = groups_.corners(element), faces = groups_.faces(element);
     path_.push_back(corners.empty() ? 0 : topology_.corners()[corners[0]]);
+    std::size_t points = 0;
+    for (const std::uint32_t f : faces) points += topology_.face(f).size() - 1;
+    if (points > most_points_) {
+      path_.push_back(path_[0]);
+      return path_;
+    }
     for (std::size_t i = 0; i < corners.size(); ++i) add_piece(corners[i], topology_.face(faces[i]));
     if (pieces_.size() > kMostSearched) {
       for (const Piece& piece : pieces_) append(piece);
@@ -77,6 +84,7 @@ class PathMaker {
 
   const Topology& topology_;
   const NormalGroups& groups_;
+  std::size_t most_points_;
   Path path_;
   std::vector<std::uint32_t> points_;
   std::vector<Piece> pieces_;
@@ -84,38 +92,42 @@ class PathMaker {
 
 }  // namespace
 
-// path_of(element) gives the centre and the path of an element.
+// path_of(element) gives the centre and the path of an element, twice: first its length is asked for, so that no memory
+// is taken that is not kept.
 template <class PathOf>
 Rings::Rings(std::size_t count, const PathOf& path_of) {
+  // Behind the last element, slices are filled up with a path that adds nothing.
+  static const Path kNone = {0, 0};
   first_row_.reserve(1 + (count + kRingLanes - 1) / kRingLanes);
   for (std::size_t first = 0; first < count; first += kRingLanes) {
-    const std::size_t begin = indices_.size();
-    std::size_t rows = 0;
-    for (std::size_t lane = 0; lane < kRingLanes; ++lane) {
-      // Behind the last element, slices are filled up with a path that adds nothing.
-      static const Path kNone = {0, 0};
-      const Path& path = first + lane < count ? path_of(first + lane) : kNone;
-      const auto row = [&](std::size_t r) { return &indices_[begin + kRingLanes * r]; };
-      for (; rows < path.size(); ++rows) {
-        indices_.resize(begin + kRingLanes * (rows + 1));
-        if (rows > 0) std::copy_n(row(0), lane, row(rows));  // shorter paths repeat their last point
-      }
-      for (std::size_t r = 0; r < rows; ++r) row(r)[lane] = path[r < path.size() ? r : 0];
-    }
+    std::size_t rows = kNone.size();
+    for (std::size_t e = first; e < std::min(first + kRingLanes, count); ++e) rows = std::max(rows, path_of(e).size());
     first_row_.push_back(first_row_.back() + rows);
   }
-  indices_.shrink_to_fit();
+  indices_.resize(kRingLanes * first_row_.back());
+  for (std::size_t slice = 0; slice + 1 < first_row_.size(); ++slice) {
+    for (std::size_t lane = 0; lane < kRingLanes; ++lane) {
+      const std::size_t e = kRingLanes * slice + lane;
+      const Path& path = e < count ? path_of(e) : kNone;
+      const std::size_t rows = first_row_[slice + 1] - first_row_[slice];
+      std::uint32_t* const column = &indices_[kRingLanes * first_row_[slice] + lane];
+      for (std::size_t r = 0; r < rows; ++r) column[kRingLanes * r] = path[r < path.size() ? r : 0];
+    }
+  }
 }
 
-Rings Rings::of_faces(const Topology& topology) {
-  return Rings(topology.face_count(), [&topology](std::size_t f) {
+Rings Rings::of_faces(const Topology& topology, std::size_t most_points) {
+  Path path;
+  return Rings(topology.face_count(), [&topology, &path, most_points](std::size_t f) -> const Path& {
     const auto face = topology.face(f);  // the first corner is the centre, and the others are the path
-    return Path(face.begin(), face.end());
+    path.assign(face.begin(), face.size() - 1 > most_points ? face.begin() + 1 : face.end());
+    if (path.size() == 1) path.push_back(path[0]);
+    return path;
   });
 }
 
-Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups) {
-  PathMaker paths(topology, groups);
+Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std::size_t most_points) {
+  PathMaker paths(topology, groups, most_points);
   return Rings(groups.size(), [&paths](std::size_t e) -> const Path& { return paths.make(e); });
 }
 

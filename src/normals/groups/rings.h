@@ -9,7 +9,9 @@
 ///              first points   of the paths
 ///              second ...     as many rows as the longest path has points
 ///
-/// Paths follow from the topology and the groups alone, and so does the order of every sum.
+/// Paths follow from the topology and the groups alone, and so does the order of every sum. Each corner of a large
+/// polygon has a path around it, so that their paths together grow with the square of its corners; who has another way
+/// to the normals of such elements gives a limit, and finds a path without any area there.
 #ifndef CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 #define CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 
@@ -36,10 +38,14 @@ class Rings {
  public:
   /// Creates the rings of no elements.
   Rings() = default;
-  /// Makes the paths of all faces. O(corners), as for groups.
-  [[nodiscard]] static Rings of_faces(const Topology& topology);
-  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners.
-  [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups);
+  /// Makes the paths of all faces, of up to so many points; a face with more gets one that adds nothing. O(corners).
+  [[nodiscard]] static Rings of_faces(const Topology& topology, std::size_t most_points = kUnlimited);
+  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners. O(points of
+  /// all paths), and more by up to 64 times where faces around an element do not follow each other.
+  [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups,
+                                       std::size_t most_points = kUnlimited);
+
+  static constexpr std::size_t kUnlimited = ~std::size_t{0};
 
   [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
   [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }

@@ -408,6 +408,50 @@ void expect_peak(const BlendSet& set, const NormalGroups& groups, std::size_t ma
   EXPECT_LE(normals.bytes(), cost.bytes);
 }
 
+// A cone over one polygon of many corners, each of which is a vertex with the polygon and two triangles around it.
+BlendSet cone_over(std::size_t corners) {
+  BlendSet set;
+  std::vector<std::uint32_t> offsets = {0}, of_faces;
+  for (std::size_t c = 0; c < corners; ++c) {
+    const double angle = 6.283185307179586 * static_cast<double>(c) / static_cast<double>(corners);
+    for (const double x : {std::cos(angle), std::sin(angle), 0.1 * std::sin(5 * angle)})
+      set.base.push_back(static_cast<float>(x));
+    of_faces.push_back(static_cast<std::uint32_t>(corners - 1 - c));
+  }
+  offsets.push_back(static_cast<std::uint32_t>(corners));
+  set.base.insert(set.base.end(), {0, 0, 1});
+  for (std::size_t c = 0; c < corners; ++c) {
+    for (const std::size_t v : {c, (c + 1) % corners, corners}) of_faces.push_back(static_cast<std::uint32_t>(v));
+    offsets.push_back(static_cast<std::uint32_t>(of_faces.size()));
+  }
+  set.topology = fixtures::make_polygons(corners + 1, std::move(offsets), std::move(of_faces));
+  for (const float way : {0.3F, -0.2F}) {
+    BlendTarget target;
+    for (std::uint32_t v = 0; v <= corners; v += 3) {
+      target.vertices.push_back(v);
+      target.deltas.insert(target.deltas.end(), {0.1F * way, 0, way * static_cast<float>(v % 7)});
+    }
+    set.targets.push_back(std::move(target));
+  }
+  return set;
+}
+
+TEST(BlendNormals, large_polygons_take_memory_for_their_corners_and_not_for_each_pair_of_them) {
+  for (const std::size_t corners : {64U, 65U, 66U, 3000U}) {
+    const BlendSet set = cone_over(corners);
+    const NormalGroups vertices = test::vertices_of(set);
+    EXPECT_LT(predict_blend_cost(set, vertices, {0, {}}).least_bytes, 2000 + 700 * corners);
+    const std::vector<double> weights = {0.7, 0.4};
+    for (const NormalGroups* groups : {&vertices, static_cast<const NormalGroups*>(nullptr)}) {
+      for (const BlendPath path : kPaths) {
+        BlendNormals normals = normals_of(set, groups, {kUnlimited, path});
+        expect_exact(evaluate(normals, weights), test::real_normals(set, groups, weights),
+                     std::to_string(corners).append(" corners, ").append(name_of(path)));
+      }
+    }
+  }
+}
+
 TEST(BlendNormals, peak_memory_is_at_most_what_was_predicted) {
   if (!test::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer counts allocations itself";
   for (const double reach : {0.05, 0.3, 3.0}) {
@@ -417,6 +461,8 @@ TEST(BlendNormals, peak_memory_is_at_most_what_was_predicted) {
     for (const std::size_t limit : {std::size_t{0}, (cost.least_bytes + cost.bytes) / 2, kUnlimited})
       expect_peak(set, groups, limit);
   }
+  const BlendSet cone = cone_over(20000);
+  expect_peak(cone, test::vertices_of(cone), 0);
 }
 
 TEST(BlendNormals, evaluating_on_one_thread_allocates_nothing) {

@@ -17,14 +17,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-HWY_INLINE double* RowOf(double* rows, std::size_t i) { return rows + kBlendLanes * i; }
-HWY_INLINE const double* RowOf(const double* rows, std::size_t i) { return rows + kBlendLanes * i; }
+HWY_INLINE double* RowAt(double* rows, std::size_t i) { return rows + kBlendLanes * i; }
+HWY_INLINE const double* RowAt(const double* rows, std::size_t i) { return rows + kBlendLanes * i; }
 
 void AddTargetRows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
                    const RowWeights& square, double* rows) {
   const DoubleRow a = LoadDoubleRow(linear.data()), c = LoadDoubleRow(square.data());
   for (const std::uint32_t e : elements) {
-    double* const row = RowOf(rows, e);
+    double* const row = RowAt(rows, e);
     const DoubleRow term = a * LoadDoubleRow(coefficients) + c * LoadDoubleRow(coefficients + kBlendLanes);
     StoreDoubleRow(LoadDoubleRow(row) + term, row);
     coefficients += 2 * kBlendLanes;
@@ -35,7 +35,7 @@ void AddPairRows(std::span<const std::uint32_t> elements, const float* coefficie
                  double* rows) {
   const DoubleRow c = LoadDoubleRow(weight.data());
   for (const std::uint32_t e : elements) {
-    double* const row = RowOf(rows, e);
+    double* const row = RowAt(rows, e);
     StoreDoubleRow(LoadDoubleRow(row) + c * LoadDoubleRow(coefficients), row);
     coefficients += kBlendLanes;
   }
@@ -58,10 +58,10 @@ void MovePoints(std::span<const std::uint32_t> vertices, const float* deltas, do
   const DoubleRow w = ThreeTimes(weight);
   const std::size_t last = vertices.size() - 1;
   for (std::size_t i = 0; i < last; ++i) {
-    double* const point = RowOf(points, vertices[i]);
+    double* const point = RowAt(points, vertices[i]);
     StoreDoubleRow(LoadDoubleRow(point) + w * LoadDoubleRow(deltas + 3 * i), point);
   }
-  double* const point = RowOf(points, vertices[last]);
+  double* const point = RowAt(points, vertices[last]);
   StoreDoubleRow(LoadDoubleRow(point) + w * LoadLastThree(deltas + 3 * last), point);
 }
 
@@ -70,8 +70,8 @@ void ResetPoints(std::span<const float> base, IndexRange vertices, double* point
   const DoubleRow one = ThreeTimes(1);
   const std::size_t last = vertices.end() - 1;
   for (std::size_t v = vertices.first; v < last; ++v)
-    StoreDoubleRow(one * LoadDoubleRow(base.data() + 3 * v), RowOf(points, v));
-  StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowOf(points, last));
+    StoreDoubleRow(one * LoadDoubleRow(base.data() + 3 * v), RowAt(points, v));
+  StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowAt(points, last));
 }
 
 HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
@@ -117,7 +117,7 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
     // Behind the last element there are no rows.
     const std::size_t last = result.count - 1;
     const DoubleColumns n =
-        ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowOf(rows, std::min(first + i, last)); });
+        ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(rows, std::min(first + i, last)); });
     return WriteUnit(n.xyz, n.w, first, bits, limits, result);
   });
 }
@@ -148,8 +148,9 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
     const auto next_row = [&]() HWY_ATTR {
       const std::uint32_t* const row = indices;
       indices += kRingLanes;
-      return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowOf(points, row[i]); }).xyz;
+      return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(points, row[i]); }).xyz;
     };
+    // What is NaN in an edge is NaN in the sum, so that it does not matter what `largest` makes of it.
     const Doubles3 centre = next_row();
     Doubles3 before = next_row() - centre;
     const auto larger = [](Doubles a, const Doubles3& v)

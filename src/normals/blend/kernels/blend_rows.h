@@ -1,7 +1,7 @@
 /// The inner loops of BlendNormals, on rows of four doubles: terms added up, points moved, and unit normals.
 ///
-/// A row is x y z and a fourth: of a sum of terms a bound in the unit of blend_storage.h, of a point 0. Every loop gives
-/// the same bits on all instruction sets.
+/// A row is x y z and a fourth number. In a sum of terms that is a bound, in units of kFloatUnitRoundoff; in a point it
+/// is 0. Every loop gives the same bits on all instruction sets.
 #ifndef CHRONORMAL_NORMALS_BLEND_KERNELS_BLEND_ROWS_H_
 #define CHRONORMAL_NORMALS_BLEND_KERNELS_BLEND_ROWS_H_
 
@@ -49,7 +49,8 @@ std::uint64_t unit_normals_of_rows(std::uint64_t elements, std::size_t place, co
 ///
 ///     u (10 + c) (c - 2) (3 m)^2 + moved (3 m (2 c - 3) + c moved)
 ///
-/// which is far more than that of most elements, and far less than what matters.
+/// which is about ten times the bound of an ordinary element, and less than a billionth of its normal. Since c is that of
+/// sixteen elements, whether one is beyond the limits may depend on its neighbours.
 std::uint64_t unit_normals_of_rings(const RingSlices& slices, std::uint64_t elements, std::size_t place,
                                     const double* points, double moved, const UnitLimits& limits,
                                     VectorView<float> result) noexcept;

@@ -1,0 +1,94 @@
+// Paths around elements have the area of the faces there, whatever these are: closed, open, in pieces, or polygons.
+#include "normals/groups/rings.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/normals/normal_groups.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal::rings_test {
+namespace {
+
+// Whole numbers, so that every sum is exact.
+Vec3d point(std::size_t v) {
+  const auto of = [v](std::size_t factor, std::size_t modulus) { return static_cast<double>(v * factor % modulus); };
+  return {of(7, 19), of(11, 23), of(5, 17)};
+}
+
+Vec3d area_of_face(const Topology& topology, std::size_t f) {
+  const auto face = topology.face(f);
+  Vec3d sum;
+  for (std::size_t c = 0; c < face.size(); ++c) sum = sum + cross(point(face[c]), point(face[(c + 1) % face.size()]));
+  return sum;
+}
+
+Vec3d area_of_path(const RingSlices& slices, std::size_t element) {
+  const std::size_t slice = element / kRingLanes;
+  const auto at = [&](std::size_t row) { return point(slices.indices[kRingLanes * row + element % kRingLanes]); };
+  const std::size_t first = slices.first_row[slice];
+  Vec3d sum;
+  for (std::size_t row = first + 2; row < slices.first_row[slice + 1]; ++row)
+    sum = sum + cross(at(row - 1) - at(first), at(row) - at(first));
+  return sum;
+}
+
+void expect_areas(const Topology& topology, const NormalGroups& groups, const std::string& what) {
+  const Rings of_groups = Rings::of_groups(topology, groups), of_faces = Rings::of_faces(topology);
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    Vec3d expected;
+    for (const std::uint32_t f : groups.faces(e)) expected = expected + area_of_face(topology, f);
+    EXPECT_EQ(area_of_path(of_groups.view(), e), expected) << what << ", element " << e;
+  }
+  for (std::size_t f = 0; f < topology.face_count(); ++f)
+    EXPECT_EQ(area_of_path(of_faces.view(), f), area_of_face(topology, f)) << what << ", face " << f;
+}
+
+TEST(Rings, have_the_area_of_the_faces_around_each_element) {
+  const auto check = [](const Topology& topology, const std::string& what) {
+    expect_areas(topology, NormalGroups::of_vertices(topology, separate_points(topology.vertex_count())), what);
+  };
+  check(fixtures::make_triangles(7, {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5, 0, 5, 6, 0, 6, 1}), "closed");
+  check(fixtures::make_triangles(7, {0, 3, 4, 0, 1, 2, 0, 2, 3}), "open, in another order");
+  check(fixtures::make_triangles(9, {0, 1, 2, 0, 3, 4, 0, 4, 5}), "two pieces, and a vertex by itself");
+  check(fixtures::make_triangles(5, {0, 1, 2, 0, 2, 1, 0, 1, 2}), "one face three times, once the other way round");
+  check(fixtures::make_polygons(8, {0, 5, 9, 12}, {0, 1, 2, 3, 4, 0, 4, 5, 6, 0, 6, 7}), "polygons");
+  check(fixtures::make_polygons(6, {0, 6}, {0, 1, 2, 0, 3, 4}), "a polygon that comes back to a corner");
+}
+
+TEST(Rings, of_points_at_one_place_go_around_the_faces_of_each) {
+  const Topology topology = fixtures::make_triangles(36, {0, 1, 2, 19, 3, 4, 0, 5, 6});
+  Points points = separate_points(36);
+  points.point_of_vertex[19] = 0;
+  for (std::size_t v = 20; v < 36; ++v) --points.point_of_vertex[v];
+  points.count = 35;
+  expect_areas(topology, NormalGroups::of_vertices(topology, points), "vertices 0 and 19 are one point");
+}
+
+TEST(Rings, with_too_many_points_are_left_out) {
+  const Topology topology = fixtures::make_polygons(9, {0, 6, 9, 12}, {0, 1, 2, 3, 4, 5, 0, 5, 6, 6, 7, 8});
+  const NormalGroups groups = NormalGroups::of_vertices(topology, separate_points(9));
+  const Rings some = Rings::of_groups(topology, groups, 5), whole = Rings::of_groups(topology, groups);
+  EXPECT_LT(some.row_count(), whole.row_count());
+  EXPECT_EQ(area_of_path(some.view(), 0), Vec3d{}) << "five points of the polygon, and two of a triangle";
+  EXPECT_EQ(area_of_path(some.view(), 1), area_of_face(topology, 0)) << "five points";
+  EXPECT_EQ(area_of_path(some.view(), 6), area_of_face(topology, 1) + area_of_face(topology, 2));
+  const Rings faces = Rings::of_faces(topology, 4);
+  EXPECT_EQ(area_of_path(faces.view(), 0), Vec3d{});
+  EXPECT_EQ(area_of_path(faces.view(), 1), area_of_face(topology, 1));
+}
+
+TEST(Rings, take_the_memory_of_the_longest_of_sixteen) {
+  EXPECT_EQ(Rings().row_count(), 0U);
+  EXPECT_TRUE(Rings::of_faces(fixtures::make_triangles(3, {})).empty());
+  const Rings rings = Rings::of_faces(fixtures::make_polygons(5, {0, 3, 8}, {0, 1, 2, 0, 1, 2, 3, 4}));
+  EXPECT_EQ(rings.row_count(), 5U);
+  EXPECT_EQ(rings.bytes(), 16 * 5 * sizeof(std::uint32_t) + 2 * sizeof(std::size_t));
+}
+
+}  // namespace
+}  // namespace chronormal::rings_test
