@@ -57,7 +57,7 @@ Weighting note_offset(const GltfShading& shading, std::optional<Weighting> asked
   if (!any_shaded) return weighting;
   offset.mesh = shading.mesh;
   offset.worst_at = place_of(shading, offset.worst_at.vertex);
-  result.offsets.push_back(std::move(offset));
+  result.offsets.push_back(offset);
   return weighting;
 }
 

@@ -265,7 +265,7 @@ template <class Source, class EachSample>
   const Result<IndexRange> rest = add_known(kept, subject);
   if (!rest) return rest.error();
   for (std::size_t s = rest.value().first; s < rest.value().end(); ++s) {
-    if (const Status status = source.enter(s); !status) return status;
+    if (Status status = source.enter(s); !status) return status;
     SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
@@ -287,7 +287,7 @@ template <class Source, class EachSample>
       if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
-    if (Status status = add_segment(std::move(found), false, kept, subject); !status) return status;
+    if (Status status = add_segment(found, false, kept, subject); !status) return status;
     progress();
   }
   subject.vertices = part.outputs().size();

@@ -220,7 +220,7 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
       found.error.add(of_samples[i]);
       if (i == 0 || i + 1 == of_samples.size()) found.at_keys.add(of_samples[i]);
     }
-    if (Status status = add_segment(std::move(found), false, kept, subject); !status) return status;
+    if (Status status = add_segment(found, false, kept, subject); !status) return status;
     progress();
   }
   subject.vertices = part.outputs().size();

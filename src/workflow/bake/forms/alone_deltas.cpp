@@ -59,6 +59,7 @@ void make_harmless_alone(const DeltaSource& source, const std::vector<VertexVect
                          double tolerance, std::vector<VertexVectors>& deltas) {
   const VectorView<const float> normals =
       VectorView<const float>::packed(source.base_normals.data(), source.base_normals.size() / 3);
+  if (normals.count == 0) return;  // nor are there deltas
   for (std::size_t i = 0; i < deltas.size(); ++i) {
     if (!moves(source.shading, i)) continue;
     const NormalTerms::Term linear = source.terms.linear_by_element(i);
