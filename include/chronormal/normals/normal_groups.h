@@ -39,6 +39,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -70,6 +71,14 @@ struct Points {
 
 /// Stored normals closer than this are one normal that was rounded twice.
 inline constexpr double kSplitNormalTolerance = 0.1;  // degrees
+
+class NormalGroups;
+
+inline namespace internal {
+class Rings;
+struct RingsOfGroups;
+const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
+}  // namespace internal
 
 class NormalGroups {
  public:
@@ -124,8 +133,9 @@ class NormalGroups {
   /// How many elements have no corner: isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
-  /// Frees what only sums by angle need. From then on corners(e), element_of_corner() and, where outputs are corners,
-  /// element_of_output() must not be called.
+  /// Frees what only sums by angle and curves need. From then on corners(e), element_of_corner() and, where outputs are
+  /// corners, element_of_output() must not be called, and neither curves nor anything that recomputes normals may be made
+  /// for these groups.
   void forget_corners() noexcept;
 
   /// Copies the normal of each element to every output that shows it.
@@ -151,6 +161,8 @@ class NormalGroups {
   std::vector<std::uint32_t> element_of_corner_;  // the inverse
   std::vector<std::uint32_t> element_of_vertex_;  // where outputs are vertices
   bool outputs_are_vertices_ = false;
+  std::shared_ptr<RingsOfGroups> rings_;  // of these corners, and so shared with copies; nothing: no elements
+  friend const Rings& internal::rings_around(const Topology& topology, const NormalGroups& groups);
 };
 
 /// Writes the control normals of a range of elements: nine additions per corner. A component of a sum that is smaller

@@ -29,10 +29,6 @@ std::size_t part_size(std::size_t size) {
   return std::clamp<std::size_t>(chunks, 16, 128) * kChunk;
 }
 
-constexpr std::size_t kBlockOfRows = 16384;  // faces
-// Up to here the control normals of all faces may be held for a while: half a gigabyte.
-constexpr std::size_t kMostRows = std::size_t{4} << 20;
-
 // A copy of a segment in which both positions of a vertex share a cache line: 32 bytes a vertex. Half the misses where
 // every vertex is one.
 class EndsSideBySide {
@@ -206,31 +202,25 @@ bool are_far_apart(const Segment& segment) { return lines_per_face(*segment.topo
 
 // Whether both ends of each vertex must be copied side by side first.
 bool needs_ends(const Segment& segment, const NormalGroups* groups) {
-  if (groups != nullptr) return are_far_apart(segment);
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
-  return !near && segment.topology->all_triangles() && are_far_apart(segment);
+  return !near && (groups != nullptr || segment.topology->all_triangles()) && are_far_apart(segment);
 }
 
-// The same for both kinds of elements.
-CurveData build_elements(const Segment& segment, const NormalGroups* groups, const AllFaceRows* rows,
+// The same for both kinds of elements. Of groups that are scattered, points are asked for before they are needed.
+CurveData build_elements(const Segment& segment, const NormalGroups* groups, bool scattered,
                          const CurveOptions& options, Threads threads, CurveData* reuse) {
   if (groups == nullptr)
     return build(segment.topology->face_count(), options, threads, reuse, [&] { return FaceNormals(segment); });
-  return build(groups->size(), options, threads, reuse, [&] { return GroupNormals(segment, *groups, rows); });
+  return build(groups->size(), options, threads, reuse, [&] { return GroupNormals(segment, *groups, scattered); });
 }
 
 CurveData build_curves(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, Threads threads,
                        CurveData* reuse) {
-  if (!needs_ends(segment, groups)) return build_elements(segment, groups, nullptr, options, threads, reuse);
+  if (!needs_ends(segment, groups)) return build_elements(segment, groups, false, options, threads, reuse);
   EndsSideBySide ends(segment, scratch_of(reuse));
-  const std::size_t vertices = segment.from.count, faces = segment.topology->face_count();
+  const std::size_t vertices = segment.from.count;
   blocks_on(threads, vertices, part_size(vertices), [&ends](IndexRange some) { ends.copy(some); });
-  std::optional<AllFaceRows> rows;
-  if (groups != nullptr && faces <= kMostRows) {
-    rows.emplace(faces);
-    blocks_on(threads, faces, kBlockOfRows, [&](IndexRange some) { rows->write(ends.segment(), some); });
-  }
-  CurveData curves = build_elements(ends.segment(), groups, rows ? &*rows : nullptr, options, threads, reuse);
+  CurveData curves = build_elements(ends.segment(), groups, true, options, threads, reuse);
   if (reuse != nullptr) curves.scratch = ends.take_memory();
   return curves;
 }
@@ -250,36 +240,27 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// There are three steps: copying both ends of each vertex side by side, computing the control normals of all faces, and
-// making the curves. The first two are for meshes in no order only.
+// There are two steps: copying both ends of each vertex side by side, which is for meshes in no order only, and making the
+// curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),
         scratch(scratch_of(reuse)),
         build(of_groups != nullptr ? of_groups->size() : of_segment.topology->face_count(), options, reuse) {
-    const std::size_t faces = segment.topology->face_count();
     if (needs_ends(segment, of_groups)) {
       ends.emplace(segment, std::move(scratch));
       steps[0] = {segment.from.count, 0.1};
-      if (of_groups != nullptr && faces <= kMostRows) {
-        rows.emplace(faces);
-        steps[1] = {block_count(faces, kTile), 0.4};
-      }
     }
     const Segment& source = ends ? ends->segment() : segment;
     if (of_groups == nullptr)
       faces_source.emplace(source);
     else if (of_groups->size() > 0)
-      groups_source.emplace(source, *of_groups, rows ? &*rows : nullptr);
-    steps[2] = {build.chunk_count(), 1 - steps[0].share - steps[1].share};
+      groups_source.emplace(source, *of_groups, ends.has_value());
+    steps[1] = {build.chunk_count(), 1 - steps[0].share};
   }
 
   void run(std::size_t step, IndexRange some) {
     if (step == 0) return ends->copy(some);
-    if (step == 1) {
-      const std::size_t first = some.first * kTile, end = std::min(some.end() * kTile, segment.topology->face_count());
-      return rows->write(ends->segment(), {first, end - first});
-    }
     if (faces_source)
       build.make_chunks(*faces_source, some.count);
     else
@@ -295,11 +276,10 @@ struct CurveSlices::State {
   Segment segment;
   AlignedArray<float> scratch;
   std::optional<EndsSideBySide> ends;
-  std::optional<AllFaceRows> rows;
   std::optional<FaceNormals> faces_source;
   std::optional<GroupNormals> groups_source;
   Build build;
-  std::array<Step, 3> steps;
+  std::array<Step, 2> steps;
 };
 
 CurveSlices::CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options,

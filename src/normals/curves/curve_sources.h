@@ -23,14 +23,6 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds an element into a lane of a tile.
-inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) {
-  std::size_t plane = 0;
-  for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
-    for (const double component : {v->x, v->y, v->z}) tile.normals[plane++][lane] = static_cast<float>(component);
-  }
-}
-
 /// Control normals that are there already.
 class GivenNormals {
  public:
@@ -73,10 +65,10 @@ class FaceNormals {
 /// The elements of groups.
 class GroupNormals {
  public:
-  GroupNormals(const Segment& segment, const NormalGroups& groups, const AllFaceRows* rows = nullptr)
-      : segment_(segment), groups_(groups), tiles_(segment, groups, rows) {}
+  GroupNormals(const Segment& segment, const NormalGroups& groups, bool fetch)
+      : segment_(segment), groups_(groups), tiles_(segment, groups, fetch) {}
 
-  void write(IndexRange elements, std::span<ControlTile> tiles) { tiles_.write(elements, tiles); }
+  void write(IndexRange elements, std::span<ControlTile> tiles) const { tiles_.write(elements, tiles); }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
   [[nodiscard]] ExactCurve exact(std::size_t i) const { return ExactCurve::of_faces(segment_, groups_.faces(i)); }
 

@@ -11,6 +11,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "core/portable_math.h"
 #include "normals/groups/corner_sets.h"
+#include "normals/groups/rings.h"
 
 namespace chronormal {
 namespace {
@@ -93,7 +94,8 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
     : offsets_(element_count + 1),
       corners_(topology.corner_count()),
       faces_(topology.corner_count()),
-      element_of_corner_(std::move(element_of_corner)) {
+      element_of_corner_(std::move(element_of_corner)),
+      rings_(std::make_shared<RingsOfGroups>()) {
   for (const std::uint32_t e : element_of_corner_) ++offsets_[e + 1];
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
 

@@ -3,7 +3,10 @@
 #include "normals/groups/rings.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <span>
+#include <utility>
 
 namespace chronormal::inline internal {
 namespace {
@@ -18,17 +21,16 @@ class PathMaker {
       : topology_(topology), groups_(groups), most_points_(most_points) {}
 
   const Path& make(std::size_t element) {
+    is_left_out_ = false;
     path_.clear();
-    points_.clear();
-    pieces_.clear();
     const auto corners = groups_.corners(element), faces = groups_.faces(element);
     path_.push_back(corners.empty() ? 0 : topology_.corners()[corners[0]]);
+    if (topology_.all_triangles() && corners.size() <= kMostTriangles && make_of_triangles(corners)) return path_;
     std::size_t points = 0;
     for (const std::uint32_t f : faces) points += topology_.face(f).size() - 1;
-    if (points > most_points_) {
-      path_.push_back(path_[0]);
-      return path_;
-    }
+    if (points > most_points_) return no_path();
+    points_.clear();
+    pieces_.clear();
     for (std::size_t i = 0; i < corners.size(); ++i) add_piece(corners[i], topology_.face(faces[i]));
     if (pieces_.size() > kMostSearched) {
       for (const Piece& piece : pieces_) append(piece);
@@ -39,14 +41,68 @@ class PathMaker {
         pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(next));
       }
     }
+    if (path_.size() - 1 > most_points_) return no_path();
     if (path_.size() == 1) path_.push_back(path_[0]);
     return path_;
   }
 
+  // Whether the last path that was made stands for one of more points than the limit.
+  [[nodiscard]] bool is_left_out() const { return is_left_out_; }
+
  private:
+  static constexpr std::size_t kMostTriangles = 16;
+
   struct Piece {
     std::size_t first, last;  // of points_
   };
+
+  // A path that adds nothing, in place of one that is too long.
+  const Path& no_path() {
+    is_left_out_ = true;
+    path_.resize(1);
+    path_.push_back(path_[0]);
+    return path_;
+  }
+
+  // Makes the path as next_piece() and append() would, for a few triangles around one vertex: each of them is a piece
+  // of two points. Returns false, with nothing but the centre in the path, for triangles around several vertices.
+  bool make_of_triangles(std::span<const std::uint32_t> corners) {
+    std::array<std::uint32_t, kMostTriangles> from, to;
+    const std::uint32_t* const vertices = topology_.corners().data();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::uint32_t corner = corners[i], in_face = corner % 3;
+      if (vertices[corner] != path_[0]) return false;
+      from[i] = vertices[in_face == 2 ? corner - 2 : corner + 1];
+      to[i] = vertices[in_face == 0 ? corner + 2 : corner - 1];
+    }
+    if (3 * corners.size() > most_points_) return false;
+    std::uint32_t left = (1U << corners.size()) - 1;  // a bit for each triangle that is not in the path
+    const auto first_of = [&left](const auto& is_one) {
+      for (std::uint32_t bits = left; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        if (is_one(i)) return i;
+      }
+      return kMostTriangles;
+    };
+    while (left != 0) {
+      std::size_t next = kMostTriangles;
+      if (path_.size() > 1) next = first_of([&](std::size_t i) { return from[i] == path_.back(); });
+      const bool joins = next < kMostTriangles;
+      if (!joins) {
+        const auto has_none_before = [&](std::size_t i) {
+          return first_of([&](std::size_t j) { return to[j] == from[i]; }) == kMostTriangles;
+        };
+        next = first_of(has_none_before);
+        if (next == kMostTriangles) next = static_cast<std::size_t>(std::countr_zero(left));
+        if (path_.size() > 1) path_.push_back(path_[0]);
+        path_.push_back(from[next]);
+      }
+      path_.push_back(to[next]);
+      left &= ~(1U << next);
+    }
+    if (path_.size() == 1) path_.push_back(path_[0]);
+    return true;
+  }
 
   // The corners of a face that follow this one, or all of them back to it where this corner is not the centre.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
@@ -85,6 +141,7 @@ class PathMaker {
   const Topology& topology_;
   const NormalGroups& groups_;
   std::size_t most_points_;
+  bool is_left_out_ = false;
   Path path_;
   std::vector<std::uint32_t> points_;
   std::vector<Piece> pieces_;
@@ -96,19 +153,16 @@ class PathMaker {
 // is taken that is not kept.
 template <class PathOf>
 Rings::Rings(std::size_t count, const PathOf& path_of) {
-  // Behind the last element, slices are filled up with a path that adds nothing.
-  static const Path kNone = {0, 0};
   first_row_.reserve(1 + (count + kRingLanes - 1) / kRingLanes);
   for (std::size_t first = 0; first < count; first += kRingLanes) {
-    std::size_t rows = kNone.size();
+    std::size_t rows = 2;
     for (std::size_t e = first; e < std::min(first + kRingLanes, count); ++e) rows = std::max(rows, path_of(e).size());
     first_row_.push_back(first_row_.back() + rows);
   }
   indices_.resize(kRingLanes * first_row_.back());
   for (std::size_t slice = 0; slice + 1 < first_row_.size(); ++slice) {
     for (std::size_t lane = 0; lane < kRingLanes; ++lane) {
-      const std::size_t e = kRingLanes * slice + lane;
-      const Path& path = e < count ? path_of(e) : kNone;
+      const Path& path = path_of(std::min(kRingLanes * slice + lane, count - 1));
       const std::size_t rows = first_row_[slice + 1] - first_row_[slice];
       std::uint32_t* const column = &indices_[kRingLanes * first_row_[slice] + lane];
       for (std::size_t r = 0; r < rows; ++r) column[kRingLanes * r] = path[r < path.size() ? r : 0];
@@ -128,7 +182,24 @@ Rings Rings::of_faces(const Topology& topology, std::size_t most_points) {
 
 Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std::size_t most_points) {
   PathMaker paths(topology, groups, most_points);
-  return Rings(groups.size(), [&paths](std::size_t e) -> const Path& { return paths.make(e); });
+  std::vector<std::uint32_t> left_out;
+  Rings rings(groups.size(), [&](std::size_t e) -> const Path& {
+    const Path& path = paths.make(e);
+    // Paths are asked for twice in ascending order.
+    if (paths.is_left_out() && (left_out.empty() || left_out.back() < e))
+      left_out.push_back(static_cast<std::uint32_t>(e));
+    return path;
+  });
+  rings.left_out_ = std::move(left_out);
+  return rings;
+}
+
+const Rings& rings_around(const Topology& topology, const NormalGroups& groups) {
+  static const Rings kNone;
+  if (!groups.rings_) return kNone;
+  std::call_once(groups.rings_->once,
+                 [&] { groups.rings_->rings = Rings::of_groups(topology, groups, kMostPathPoints); });
+  return groups.rings_->rings;
 }
 
 }  // namespace chronormal::inline internal

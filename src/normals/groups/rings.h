@@ -2,8 +2,13 @@
 ///
 /// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
 /// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
-/// neighbours in turn. Pieces of a path that do not join are connected through the centre, which adds nothing, and
-/// shorter paths are filled up to the longest of sixteen with points that add nothing either:
+/// neighbours in turn. Every second point belongs to two of these products, which are one:
+///
+///     (p[i - 1] - c) x (p[i] - c) + (p[i] - c) x (p[i + 1] - c) = (p[i] - c) x (p[i + 1] - p[i - 1])
+///
+/// so that kernels need half as many products. Pieces of a path that do not join are connected through the centre, which
+/// adds nothing, and shorter paths are filled up to the longest of sixteen with the centre, which adds nothing either.
+/// Behind the last element, slices repeat it:
 ///
 ///     slice    centres        of 16 elements, as indices of points
 ///              first points   of the paths
@@ -17,6 +22,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
+#include <span>
 #include <vector>
 
 #include "chronormal/motion/topology.h"
@@ -40,8 +47,8 @@ class Rings {
   Rings() = default;
   /// Makes the paths of all faces, of up to so many points; a face with more gets one that adds nothing. O(corners).
   [[nodiscard]] static Rings of_faces(const Topology& topology, std::size_t most_points = kUnlimited);
-  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners. O(points of
-  /// all paths), and more by up to 64 times where faces around an element do not follow each other.
+  /// Makes those of the elements of groups, which must be groups of the topology. O(points of all paths), and more by up
+  /// to 64 times where faces around an element do not follow each other.
   [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups,
                                        std::size_t most_points = kUnlimited);
 
@@ -50,8 +57,11 @@ class Rings {
   [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
   [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }
   [[nodiscard]] std::size_t row_count() const noexcept { return first_row_.back(); }
+  /// The elements with more points than the limit, in ascending order; their paths add nothing.
+  [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return indices_.capacity() * sizeof(std::uint32_t) + first_row_.capacity() * sizeof(std::size_t);
+    return (indices_.capacity() + left_out_.capacity()) * sizeof(std::uint32_t) +
+           first_row_.capacity() * sizeof(std::size_t);
   }
 
  private:
@@ -60,7 +70,22 @@ class Rings {
 
   std::vector<std::uint32_t> indices_;
   std::vector<std::size_t> first_row_ = {0};
+  std::vector<std::uint32_t> left_out_;
 };
+
+/// The paths around the elements of some groups, made when they are first asked for.
+struct RingsOfGroups {
+  std::once_flag once;
+  Rings rings;
+};
+
+/// The points of the longest path that rings_around() has.
+inline constexpr std::size_t kMostPathPoints = 64;
+
+/// The paths of up to kMostPathPoints around the elements of groups, which keep them, with their copies: 4 bytes for each
+/// point of the longest of sixteen paths, about 40 bytes a vertex. Any number of threads may ask for them. Throws
+/// std::bad_alloc.
+[[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 
 }  // namespace chronormal::inline internal
 

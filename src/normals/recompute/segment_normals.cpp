@@ -198,7 +198,7 @@ MeshShape shape_of(const Segment& segment, const NormalGroups& groups) {
         static_cast<double>(segment.topology->corner_count()) / static_cast<double>(shape.elements);
     shape.scattered = scattered_share(groups);
     if (shape.faces > 0) {
-      GroupNormals source(segment, groups);
+      GroupNormals source(segment, groups, false);
       find_doubtful(source, shape.elements, shape);
     }
   }

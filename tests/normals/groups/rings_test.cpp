@@ -77,9 +77,52 @@ TEST(Rings, with_too_many_points_are_left_out) {
   EXPECT_EQ(area_of_path(some.view(), 0), Vec3d{}) << "five points of the polygon, and two of a triangle";
   EXPECT_EQ(area_of_path(some.view(), 1), area_of_face(topology, 0)) << "five points";
   EXPECT_EQ(area_of_path(some.view(), 6), area_of_face(topology, 1) + area_of_face(topology, 2));
+  const std::vector<std::uint32_t> left_out(some.left_out().begin(), some.left_out().end());
+  EXPECT_EQ(left_out, (std::vector<std::uint32_t>{0, 5})) << "the two corners of both";
+  EXPECT_TRUE(whole.left_out().empty());
   const Rings faces = Rings::of_faces(topology, 4);
   EXPECT_EQ(area_of_path(faces.view(), 0), Vec3d{});
   EXPECT_EQ(area_of_path(faces.view(), 1), area_of_face(topology, 1));
+}
+
+TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
+  // The same faces, beside a square far away, which keeps the mesh from being one of triangles.
+  fixtures::Random random(17);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<std::uint32_t> corners;
+    for (std::size_t f = 0; f < 1 + random.below(18); ++f) {
+      const auto a = static_cast<std::uint32_t>(1 + random.below(7)),
+                 b = static_cast<std::uint32_t>(1 + random.below(7));
+      if (a != b) corners.insert(corners.end(), {0U, a, b});
+    }
+    const std::size_t triangles = corners.size() / 3;
+    std::vector<std::uint32_t> offsets;
+    for (std::size_t f = 0; f <= triangles; ++f) offsets.push_back(static_cast<std::uint32_t>(3 * f));
+    const Topology alone = fixtures::make_triangles(12, corners);
+    corners.insert(corners.end(), {8, 9, 10, 11});
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    const Topology beside = fixtures::make_polygons(12, offsets, corners);
+    const auto paths = [](const Topology& topology) {
+      return Rings::of_groups(topology, NormalGroups::of_vertices(topology, separate_points(12)));
+    };
+    const Rings a = paths(alone), b = paths(beside);
+    ASSERT_GE(b.row_count(), a.row_count());
+    for (std::size_t row = 0; row < b.row_count(); ++row) {
+      for (std::size_t e = 0; e < 8; ++e) {
+        const auto of = [row, e](const Rings& rings) {
+          return rings.view().indices[kRingLanes * (row < rings.row_count() ? row : 0) + e];
+        };
+        ASSERT_EQ(of(a), of(b)) << "mesh " << i << ", element " << e << ", row " << row;
+      }
+    }
+  }
+}
+
+TEST(Rings, repeat_the_last_element_behind_it) {
+  const Topology topology = fixtures::make_triangles(7, {0, 3, 4, 0, 1, 2, 0, 2, 3, 6, 4, 5});
+  const Rings rings = Rings::of_groups(topology, NormalGroups::of_vertices(topology, separate_points(7)));
+  for (std::size_t lane = 7; lane < kRingLanes; ++lane)
+    EXPECT_EQ(area_of_path(rings.view(), lane), area_of_path(rings.view(), 6));
 }
 
 TEST(Rings, take_the_memory_of_the_longest_of_sixteen) {

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "chronormal/normals/control_normals.h"
+
 namespace chronormal::inline internal {
 
 inline constexpr std::size_t kTile = 16;
@@ -23,6 +25,14 @@ struct alignas(64) ControlTile {
   float magnitude[kTile];
   std::int32_t degree[kTile];
 };
+
+/// Rounds an element into a lane of a tile.
+inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) noexcept {
+  std::size_t plane = 0;
+  for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
+    for (const double component : {v->x, v->y, v->z}) tile.normals[plane++][lane] = static_cast<float>(component);
+  }
+}
 
 }  // namespace chronormal::inline internal
 

@@ -8,63 +8,34 @@
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "core/memory.h"
 #include "normals/control/kernels/control_tile.h"
-#include "normals/groups/face_window.h"
+#include "normals/groups/rings.h"
 
 namespace chronormal::inline internal {
 
-/// A window of control normals, a row for each face: nine components and the magnitude, at the beginning of two cache
-/// lines. It begins and ends at multiples of 16, and grows where faces that have left it are missed.
-struct RowWindow : FaceWindow {
-  static constexpr std::size_t kRow = 16;
-  static constexpr std::size_t kSmallest = 1024, kLargest = 32768;  // faces; powers of two
-
-  RowWindow() : FaceWindow{kSmallest} {}
-
-  [[nodiscard]] double* row(std::size_t face) const noexcept { return rows + place(face) * kRow; }
-
-  double* rows = nullptr;           ///< of `largest` faces, or of all
-  std::size_t largest = kLargest;   ///< what capacity may grow to
-  std::size_t late = 0, early = 0;  ///< faces that were missed, before `begin` and after `end`
-  std::size_t strange = 0;          ///< corners since an element last used the window
-};
-
-/// The control normals of all faces in such rows: for meshes in no order, whose neighbours are anywhere. 128 bytes a
-/// face, shared by all threads.
-class AllFaceRows {
- public:
-  /// Makes room for so many faces. Throws std::bad_alloc.
-  explicit AllFaceRows(std::size_t face_count);
-
-  /// Writes the rows of a range of faces, which must begin at a multiple of 16.
-  void write(const Segment& segment, IndexRange faces) noexcept;
-
-  [[nodiscard]] double* data() const noexcept { return rows_.data(); }
-
- private:
-  mutable AlignedArray<double> rows_;  // a window could write, but one over all faces never does
-};
-
-/// Walks over ascending ranges of elements; one object for each thread. Keeps the control normals of the faces that
-/// were used last, so that those around neighbouring elements are computed once on a well-ordered mesh, and no array
-/// of all of them is needed. On a mesh in any other order, without all_rows, they are computed for every corner.
+/// Writes tiles of elements, from the points on the paths around them (groups/rings.h). The first object for some groups
+/// makes these paths, which the groups keep.
 class GroupTiles {
  public:
-  /// Throws std::bad_alloc only. groups must outlive the object and belong to the topology of the segment
-  /// all_rows must be of this segment, and outlive the object as well; without them a window of its own is used.
-  GroupTiles(const Segment& segment, const NormalGroups& groups, const AllFaceRows* all_rows = nullptr);
+  /// Throws std::bad_alloc only. groups must outlive the object, belong to the topology of the segment, and have their
+  /// corners (or paths from before these were forgotten). `fetch` asks for points before they are needed, which pays
+  /// where neighbours are scattered in memory.
+  GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
-  /// Writes the tiles of a range of elements (see ControlTile); ranges that ascend are fast. The values are those of
-  /// group_control_normals(), rounded to float32, and so is the degree.
-  /// tiles must have ceil(elements.count / 16) elements; elements.count > 0
-  void write(IndexRange elements, std::span<ControlTile> tiles) noexcept;
+  /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals() but for
+  /// the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to float32, and
+  /// zero where that is all they are. Elements with many faces are added up as group_control_normals() does.
+  /// elements must begin at a multiple of 16, and end at one or at the last element; elements.count > 0; tiles must have
+  /// ceil(elements.count / 16) elements
+  void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
  private:
+  void set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept;
+
   Segment segment_;
   const NormalGroups* groups_;
-  AlignedArray<double> rows_;  // of the window; what is not used costs no memory
-  RowWindow window_;
+  const Rings* rings_;
+  bool fetch_;
 };
 
 }  // namespace chronormal::inline internal
