@@ -272,6 +272,23 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
     ASSERT_EQ(difference_on_all_targets(motion), "");
   }
+  // Six faces around a vertex, and the same at other vertices of the same places, the other way round and with a path
+  // that begins elsewhere, so that other products are added up.
+  fixtures::Random random(14);
+  std::vector<Point> from = {random.in_cube(1)}, to = {random.in_cube(1)};
+  for (std::size_t i = 0; i < 6; ++i) {
+    from.push_back(random.in_cube(1));
+    to.push_back(random.in_cube(1));
+  }
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < 6; ++i) corners.insert(corners.end(), {0, 1 + i, 1 + (i + 1) % 6});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t place = 1 + (7 - i) % 6;
+    from.push_back(from[place]);
+    to.push_back(to[place]);
+    corners.insert(corners.end(), {0, 7 + i, 7 + (i + 1) % 6});
+  }
+  ASSERT_EQ(difference_on_all_targets(fixtures::make_motion(fixtures::make_triangles(13, corners), from, to)), "");
   // A flat sheet, and one that stands on an axis.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, 1.0 / 3}) {
