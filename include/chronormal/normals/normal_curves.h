@@ -73,10 +73,11 @@ class NormalCurves {
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
   /// Prepares those of all faces of a segment, or of all elements of groups, straight from positions, without an array
-  /// of control normals in between. (Meshes in no order need more for a while: 32 bytes a vertex, and groups of them
-  /// 128 a face up to half a gigabyte.) Where many segments are prepared one after the other, name the curves of the
-  /// one before as `reuse`: they are emptied and their memory is used again, which spares asking the system for new
-  /// pages; the 32 bytes a vertex are then kept for the next one.
+  /// of control normals in between. (Meshes in no order need 32 bytes a vertex more for a while.) The first curves of
+  /// some groups also make the paths around their elements, about 40 bytes a vertex, which the groups keep for those
+  /// that follow. Where many segments are prepared one after the other, name the curves of the one before as `reuse`:
+  /// they are emptied and their memory is used again, which spares asking the system for new pages; the 32 bytes a
+  /// vertex are then kept for the next one.
   ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
   [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
                                              Threads threads = Threads::kOne, NormalCurves* reuse = nullptr);

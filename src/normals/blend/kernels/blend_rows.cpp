@@ -122,7 +122,7 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
   });
 }
 
-// The error of a sum over a path, by its largest edge.
+// The error of a sum over a path, by its largest edge, or half of what two points are apart that are multiplied as one.
 struct RingError {
   double of_square, of_edge, alone;
 
@@ -152,16 +152,21 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
     };
     // What is NaN in an edge is NaN in the sum, so that it does not matter what `largest` makes of it.
     const Doubles3 centre = next_row();
-    Doubles3 before = next_row() - centre;
-    const auto larger = [](Doubles a, const Doubles3& v)
-                            HWY_ATTR { return LargerAbs(LargerAbs(a, v.x), LargerAbs(v.y, v.z)); };
-    Doubles largest = larger(hn::Zero(kDoubles), before);
+    Doubles3 before = next_row();
+    const auto largest_of = [](const Doubles3& v) HWY_ATTR { return LargerAbs(LargerAbs(v.x, v.y), v.z); };
+    Doubles largest = hn::Zero(kDoubles);
     Doubles3 sum = {hn::Zero(kDoubles), hn::Zero(kDoubles), hn::Zero(kDoubles)};
-    for (std::size_t r = 2; r < row_count; ++r) {
-      const Doubles3 next = next_row() - centre;
-      sum = sum + Cross(before, next);
-      largest = larger(largest, next);
-      before = next;
+    std::size_t r = 2;
+    for (; r + 1 < row_count; r += 2) {
+      const Doubles3 edge = next_row() - centre, after = next_row(), between = after - before;
+      sum = sum + Cross(edge, between);
+      largest = hn::Max(largest, hn::Max(largest_of(edge), hn::Mul(hn::Set(kDoubles, 0.5), largest_of(between))));
+      before = after;
+    }
+    if (r < row_count) {
+      const Doubles3 edge = before - centre, last = next_row() - centre;
+      sum = sum + Cross(edge, last);
+      largest = hn::Max(largest, hn::Max(largest_of(edge), largest_of(last)));
     }
     return WriteUnit(sum, RingError(row_count, moved)(largest), first, bits, limits, result);
   });

@@ -44,8 +44,9 @@ std::uint64_t unit_normals_of_rows(std::uint64_t elements, std::size_t place, co
                                    const UnitLimits& limits, VectorView<float> result) noexcept;
 
 /// The same from the points on the path around each element. `moved` is how far an edge may be off by the rounding of
-/// its points. With u = 2^-53, c the number of points of the longest of sixteen paths with the centre, and m the largest
-/// component of the edges from the centre of the element, the error is at most that of a polygon with c corners,
+/// its points, or the distance between two of them. With u = 2^-53, c the number of points of the longest of sixteen paths
+/// with the centre, and m the largest component of the edges e from the centre and of half the distances d between
+/// neighbours whose products e x d are added up, the error is at most that of a polygon with c corners,
 ///
 ///     u (10 + c) (c - 2) (3 m)^2 + moved (3 m (2 c - 3) + c moved)
 ///

@@ -1,4 +1,4 @@
-// Adds up cross products along paths in lanes of float32.
+// Adds up cross products along paths in lanes of float32, one for every second point (groups/rings.h).
 #include "normals/recompute/kernels/float_rings.h"
 
 #include <hwy/cache_control.h>
@@ -43,13 +43,15 @@ HWY_INLINE Lanes3 RingSum(const float* rows, const IndexOf& index, std::size_t r
   const auto row = [&](std::size_t r)
                        HWY_ATTR { return PointsAt(rows, [&](std::size_t lane) HWY_ATTR { return index(r, lane); }); };
   const Lanes3 centre = row(0);
-  Lanes3 before = row(1) - centre;
+  Lanes3 before = row(1);
   Lanes3 sum = {hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)};
-  for (std::size_t r = 2; r < row_count; ++r) {
-    const Lanes3 next = row(r) - centre;
-    sum = sum + Cross(before, next);
-    before = next;
+  std::size_t r = 2;
+  for (; r + 1 < row_count; r += 2) {
+    const Lanes3 point = row(r), after = row(r + 1);
+    sum = sum + Cross(point - centre, after - before);
+    before = after;
   }
+  if (r < row_count) sum = sum + Cross(before - centre, row(r) - centre);
   return sum;
 }
 
