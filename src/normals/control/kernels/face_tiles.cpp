@@ -15,10 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
 void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
-  const bool rows = IsRows(segment.from) && IsRows(segment.to);
+  const PointAccess access = AccessOf(segment);
   ExactTile exact;
   for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
-    FaceTile(segment, rows, f, faces.end(), exact);
+    FaceTile(segment, access, f, faces.end(), exact);
     ControlTile& tile = *tiles++;
     for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
       hn::Store(hn::Load(kFloats, exact.magnitude + lane), kFloats, tile.magnitude + lane);
@@ -30,16 +30,16 @@ void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
 
 void TriangleControlNormals(const Segment& segment, IndexRange faces, double* result) {
   constexpr std::size_t kRow = 9;
-  const bool rows = IsRows(segment.from) && IsRows(segment.to);
+  const PointAccess access = AccessOf(segment);
   ExactTile exact;
   for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
-    FaceTile(segment, rows, f, faces.end(), exact);
+    FaceTile(segment, access, f, faces.end(), exact);
     const std::size_t count = std::min(kTile, faces.end() - f);
     if (count == kTile) {
-      StoreRows<kRow>(exact, result);
+      StoreRows(exact, result);
     } else {
       alignas(64) double part[kTile * kRow];
-      StoreRows<kRow>(exact, part);
+      StoreRows(exact, part);
       std::copy_n(part, count * kRow, result);
     }
     result += count * kRow;

@@ -15,6 +15,7 @@
 #include <limits>
 
 #include "chronormal/motion/motion.h"
+#include "motion/coherence.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/exact_tile.h"
 #include "simd/intrinsics-inl.h"
@@ -44,14 +45,39 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
 }
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
 
-// How points are loaded: 16 bytes of a row whose first three floats are x y z; 12 bytes of it; or one coordinate after
-// the other, whatever the layout.
-enum class PointAccess { kRow, kLastRow, kAny };
+// How points are loaded: 16 bytes of a row whose first three floats are x y z, where rows are packed, or have both ends
+// side by side, or are any; 12 bytes of any row; or one coordinate after the other, whatever the layout.
+enum class PointAccess { kPacked, kEnds, kRow, kLastRow, kAny };
+
+constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
+
+constexpr bool LoadsRows(PointAccess access) { return access < PointAccess::kLastRow; }
+
+// The access to all points, but perhaps the last one.
+HWY_INLINE PointAccess AccessOf(const Segment& segment) {
+  const auto is_rows = [](const VectorView<const float>& points) {
+    return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
+  };
+  if (!is_rows(segment.from) || !is_rows(segment.to)) return PointAccess::kAny;
+  const auto both_are = [&segment](std::size_t stride) {
+    return segment.from.stride == stride && segment.to.stride == stride;
+  };
+  if (both_are(3)) return PointAccess::kPacked;
+  return both_are(kEndsStride) ? PointAccess::kEnds : PointAccess::kRow;
+}
+
+// How many floats lie from one point to the next: a constant where it is known.
+template <PointAccess kAccess>
+HWY_INLINE std::size_t StrideOf(const VectorView<const float>& points) {
+  if constexpr (kAccess == PointAccess::kPacked) return 3;
+  if constexpr (kAccess == PointAccess::kEnds) return kEndsStride;
+  return points.stride;
+}
 
 template <PointAccess kAccess>
 HWY_INLINE Row LoadPoint(const VectorView<const float>& points, std::uint32_t vertex) {
-  const std::size_t at = vertex * points.stride;
-  if constexpr (kAccess == PointAccess::kRow) {
+  const std::size_t at = vertex * StrideOf<kAccess>(points);
+  if constexpr (LoadsRows(kAccess)) {
     return LoadRow(points.x + at);
   } else {
     const float point[4] = {points.x[at], points.y[at], points.z[at], 0};
@@ -63,8 +89,8 @@ HWY_INLINE Row LoadPoint(const VectorView<const float>& points, std::uint32_t ve
 // A point for each 128 bits of a vector.
 template <PointAccess kAccess>
 HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::uint32_t* vertices) {
-  if constexpr (kAccess == PointAccess::kRow) {
-    return LoadBlocks([&](std::size_t i) HWY_ATTR { return points.x + vertices[i] * points.stride; });
+  if constexpr (LoadsRows(kAccess)) {
+    return LoadBlocks([&](std::size_t i) HWY_ATTR { return points.x + vertices[i] * StrideOf<kAccess>(points); });
   } else {
     return Blocks([&](std::size_t i) HWY_ATTR { return LoadPoint<kAccess>(points, vertices[i]); });
   }
@@ -102,10 +128,6 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
   LoadCorners<kAccess>(segment, corners + 1, p.b0, p.b1);
   LoadCorners<kAccess>(segment, corners + 2, p.c0, p.c1);
   return p;
-}
-
-HWY_INLINE bool IsRows(const VectorView<const float>& points) {
-  return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
 }
 
 // Not less than the sum of the absolute products in any component of e x f, whichever ends e and f belong to.
@@ -190,8 +212,9 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 }
 
 // Sixteen triangles; corners: their 48 vertices. Whether those are far from each other in memory.
-HWY_INLINE bool TriangleTile(const Segment& segment, bool rows, const std::uint32_t* corners, ExactTile& tile) {
-  if (!rows) {
+HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const std::uint32_t* corners,
+                             ExactTile& tile) {
+  if (access == PointAccess::kAny) {
     TriangleTile<PointAccess::kAny>(segment, corners, tile);
     return false;
   }
@@ -203,17 +226,22 @@ HWY_INLINE bool TriangleTile(const Segment& segment, bool rows, const std::uint3
     lowest = hn::Min(lowest, hn::LoadU(tag, corners + i));
   }
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(segment.from.count - 1));
-  if (HWY_LIKELY(hn::AllFalse(tag, hn::Eq(highest, last)))) {
-    TriangleTile<PointAccess::kRow>(segment, corners, tile);
-  } else {
+  if (HWY_UNLIKELY(!hn::AllFalse(tag, hn::Eq(highest, last)))) {
     TriangleTile<PointAccess::kLastRow>(segment, corners, tile);
+  } else if (access == PointAccess::kPacked) {
+    TriangleTile<PointAccess::kPacked>(segment, corners, tile);
+  } else if (access == PointAccess::kEnds) {
+    TriangleTile<PointAccess::kEnds>(segment, corners, tile);
+  } else {
+    TriangleTile<PointAccess::kRow>(segment, corners, tile);
   }
   const auto far_bits = hn::And(hn::Sub(highest, lowest), hn::Set(tag, ~(kFar - 1)));
   return !hn::AllTrue(tag, hn::Eq(far_bits, hn::Zero(tag)));
 }
 
 // The faces first ... first + 15; those from `end` on repeat the one before. first < end
-HWY_INLINE void FaceTile(const Segment& segment, bool rows, std::size_t first, std::size_t end, ExactTile& tile) {
+HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
+                         ExactTile& tile) {
   constexpr std::size_t kAhead = 2;  // tiles
   const Topology& topology = *segment.topology;
   if (!topology.all_triangles()) {
@@ -222,35 +250,29 @@ HWY_INLINE void FaceTile(const Segment& segment, bool rows, std::size_t first, s
   }
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {
-    const bool far = TriangleTile(segment, rows, corners, tile);
+    const bool far = TriangleTile(segment, access, corners, tile);
     if (far && first + (kAhead + 1) * kTile <= topology.face_count())
       PrefetchPoints(segment, corners + 3 * kAhead * kTile, 3 * kTile);
     return;
   }
   std::uint32_t repeated[3 * kTile];
   for (std::size_t i = 0; i < 3 * kTile; ++i) repeated[i] = corners[3 * std::min(i / 3, end - 1 - first) + i % 3];
-  TriangleTile(segment, rows, repeated, tile);
+  TriangleTile(segment, access, repeated, tile);
 }
 
-// Sixteen rows of kRow doubles: the nine components of a face, and its magnitude where there is room for it.
-template <std::size_t kRow>
+// Sixteen rows of nine doubles: the components of a face.
 HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
+  constexpr std::size_t kRow = 9;
 #if HWY_TARGET == HWY_SCALAR
   for (std::size_t lane = 0; lane < kTile; ++lane) {
-    for (std::size_t k = 0; k < 9; ++k) rows[lane * kRow + k] = tile.normals[k][lane];
-    if constexpr (kRow > 9) rows[lane * kRow + 9] = tile.magnitude[lane];
+    for (std::size_t k = 0; k < kRow; ++k) rows[lane * kRow + k] = tile.normals[k][lane];
   }
 #else
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
     double* const to = rows + lane * kRow;
-    const auto plane = [&tile, lane](std::size_t k) HWY_ATTR { return hn::Load(kDoubles, tile.normals[k] + lane); };
-    StoreEightColumns(plane, to, kRow);
-    if constexpr (kRow > 9) {
-      const Doubles magnitude = hn::PromoteTo(kDoubles, hn::LoadU(HalfFloatTag(), tile.magnitude + lane));
-      StoreTwoColumns(plane(8), magnitude, to + 8, kRow);
-    } else {
-      for (std::size_t i = 0; i < kDoubleLanes; ++i) to[i * kRow + 8] = tile.normals[8][lane + i];
-    }
+    StoreEightColumns([&tile, lane](std::size_t k) HWY_ATTR { return hn::Load(kDoubles, tile.normals[k] + lane); }, to,
+                      kRow);
+    for (std::size_t i = 0; i < kDoubleLanes; ++i) to[i * kRow + 8] = tile.normals[8][lane + i];
   }
 #endif
 }

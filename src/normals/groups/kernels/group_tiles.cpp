@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "motion/coherence.h"
 #include "normals/control/kernels/exact_tile.h"
 #include "normals/groups/group_sum.h"
 
@@ -64,23 +63,16 @@ constexpr std::size_t kRowsAhead = 24;
 
 // ---- points --------------------------------------------------------------------------------------------------------
 
-// How far apart the points of a row of three or of eight floats are, as a constant, or by the view.
-enum class Stride : std::size_t { kPacked = 3, kEnds = kScatteredBytes / sizeof(float), kAny = 0 };
-
-template <Stride kStride, PointAccess kAccess>
-HWY_INLINE Lanes3 PointsAt(VectorView<const float> points, const std::uint32_t* vertices) {
-  if constexpr (kStride != Stride::kAny) points.stride = static_cast<std::size_t>(kStride);
+template <PointAccess kAccess>
+HWY_INLINE Lanes3 PointsAt(const VectorView<const float>& points, const std::uint32_t* vertices) {
 #if HWY_TARGET == HWY_SCALAR
   return LoadPoint<kAccess>(points, vertices[0]).xyz();
 #else
   Floats rows[4];
   for (std::size_t k = 0; k < 4; ++k) {
-    if constexpr (kAccess == PointAccess::kRow) {
-      rows[k] = LoadBlocks([&](std::size_t block)
-                               HWY_ATTR { return points.x + std::size_t{vertices[4 * block + k]} * points.stride; });
-    } else {
-      rows[k] = Blocks([&](std::size_t block) HWY_ATTR { return LoadPoint<kAccess>(points, vertices[4 * block + k]); });
-    }
+    std::uint32_t of_blocks[kLanes / 4];
+    for (std::size_t block = 0; block < kLanes / 4; ++block) of_blocks[block] = vertices[4 * block + k];
+    rows[k] = LoadPoints<kAccess>(points, of_blocks);
   }
   return Transposed(rows).xyz();
 #endif
@@ -92,12 +84,12 @@ HWY_INLINE void StoreColumns(const Lanes3& v, float (*to)[kTile], std::size_t la
   hn::Store(v.z, kFloats, to[2] + lane);
 }
 
-template <Stride kStride, PointAccess kAccess>
+template <PointAccess kAccess>
 HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, std::size_t rows, PointColumns* points) {
   for (std::size_t r = 0; r < rows; ++r, indices += kTile) {
     for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
-      StoreColumns(PointsAt<kStride, kAccess>(segment.from, indices + lane), points[r].at, lane);
-      StoreColumns(PointsAt<kStride, kAccess>(segment.to, indices + lane), points[r].at + 3, lane);
+      StoreColumns(PointsAt<kAccess>(segment.from, indices + lane), points[r].at, lane);
+      StoreColumns(PointsAt<kAccess>(segment.to, indices + lane), points[r].at + 3, lane);
     }
   }
 }
@@ -209,12 +201,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
 void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tiles) {
   const Segment& segment = input.segment;
   const RingSlices& rings = input.rings;
-  const bool is_rows = IsRows(segment.from) && IsRows(segment.to);
-  const auto both_are = [&segment](Stride stride) {
-    return segment.from.stride == static_cast<std::size_t>(stride) &&
-           segment.to.stride == static_cast<std::size_t>(stride);
-  };
-  const bool packed = is_rows && both_are(Stride::kPacked), ends = is_rows && both_are(Stride::kEnds);
+  const PointAccess access = AccessOf(segment);
   const std::size_t all_rows = rings.first_row[rings.count];
   PointColumns points[1 + kMostPathPoints];
   ExactTile exact;
@@ -226,15 +213,15 @@ void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tile
       for (std::size_t i = 0; i < kTile * rows; ++i) {
         const std::size_t vertex = indices[kTile * kRowsAhead + i];
         hwy::Prefetch(segment.from.x + vertex * segment.from.stride);
-        if (!ends) hwy::Prefetch(segment.to.x + vertex * segment.to.stride);
+        if (access != PointAccess::kEnds) hwy::Prefetch(segment.to.x + vertex * segment.to.stride);
       }
     }
-    if (ends) {
-      LoadRing<Stride::kEnds, PointAccess::kRow>(segment, indices, rows, points);
-    } else if (packed && !HasLast(indices, rows, segment.from.count)) {
-      LoadRing<Stride::kPacked, PointAccess::kRow>(segment, indices, rows, points);
+    if (access == PointAccess::kEnds) {
+      LoadRing<PointAccess::kEnds>(segment, indices, rows, points);
+    } else if (access == PointAccess::kPacked && !HasLast(indices, rows, segment.from.count)) {
+      LoadRing<PointAccess::kPacked>(segment, indices, rows, points);
     } else {
-      LoadRing<Stride::kAny, PointAccess::kAny>(segment, indices, rows, points);
+      LoadRing<PointAccess::kAny>(segment, indices, rows, points);
     }
     SumRing(points, rows, exact);
     const std::uint32_t doubtful = RoundTile(points, rows, exact, tile);
