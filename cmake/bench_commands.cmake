@@ -2,7 +2,8 @@
 # are left out of the comparison.
 add_executable(chronormal_bench_commands EXCLUDE_FROM_ALL bench/commands/main.cpp)
 target_include_directories(chronormal_bench_commands PRIVATE src)
-target_link_libraries(chronormal_bench_commands PRIVATE chronormal_io chronormal_product_flags CLI11::CLI11 fmt::fmt)
+target_link_libraries(chronormal_bench_commands PRIVATE chronormal_io chronormal_product_flags CLI11::CLI11 fmt::fmt
+                                                       nlohmann_json::nlohmann_json)
 foreach(reader "ASSIMP assimp/Importer.hpp assimp" "TINYOBJ tiny_obj_loader.h tinyobjloader")
   separate_arguments(reader)
   list(POP_FRONT reader name header library)

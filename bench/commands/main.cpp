@@ -2,7 +2,7 @@
 // sequence, beside the least that is possible: looking at the bytes of its files (cat), moving them in memory (memcpy),
 // and reading them as a motion. It also measures the reading of one frame of OBJ, beside a loop that finds its numbers
 // with std::from_chars, and beside other libraries where they are installed; all of them must find the same positions
-// before they are timed.
+// before they are timed. With --json FILE it also writes what it prints, for docs/benchmarks.md.
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -19,7 +19,9 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,6 +45,7 @@ namespace chronormal::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct Times {
   double wall = 0, cpu = 0;  // seconds
@@ -117,12 +120,14 @@ Times time_command(const std::string& program, const std::vector<std::string>& a
   });
 }
 
-void print_row(const std::string& name, const Times& times, double reading) {
+// Prints a row and keeps it.
+void add_row(Json& rows, const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
   std::fflush(stdout);
+  rows.push_back({{"name", name}, {"wall_s", times.wall}, {"cpu_s", times.cpu}});
 }
 
-void measure_input(const std::string& program, const std::string& title, const std::vector<std::string>& files,
+Json measure_input(const std::string& program, const std::string& title, const std::vector<std::string>& files,
                    const std::vector<std::vector<std::string>>& commands) {
   std::size_t bytes = 0;
   for (const std::string& file : files) bytes += fs::file_size(file);
@@ -150,15 +155,17 @@ void measure_input(const std::string& program, const std::string& title, const s
   fmt::print("\n{:<34}{:>10}{:>10}{:>12}\n", fmt::format("{}, {:.0f} MB", title, static_cast<double>(bytes) / 1e6),
              "wall", "CPU", "CPU over");
   fmt::print("{:<34}{:>10}{:>10}{:>12}\n", "", "seconds", "seconds", "reading");
-  print_row("cat", cat, reading.cpu);
-  print_row("memcpy, with its memory", copy, reading.cpu);
-  print_row("reading it as a motion", reading, reading.cpu);
+  Json rows = Json::array();
+  add_row(rows, "cat", cat, reading.cpu);
+  add_row(rows, "memcpy, with its memory", copy, reading.cpu);
+  add_row(rows, "reading it as a motion", reading, reading.cpu);
   for (const std::vector<std::string>& command : commands) {
     std::vector<std::string> arguments = {command[0]};
     arguments.insert(arguments.end(), files.begin(), files.end());
     arguments.insert(arguments.end(), command.begin() + 1, command.end());
-    print_row(command[0], time_command(program, arguments), reading.cpu);
+    add_row(rows, command[0], time_command(program, arguments), reading.cpu);
   }
+  return {{"title", title}, {"bytes", bytes}, {"rows", rows}};
 }
 
 // Reads the vertices and corners of an OBJ file that has triangles of plain indices only, without any check.
@@ -183,7 +190,7 @@ std::vector<float> loop_over_numbers(std::string_view text) {
   return positions;
 }
 
-void measure_obj(const std::string& file) {
+Json measure_obj(const std::string& file) {
   const FileBytes mapped = FileBytes::open(file).value();
   const std::string text(mapped.bytes());
   struct Reader {
@@ -220,6 +227,7 @@ void measure_obj(const std::string& file) {
              fmt::format("one frame of OBJ, {:.0f} MB", static_cast<double>(text.size()) / 1e6), "CPU ms",
              "over the loop");
   const std::vector<float> expected = readers[0].read();
+  Json rows = Json::array();
   double loop = 0;
   for (const Reader& reader : readers) {
     double best = 1e300;
@@ -232,16 +240,19 @@ void measure_obj(const std::string& file) {
     }
     if (loop == 0) loop = best;
     fmt::print("{:<34}{:>10.1f}{:>16.2f}\n", reader.name, 1e3 * best, best / loop);
+    rows.push_back({{"name", reader.name}, {"cpu_ms", 1e3 * best}});
   }
+  return {{"bytes", text.size()}, {"readers", rows}};
 }
 
 int run(int argc, char** argv) {
   CLI::App app("What each command takes on one large sequence, beside the floor.", "./run bench --commands");
-  std::string program;
+  std::string program, json_path;
   std::size_t vertices = 1000000, keyframes = 24;
   app.add_option("program", program, "chronormal")->required()->check(CLI::ExistingFile);
   app.add_option("--vertices", vertices, "about so many")->capture_default_str()->check(CLI::Range(100, 10000000));
   app.add_option("--keyframes", keyframes)->capture_default_str()->check(CLI::Range(2, 1000));
+  app.add_option("--json", json_path, "also write what is measured to this file (bench/results/commands/MACHINE.json)");
   CLI11_PARSE(app, argc, argv);
 
   std::string pattern = (fs::temp_directory_path() / "chronormal_XXXXXX").string();
@@ -255,8 +266,12 @@ int run(int argc, char** argv) {
   } folder{pattern};
   const auto in = [&](const std::string& name) { return (folder.path / name).string(); };
   std::vector<std::string> frames;
+  Json json = {{"chronormal_bench_commands", 1}};
   {
     const Motion motion = make_waves(vertices, keyframes);
+    json["vertices"] = motion.topology.vertex_count();
+    json["faces"] = motion.topology.face_count();
+    json["keyframes"] = keyframes;
     fmt::print("{} vertices, {} faces, {} keyframes\n", motion.topology.vertex_count(), motion.topology.face_count(),
                keyframes);
     for (const std::string& path : {in("waves.npz"), in("wave_%04d.obj")})
@@ -264,14 +279,18 @@ int run(int argc, char** argv) {
         throw std::runtime_error(status.error().text());
     frames = numbered_names(in("wave_%04d.obj"), keyframes).value();
   }
-  measure_input(program, "NPZ", {in("waves.npz")},
-                {{"inspect"},
-                 {"sample", "--times", "0.5", "-o", in("pose.npz")},
-                 {"audit"},
-                 {"compare"},
-                 {"bake", "-o", in("baked.glb")}});
-  measure_input(program, "OBJ, a file for each keyframe", frames, {{"inspect"}, {"audit"}});
-  measure_obj(frames[0]);
+  json["inputs"] = {measure_input(program, "NPZ", {in("waves.npz")},
+                                  {{"inspect"},
+                                   {"sample", "--times", "0.5", "-o", in("pose.npz")},
+                                   {"audit"},
+                                   {"compare"},
+                                   {"bake", "-o", in("baked.glb")}}),
+                    measure_input(program, "OBJ, a file for each keyframe", frames, {{"inspect"}, {"audit"}})};
+  json["obj"] = measure_obj(frames[0]);
+  if (json_path.empty()) return 0;
+  std::ofstream file(json_path);
+  file << json.dump(1) << '\n';
+  if (!file.flush()) throw std::runtime_error(json_path + ": cannot be written");
   return 0;
 }
 

@@ -1,5 +1,5 @@
 // chronormal_benchmarks RESULTS FOLDER: writes FOLDER/benchmarks.md and FOLDER/pictures/benchmarks_*.svg from all
-// RESULTS/*.json (tools/make_benchmarks). Fails where a file lacks a row that the page needs.
+// RESULTS/*.json and RESULTS/commands/*.json (tools/make_benchmarks). Fails where a file lacks a row that the page needs.
 
 #include <fmt/core.h>
 
@@ -25,6 +25,8 @@ std::vector<Results> all_results(const fs::path& folder) {
   std::vector<Results> all;
   for (const fs::path& path : paths) {
     all.push_back(read_results(path));
+    const fs::path of_commands = folder / "commands" / path.filename();
+    if (fs::exists(of_commands)) all.back().commands = read_commands(of_commands);
     const std::vector<std::string> missing = missing_rows(all.back());
     for (const std::string& row : missing) fmt::print(stderr, "{}: missing: {}\n", path.string(), row);
     if (!missing.empty())
@@ -53,6 +55,7 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"meshes", meshes_part(results, folder)},
        {"frames", frames_part(results, folder)},
        {"blend", blend_part(results, folder)},
+       {"commands", commands_part(results, folder)},
        {"curved", curved_part(results, folder)},
        {"uses", uses_part(results, folder)}});
   add_costs(part, results);

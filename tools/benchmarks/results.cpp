@@ -209,15 +209,41 @@ const std::string& Results::machine_value(const std::string& key) const {
   throw std::runtime_error(fmt::format("{}: nothing is said about the machine's {}", name, key));
 }
 
-Results read_results(const std::filesystem::path& path) {
+namespace {
+
+// What `parse` makes of a file; what it throws gets the path.
+template <class Parse>
+auto read(const std::filesystem::path& path, const Parse& parse) {
   try {
     std::ifstream file(path, std::ios::binary);
-    Results results = parsed(Json::parse(file));
-    results.name = path.stem().string();
-    return results;
+    return parse(Json::parse(file));
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
   }
+}
+
+}  // namespace
+
+Results read_results(const std::filesystem::path& path) {
+  Results results = read(path, parsed);
+  results.name = path.stem().string();
+  return results;
+}
+
+Commands read_commands(const std::filesystem::path& path) {
+  return read(path, [](const Json& json) {
+    if (json.at("chronormal_bench_commands") != 1) throw std::runtime_error("of another version");
+    Commands commands{json.at("vertices"), json.at("faces"), json.at("keyframes"), {}, json.at("obj").at("bytes"), {}};
+    for (const Json& input : json.at("inputs")) {
+      commands.inputs.push_back({input.at("title"), input.at("bytes"), {}});
+      for (const Json& row : input.at("rows"))
+        commands.inputs.back().rows.push_back({row.at("name"), row.at("wall_s"), row.at("cpu_s")});
+    }
+    for (const Json& reader : json.at("obj").at("readers"))
+      commands.readers.push_back({reader.at("name"), reader.at("cpu_ms")});
+    if (commands.inputs.empty() || commands.readers.empty()) throw std::runtime_error("nothing was measured");
+    return commands;
+  });
 }
 
 std::vector<std::string> missing_rows(const Results& results) {

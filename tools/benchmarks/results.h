@@ -3,6 +3,7 @@
 #define BENCHMARKS_RESULTS_H_
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,27 @@ struct Accuracy {
   double bound = 0, mean = 0, share_9999 = 0, max = 0, bytes = 0;  // radians
 };
 
+/// What ./run bench --commands wrote on one machine: bench/results/commands/NAME.json.
+struct CommandRow {
+  std::string name;
+  double wall = 0, cpu = 0;  // seconds
+};
+struct CommandInput {
+  std::string title;
+  double bytes = 0;
+  std::vector<CommandRow> rows;  ///< cat, memcpy, reading, then commands
+};
+struct ObjReader {
+  std::string name;
+  double cpu_ms = 0;
+};
+struct Commands {
+  double vertices = 0, faces = 0, keyframes = 0;
+  std::vector<CommandInput> inputs;
+  double obj_bytes = 0;
+  std::vector<ObjReader> readers;  ///< the first one is the loop that checks nothing
+};
+
 struct Results {
   std::string name;  ///< of the file
   bool quick = false;
@@ -37,6 +59,7 @@ struct Results {
   std::vector<Row> rows;
   std::vector<SchemeQuality> qualities;
   std::vector<Accuracy> accuracies;
+  std::optional<Commands> commands;
 
   /// The row of a path or a rival; nullptr where there is none. On many threads: of the same path, however many.
   [[nodiscard]] const Row* find(const std::string& group, const std::string& size, const std::string& order,
@@ -55,6 +78,7 @@ inline const std::string kGrid = "grid", kShuffled = "shuffled";
 
 /// Throws std::runtime_error, with the path, where the file is no such result.
 [[nodiscard]] Results read_results(const std::filesystem::path& path);
+[[nodiscard]] Commands read_commands(const std::filesystem::path& path);
 
 /// What the page needs and the results lack, a line each: every rival, path, scheme and size.
 [[nodiscard]] std::vector<std::string> missing_rows(const Results& results);

@@ -27,6 +27,9 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 [[nodiscard]] std::string curved_part(const Results& results, const std::string& folder);
 [[nodiscard]] std::string uses_part(const Results& results, const std::string& folder);
 
+/// The part on what commands of the program take; empty where no run measured them.
+[[nodiscard]] std::string commands_part(const Results& results, const std::string& folder);
+
 /// The same rows of all machines, a column for each.
 [[nodiscard]] std::string side_by_side(const std::vector<Results>& machines);
 
