@@ -6,7 +6,6 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <utility>
 
 #include "benchmarks/sections.h"
 
@@ -23,31 +22,44 @@ struct Aim {
 
 using Kind = Aim::Kind;
 
-// Why an aim of this kind may be missed: what stands in the way, on any machine.
-std::string reason_of(const Aim& aim) {
+// Why an aim may be missed: what stands in the way, on any machine.
+struct Reason {
+  std::string title, text;
+
+  friend bool operator==(const Reason&, const Reason&) = default;
+};
+
+Reason reason_of(const Aim& aim) {
   switch (aim.kind) {
     case Kind::kShare:
-      return "no loop gets there that reads and writes the same bytes in the same order, so that the share of the bare "
-             "loop is the one to look at";
+      return {
+          "Shares of memory",
+          "a loop that reads and writes the same bytes in the same order does not get there either. The share of the "
+          "bare loop tells more."};
     case Kind::kThreads:
       if (aim.what.starts_with("exact") || aim.what.starts_with("compact"))
-        return "two cores of a virtual machine share their way to memory, and the bare loop gains no more from the "
-               "second";
-      return "waking the other thread takes a part of calls that last less than a millisecond, and both threads share "
-             "one way to memory in those that last longer";
+        return {"Many threads that evaluate",
+                "two cores of a virtual machine share their way to memory, and the bare loop gains no more from the "
+                "second one."};
+      return {
+          "Many threads that compute",
+          "waking the other thread takes a part of a call that lasts less than a millisecond, and both threads share "
+          "one way to memory in a call that lasts longer."};
     case Kind::kTimesRecompute:
-      return "these aims are times the recomputing of before there were lanes, which has become faster since then, as "
-             "preparing has, and by more";
+      return {"Preparing",
+              "these aims were set against a way to recompute normals that has become faster since then, as preparing "
+              "has."};
     case Kind::kShareOfBare:
     case Kind::kTimesFaster:
       break;
   }
   if (aim.what.ends_with(" t"))
-    return "the results of all t have to be written in any case, and a loop that does nothing else takes most of the "
-           "time";
-  return "the rival shares the cache and the clock of this machine, on which curves wait for the arithmetic of "
-         "unpacking "
-         "and normalising, and not for memory; the aim was made on a machine where both waited for memory";
+    return {"Many t",
+            "the results of all t are written in any case, and a loop that does nothing else takes most of that time."};
+  return {
+      "Times others",
+      "in a cache, curves take the time of their own arithmetic, unpacking integers and normalising, which the aims "
+      "left out."};
 }
 
 const std::vector<Aim>& aims() {
@@ -141,12 +153,12 @@ std::string sentence(const Aim& aim) {
 
 }  // namespace
 
-void add_aims(Page& page, const Results& results) {
+void add_aims(Page& page, const Results& results, const std::string& folder) {
   Cells header = {"what"};
   for (const Column& column : columns()) header.push_back(column.title);
   std::vector<Cells> rows;
   std::size_t reached = 0, aimed = 0;
-  std::vector<std::pair<std::string, std::vector<std::string>>> missed;  // aims by their reasons
+  std::vector<Reason> missed;
   for (const Aim& aim : aims()) {
     if (!aim.against.empty() && aim.against.front() == "recompute in float32" &&
         !results.knows(aim.group, aim.against.front()))
@@ -167,18 +179,14 @@ void add_aims(Page& page, const Results& results) {
     }
     rows.push_back(std::move(cells));
     if (all_reached) continue;
-    const auto same = std::find_if(missed.begin(), missed.end(),
-                                   [&aim](const auto& reason) { return reason.first == reason_of(aim); });
-    if (same == missed.end())
-      missed.push_back({reason_of(aim), {sentence(aim)}});
-    else
-      same->second.push_back(sentence(aim));
+    const Reason reason = reason_of(aim);
+    if (std::find(missed.begin(), missed.end(), reason) == missed.end()) missed.push_back(reason);
   }
-  std::string reasons = missed.empty() ? "" : "Where the others are missed, this is why:\n";
-  for (const auto& [reason, sentences] : missed) {
-    reasons += "\n* ";
-    for (std::size_t i = 0; i < sentences.size(); ++i) reasons += (i == 0 ? "" : "; ") + sentences[i];
-    reasons += ". Here " + reason + ".";
+  std::string reasons;
+  for (const Reason& reason : missed) {
+    Page part("benchmarks/missed.md.in", folder);
+    part.set({{"title", reason.title}, {"text", reason.text}});
+    reasons += part.markdown();
   }
   page.table("aims", header, rows);
   page.set({{"reached", fmt::format("{}", reached)}, {"aimed", fmt::format("{}", aimed)}, {"missed", reasons}});

@@ -59,7 +59,7 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"curved", curved_part(results, folder)},
        {"uses", uses_part(results, folder)}});
   add_costs(part, results);
-  add_aims(part, results);
+  add_aims(part, results, folder);
   add_memory(part, results);
   add_schemes(part, results);
   add_accuracy(part, results);

@@ -10,8 +10,9 @@ namespace chronormal::benchmarks {
 
 using namespace pages;
 
-void add_costs(Page& page, const Results& results);     ///< nanoseconds of everybody, cost against size
-void add_aims(Page& page, const Results& results);      ///< ratios within the run beside what was aimed at
+void add_costs(Page& page, const Results& results);  ///< nanoseconds of everybody, cost against size
+/// Ratios within the run beside what was aimed at, and why some aims are missed.
+void add_aims(Page& page, const Results& results, const std::string& folder);
 void add_memory(Page& page, const Results& results);    ///< bandwidths
 void add_schemes(Page& page, const Results& results);   ///< quality against cost
 void add_accuracy(Page& page, const Results& results);  ///< every path against double
