@@ -74,7 +74,7 @@ class NormalCurves {
 
   /// Prepares those of all faces of a segment, or of all elements of groups, straight from positions, without an array
   /// of control normals in between. (Meshes in no order need 32 bytes a vertex more for a while.) The first curves of
-  /// some groups also make the paths around their elements, about 40 bytes a vertex, which the groups keep for those
+  /// some groups also make the paths around their elements, 33 bytes a vertex of a grid, which the groups keep for those
   /// that follow. Where many segments are prepared one after the other, name the curves of the one before as `reuse`:
   /// they are emptied and their memory is used again, which spares asking the system for new pages; the 32 bytes a
   /// vertex are then kept for the next one.

@@ -83,7 +83,7 @@ struct RingsOfGroups {
 inline constexpr std::size_t kMostPathPoints = 64;
 
 /// The paths of up to kMostPathPoints around the elements of groups, which keep them, with their copies: 4 bytes for each
-/// point of the longest of sixteen paths, about 40 bytes a vertex. Any number of threads may ask for them. Throws
+/// point of the longest of sixteen paths, 33 bytes a vertex of a grid. Any number of threads may ask for them. Throws
 /// std::bad_alloc.
 [[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 
