@@ -1,16 +1,21 @@
 #include "normals/blend/blend_storage.h"
+#include "chronormal/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
 
+#include "chronormal/core/parallel.h"
 #include "core/rounding.h"
 #include "normals/blend/blend_scratch.h"
 #include "normals/blend/kernels/blend_rows.h"
 
 namespace chronormal::inline internal {
 namespace {
+
+// What is worked on at once by all threads while terms are made, unless one alone takes more.
+constexpr std::size_t kWorkTogether = std::size_t{2} << 20;
 
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // of an element
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
@@ -66,6 +71,13 @@ struct BlendStorage::Candidate {
   std::size_t pair;  // which of those of the target; kNone: its own
 
   static constexpr std::size_t kNone = ~std::size_t{0};
+};
+
+// A term that is to be made.
+struct BlendStorage::ListedTerm {
+  std::size_t target;
+  StoredPair* pair;  // nullptr: the target's own
+  std::size_t work;  // bytes
 };
 
 BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes)
@@ -131,13 +143,38 @@ void BlendStorage::choose(std::vector<Candidate> candidates) {
   update_cost();
 }
 
+// Terms of few elements do not occupy several threads, so that many of them are made side by side, as many as work on no
+// more memory together than kWorkTogether.
 void BlendStorage::fill() {
+  std::vector<ListedTerm> terms;
+  terms.reserve(cost_.stored_targets + cost_.stored_pairs);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (targets_[i].term.is_stored) fill_target(i);
-    for (StoredPair& pair : targets_[i].pairs) {
-      if (pair.term.is_stored) fill_pair(i, pair);
-    }
+    if (targets_[i].term.is_stored) terms.push_back({i, nullptr, work_of(targets_[i])});
+    for (StoredPair& pair : targets_[i].pairs)
+      if (pair.term.is_stored) terms.push_back({i, &pair, work_of(targets_[i], pair)});
   }
+  for (std::size_t first = 0; first < terms.size();) {
+    std::size_t end = first, work = 0;
+    while (end < terms.size() && (end == first || work + terms[end].work <= kWorkTogether)) work += terms[end++].work;
+    parallel_for(end - first, [&](std::size_t k) {
+      const ListedTerm& term = terms[first + k];
+      if (term.pair == nullptr)
+        fill_target(term.target);
+      else
+        fill_pair(term.target, *term.pair);
+    });
+    first = end;
+  }
+}
+
+// The linear term is kept while the square one is made.
+std::size_t BlendStorage::work_of(const StoredTarget& target) const {
+  return 2 * terms_.term_bytes(target.moved_faces, target.moved_corners);
+}
+std::size_t BlendStorage::work_of(const StoredTarget& target, const StoredPair& pair) const {
+  const StoredTarget& other = targets_[pair.other];
+  return terms_.term_bytes(std::min(target.moved_faces, other.moved_faces),
+                           std::min(target.moved_corners, other.moved_corners));
 }
 
 void BlendStorage::fill_target(std::size_t i) {
@@ -199,31 +236,34 @@ std::size_t BlendStorage::bytes() const noexcept {
 void BlendStorage::update_cost() {
   cost_ = {};
   const BlendShape shape = {terms_.size(), set_.topology.vertex_count(), set_.targets.size(), large_faces_.size()};
-  std::size_t terms = 0, largest_work = 0;
+  std::size_t terms = 0, largest_work = 0, all_work = 0;
+  const auto add_work = [&](std::size_t bytes) {
+    largest_work = std::max(largest_work, bytes);
+    all_work += bytes;
+  };
   for (const StoredTarget& target : targets_) {
     cost_.target_elements += target.element_count;
     if (target.term.is_stored) {
       ++cost_.stored_targets;
       terms += kTargetBytes * target.element_count;
-      // The linear term is kept while the square one is made.
-      largest_work = std::max(largest_work, 2 * terms_.term_bytes(target.moved_faces, target.moved_corners));
+      add_work(work_of(target));
     }
     for (const StoredPair& pair : target.pairs) {
-      const StoredTarget& other = targets_[pair.other];
       ++cost_.overlapping_pairs;
       cost_.pair_elements += pair.elements;
       if (!pair.term.is_stored) continue;
       ++cost_.stored_pairs;
       terms += kPairBytes * pair.elements;
-      largest_work = std::max(largest_work, terms_.term_bytes(std::min(target.moved_faces, other.moved_faces),
-                                                              std::min(target.moved_corners, other.moved_corners)));
+      add_work(work_of(target, pair));
     }
   }
   cost_.least_bytes = list_bytes() + base_bytes(shape) + scratch_bytes(shape);
   cost_.bytes = cost_.least_bytes + terms;
   const std::size_t counting =
       terms_.counting_bytes(cost_.overlapping_pairs) + (cost_.overlapping_pairs + targets_.size()) * sizeof(Candidate);
-  cost_.peak_bytes = std::max(cost_.bytes + largest_work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
+  const std::size_t work = std::max(largest_work, std::min(all_work, kWorkTogether)) +
+                           (cost_.stored_targets + cost_.stored_pairs) * sizeof(ListedTerm);
+  cost_.peak_bytes = std::max(cost_.bytes + work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
 }
 
 }  // namespace chronormal::inline internal

@@ -65,10 +65,13 @@ class BlendStorage {
 
  private:
   struct Candidate;
+  struct ListedTerm;
 
   [[nodiscard]] StoredTarget listed(std::size_t i) const;
   [[nodiscard]] std::size_t list_bytes() const noexcept;
   void choose(std::vector<Candidate> candidates);
+  [[nodiscard]] std::size_t work_of(const StoredTarget& target) const;
+  [[nodiscard]] std::size_t work_of(const StoredTarget& target, const StoredPair& pair) const;
   void fill_target(std::size_t i);
   void fill_pair(std::size_t i, StoredPair& pair);
   void update_cost();
