@@ -41,12 +41,17 @@ Status check_mesh(const Motion& motion) {
 // Checks everything in a keyframe except its positions.
 Status check_rest(const Motion& motion, std::size_t k) {
   const Motion::Keyframe& keyframe = motion.keyframes[k];
-  if (!keyframe.velocities.empty() && keyframe.velocities.size() != 3 * motion.topology.vertex_count())
+  const auto fits = [&](const std::vector<float>& velocities) {
+    return velocities.empty() || velocities.size() == 3 * motion.topology.vertex_count();
+  };
+  if (!fits(keyframe.velocities) || !fits(keyframe.end_velocities))
     return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
-  for (std::size_t i = 0; i < keyframe.velocities.size(); ++i) {
-    if (!std::isfinite(keyframe.velocities[i]))
-      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                           "the velocity is not a finite number");
+  for (const std::vector<float>* velocities : {&keyframe.velocities, &keyframe.end_velocities}) {
+    for (std::size_t i = 0; i < velocities->size(); ++i) {
+      if (!std::isfinite((*velocities)[i]))
+        return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                             "the velocity is not a finite number");
+    }
   }
   if (!std::isfinite(motion.keyframes[k].time))
     return invalid_input(keyframe_place(motion, k), "the time is not finite");

@@ -70,6 +70,9 @@ struct InputOptions {
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
+  /// The first and the last of these keyframes get end_velocities (motion/motion.h) from up to three keyframes of the
+  /// sequence beyond them, so that curves are those of the whole sequence. These keyframes are read for it.
+  bool ends_of_whole = false;
   /// Leaves positions in the files until they are asked for: in mesh files, .pc2 and .mdd, and in .npy and .npz that
   /// are stored and in C order. A caller that sets it should ask for Input::stream(). Other inputs are read at once,
   /// and so are mesh files where the normals of all of them are kept. An error in a keyframe is found when the keyframe

@@ -51,6 +51,9 @@ struct Motion {
     double time = 0;                     ///< seconds; of targets, the weight
     std::string name;                    ///< for messages: the file that it came from, or empty
     std::vector<float> velocities = {};  ///< (V, 3) per second, of a sequence whose file has them; or empty
+    /// (V, 3) per second, of an end of a part of a sequence: the velocities that curves through the whole sequence have
+    /// there (PathKind::kCatmullRom in normals/paths.h). Empty: they follow from the keyframes of the motion.
+    std::vector<float> end_velocities = {};
   };
   struct SegmentKeys {
     std::size_t from = 0;  ///< index of the keyframe at t = 0

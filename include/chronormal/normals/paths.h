@@ -71,13 +71,17 @@ enum class PathKind {
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Finds a path by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<PathKind> make_path(std::string_view name);
+/// The velocities that a path takes from a keyframe itself: on kHermite those of its file, where it has some, and on
+/// curves else its end_velocities. Empty: they follow from the positions of the keyframe and its neighbours.
+[[nodiscard]] const std::vector<float>& given_velocities(const Motion::Keyframe& keyframe, PathKind kind) noexcept;
 /// Checks that a motion has such paths. Errors: kUsage for curves in a motion that is no sequence, and for kHermite
 /// where no keyframe has velocities.
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
 /// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two
 /// neighbours (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the
-/// nearest four: of as many as there are, so that between two keys the motion is straight.
+/// nearest four: of as many as there are, so that between two keys the motion is straight. A key that has end_velocities
+/// has these.
 /// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);
@@ -105,6 +109,26 @@ struct VelocityShares {
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
 /// Above this bend, a curve through the keyframes tells little about the motion.
 inline constexpr double kTooSparse = 0.5;
+/// Whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid turn by
+/// 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
+[[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
+
+/// Velocities against positions, to find out whether the velocities are those of the motion.
+struct VelocityFit {
+  /// The way that vertices would go from keyframe to keyframe at the mean of the speeds at both ends, as a multiple of
+  /// the straight way that they go: 1 or somewhat more. It is 100 where velocities are 100 times too large, and 30
+  /// where they are per second and keyframes without times count as seconds.
+  double length = 1;
+  /// The mean cosine of the angle between velocities and these ways, where long ones count more: -1 where velocities
+  /// are reversed.
+  double direction = 1;
+
+  /// Whether a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest, explains both.
+  [[nodiscard]] bool is_plausible() const noexcept { return length >= 1.0 / 3 && length <= 3 && direction >= 0; }
+};
+/// Looks at up to 64 segments, evenly spread, whose keyframes both have velocities. Where there is none, or where no
+/// vertex moves, the result is as if all velocities fitted. Errors: those of the stream.
+[[nodiscard]] Result<VelocityFit> velocity_fit(MotionStream& stream);
 
 /// Where the vertices are at a local t.
 template <std::size_t K>

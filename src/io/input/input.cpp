@@ -91,6 +91,12 @@ Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& ca
   return input.format->read_cache(file.value().bytes(), file_name_of(input.path), cache_options);
 }
 
+std::vector<double> times_of(const Motion& motion) {
+  std::vector<double> times;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) times.push_back(keyframe.time);
+  return times;
+}
+
 // Keeps the chosen keyframes of a motion that was read whole.
 Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (!options.chooses_frames()) return Success{};
@@ -98,10 +104,16 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
   std::vector<Motion::Keyframe> kept;
-  for (const std::size_t k : frames.value()) kept.push_back(std::move(motion.keyframes[k]));
-  motion.keyframes = std::move(kept);
+  for (const std::size_t k : frames.value()) {
+    // The ends may follow from keyframes that are chosen and from others.
+    Motion::Keyframe& keyframe = motion.keyframes[k];
+    kept.push_back(options.ends_of_whole ? keyframe : std::move(keyframe));
+  }
+  const std::vector<double> times = times_of(motion);
+  std::swap(motion.keyframes, kept);
   motion.connect_as_sequence();
-  return Success{};
+  const auto positions = [&kept](std::size_t k) -> Result<std::vector<float>> { return kept[k].positions; };
+  return set_end_velocities(options, times, positions, motion);
 }
 
 // Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream has a descriptor
@@ -113,8 +125,17 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   if (options.chooses_frames()) {
     Result<std::vector<std::size_t>> chosen = choose_frames(frames.size(), options);
     if (!chosen) return chosen.error();
-    if (const Status status = keep_chosen(options, outline); !status) return status.error();
+    InputOptions without_ends = options;
+    without_ends.ends_of_whole = false;
+    const std::vector<double> times = times_of(outline);
+    if (const Status status = keep_chosen(without_ends, outline); !status) return status.error();
     frames = std::move(chosen).value();
+    const auto positions = [&](std::size_t k) -> Result<std::vector<float>> {
+      std::vector<float> sample(3 * std::size_t{outline.topology.vertex_count()});
+      if (Status status = read_sample(layout, file, name, k, sample); !status) return status.error();
+      return sample;
+    };
+    if (const Status status = set_end_velocities(options, times, positions, outline); !status) return status.error();
   }
   layout.times = {};
   const auto shared = std::make_shared<const PositionedFile>(std::move(file));

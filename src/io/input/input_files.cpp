@@ -10,8 +10,10 @@
 #include <system_error>
 #include <utility>
 
+#include "chronormal/normals/paths.h"
 #include "io/bytes/file.h"
 #include "io/input/formats.h"
+#include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -142,6 +144,30 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
                                     : "--from",
                   "a motion needs two keyframes or more, and so few are left: " + range);
   return frames;
+}
+
+Status set_end_velocities(const InputOptions& options, std::span<const double> times,
+                          const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
+  if (!options.ends_of_whole || !options.chooses_frames()) return Success{};
+  // Of all keyframes those count that the same step chooses of the whole sequence.
+  const std::size_t start = options.from % options.every, first = options.from / options.every;
+  std::vector<double> of_whole, of_part;
+  for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))
+    of_whole.push_back(times[k]);
+  for (const Motion::Keyframe& keyframe : chosen.keyframes) of_part.push_back(keyframe.time);
+  for (const std::size_t at : {std::size_t{0}, of_part.size() - 1}) {
+    const VelocityShares whole = velocity_shares(of_whole, first + at), part = velocity_shares(of_part, at);
+    if (whole.first == first + part.first && whole.share.size() == part.share.size()) continue;
+    std::vector<std::vector<float>> positions;
+    for (std::size_t i = 0; i < whole.share.size(); ++i) {
+      Result<std::vector<float>> found = read(start + (whole.first + i) * options.every);
+      if (!found) return found.error();
+      positions.push_back(std::move(found).value());
+    }
+    chosen.keyframes[at].end_velocities =
+        velocities_of(whole, std::vector<std::span<const float>>(positions.begin(), positions.end()));
+  }
+  return Success{};
 }
 
 Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,13 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 /// The keyframes that the options choose among so many. Errors: kUsage with the option as the place, where there are
 /// fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
+
+/// Gives the ends of the keyframes that were chosen their end_velocities, where options.ends_of_whole asks for them and
+/// the velocities depend on keyframes beyond these ends. Of every N-th keyframe these are every N-th, too.
+/// times are those of all keyframes of the sequence, and read(k) gives the positions of one of them.
+[[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
+                                        const std::function<Result<std::vector<float>>(std::size_t k)>& read,
+                                        Motion& chosen);
 
 /// Whether other has the vertex count and the faces of first, which messages call first_name.
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,

@@ -133,6 +133,20 @@ Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& fi
 
 }  // namespace
 
+namespace {
+
+Status set_ends(const std::vector<std::string>& files, const InputOptions& options, Motion& motion) {
+  std::vector<double> times;
+  for (std::size_t k = 0; k < files.size(); ++k) times.push_back(static_cast<double>(k) / options.frames_per_second);
+  const auto positions = [&](std::size_t k) {
+    const std::string place = frame_place(k, file_name_of(files[k]));
+    return read_frame(options, files[k], place, nullptr, nullptr, motion.topology, "the others").positions;
+  };
+  return set_end_velocities(options, times, positions, motion);
+}
+
+}  // namespace
+
 Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options) {
   const Result<std::vector<std::size_t>> frames = choose_files(files, options);
   if (!frames) return frames.error();
@@ -183,6 +197,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
     }
   }
   motion.connect_as_sequence();
+  if (Status status = set_ends(files, options, motion); !status) return status.error();
   if (Status status = validate(motion); !status) return status.error();
   return read;
 }
@@ -212,6 +227,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   outline.topology = std::move(first.value().topology);
   std::vector<float>& positions = outline.keyframes[0].positions;
   positions = std::move(first.value().positions);
+  if (Status status = set_ends(files, options, outline); !status) return status.error();
   Status valid = validate_positions(outline, 0, positions);
   if (valid) valid = validate_outline(outline);
   if (!valid) return valid.error();

@@ -2,6 +2,7 @@
 #include "normals/curves/path_stream.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
@@ -43,6 +44,39 @@ Result<double> bend_of(MotionStream& stream, std::size_t every) {
     all.add(bend_at(motion, i, every));
   }
   return all.bend();
+}
+
+Result<VelocityFit> velocity_fit(MotionStream& stream) {
+  const Motion& motion = stream.motion();
+  std::vector<std::size_t> segments;
+  for (std::size_t s = 0; s + 1 < motion.keyframes.size(); ++s)
+    if (!motion.keyframes[s].velocities.empty() && !motion.keyframes[s + 1].velocities.empty()) segments.push_back(s);
+  const std::size_t used = std::min<std::size_t>(segments.size(), 64);
+  double way = 0, at_speed = 0, along = 0, weight = 0;
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::size_t s = segments[used < 2 ? 0 : i * (segments.size() - 1) / (used - 1)];
+    if (const Status status = stream.hold(s, s + 1); !status) return status.error();
+    const Motion::Keyframe &from = motion.keyframes[s], &to = motion.keyframes[s + 1];
+    const auto vectors = [&](const std::vector<float>& numbers) {
+      return VectorView<const float>::packed(numbers.data(), motion.topology.vertex_count());
+    };
+    const auto before = vectors(from.positions), after = vectors(to.positions);
+    const auto leaving = vectors(from.velocities), arriving = vectors(to.velocities);
+    for (std::size_t v = 0; v < before.count; ++v) {
+      const Vec3d chord = to_double(after[v]) - to_double(before[v]);
+      for (const Vec3d& velocity : {to_double(leaving[v]), to_double(arriving[v])}) {
+        const Vec3d step = (to.time - from.time) / 2 * velocity;
+        at_speed += length(step);
+        along += dot(step, chord);
+        weight += length(step) * length(chord);
+      }
+      way += length(chord);
+    }
+  }
+  VelocityFit fit;
+  if (way > 0) fit.length = at_speed / way;
+  if (weight > 0) fit.direction = along / weight;
+  return fit;
 }
 
 double bend_of(const Motion& motion, std::size_t every) {

@@ -1,9 +1,11 @@
 /// Paths of a motion that is longer than memory: which keyframes a path follows from, and how far paths bend, keyframe
-/// by keyframe. Private to normals and workflow.
+/// by keyframe. Private to normals, io and workflow.
 #ifndef CHRONORMAL_NORMALS_CURVES_PATH_STREAM_H_
 #define CHRONORMAL_NORMALS_CURVES_PATH_STREAM_H_
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
@@ -16,6 +18,11 @@ namespace chronormal::inline internal {
 /// sequence one keyframe more on each side; in the first and the last segment two on the one side that there is. So
 /// one segment of a curved path takes four keyframes. Errors: those of the stream.
 [[nodiscard]] Status hold_paths(MotionStream& stream, std::size_t first, std::size_t last, PathKind path);
+
+/// The velocities at a keyframe, (V, 3), from the positions of the keyframes from which they follow.
+/// There must be as many positions as shares, all of one size
+[[nodiscard]] std::vector<float> velocities_of(const VelocityShares& velocity,
+                                               std::span<const std::span<const float>> positions);
 
 /// The two sums that bend_of() (paths.h) divides.
 struct BendSums {

@@ -10,6 +10,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "normals/control/local_time.h"
+#include "normals/curves/path_stream.h"
 
 namespace chronormal {
 namespace {
@@ -43,14 +44,9 @@ std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> key
   std::vector<double> times;
   for (const Motion::Keyframe* key : keys) times.push_back(key->time);
   const VelocityShares velocity = velocity_shares(times, i);
-  std::vector<float> result(keys[i]->positions.size());
-  for (std::size_t c = 0; c < result.size(); ++c) {
-    double sum = 0;
-    for (std::size_t k = 0; k < velocity.share.size(); ++k)
-      sum += velocity.share[k] * static_cast<double>(keys[velocity.first + k]->positions[c]);
-    result[c] = static_cast<float>(sum);
-  }
-  return result;
+  std::vector<std::span<const float>> positions;
+  for (std::size_t k = 0; k < velocity.share.size(); ++k) positions.emplace_back(keys[velocity.first + k]->positions);
+  return velocities_of(velocity, positions);
 }
 
 std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyframe>& keyframes) {
@@ -112,6 +108,24 @@ Result<PathKind> make_path(std::string_view name) {
                std::string("there is no path '").append(name).append("'; there are linear, catmull-rom, hermite")};
 }
 
+const std::vector<float>& given_velocities(const Motion::Keyframe& keyframe, PathKind kind) noexcept {
+  static const std::vector<float> kNone;
+  if (kind == PathKind::kLinear) return kNone;
+  return kind == PathKind::kHermite && !keyframe.velocities.empty() ? keyframe.velocities : keyframe.end_velocities;
+}
+
+std::vector<float> internal::velocities_of(const VelocityShares& velocity,
+                                           std::span<const std::span<const float>> positions) {
+  std::vector<float> result(positions[0].size());
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    double sum = 0;
+    for (std::size_t k = 0; k < velocity.share.size(); ++k)
+      sum += velocity.share[k] * static_cast<double>(positions[k][c]);
+    result[c] = static_cast<float>(sum);
+  }
+  return result;
+}
+
 Status check_path(const Motion& motion, PathKind kind) {
   if (kind == PathKind::kLinear) return Success{};
   const auto refuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
@@ -163,8 +177,8 @@ PolynomialSegment<3> path_segment(const Topology& topology, std::span<const Moti
     return segment;
   }
   const auto velocities = [&](std::size_t at) {
-    const std::vector<float>& given = keys[at]->velocities;
-    return kind == PathKind::kHermite && !given.empty() ? given : curve_velocities(keys, at);
+    const std::vector<float>& given = given_velocities(*keys[at], kind);
+    return given.empty() ? curve_velocities(keys, at) : given;
   };
   const std::vector<float> start = velocities(i), end = velocities(i + 1);
   return hermite_segment(topology, packed(from.positions), packed(start), packed(to.positions), packed(end), from.time,

@@ -1,14 +1,17 @@
 // Inputs whose keyframes stay in files give the same results as the same inputs when they are read whole.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
+#include "chronormal/normals/paths.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
@@ -94,6 +97,46 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
       EXPECT_EQ(stream.motion().keyframes[k].name, whole.keyframes[k].name) << names.back();
     }
     EXPECT_EQ(input.value().motion().value()->keyframes[4].positions, whole.keyframes[4].positions);
+  }
+}
+
+// The cubic of a segment, from which all normals on a curved path follow.
+std::array<std::vector<Vec3d>, 4> cubic_of(MotionStream& stream, std::size_t segment) {
+  EXPECT_TRUE(stream.hold_all().ok());
+  return path_segment(stream.motion(), segment, PathKind::kCatmullRom).control;
+}
+
+TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
+  const TemporaryFolder folder;
+  for (const auto& names : write_all(folder, wave(14))) {
+    for (const bool is_streamed : {false, true}) {
+      const auto open = [&](std::size_t from, std::optional<std::size_t> to, std::size_t every, bool ends) {
+        InputOptions options = is_streamed ? streamed(test::files(names, 24)) : test::files(names, 24);
+        options.from = from;
+        options.to = to;
+        options.every = every;
+        options.ends_of_whole = ends;
+        Result<Input> input = open_input(options);
+        EXPECT_TRUE(input.ok()) << input.error().text();
+        return std::move(input).value();
+      };
+      struct Part {
+        std::size_t from, to, every;
+      };
+      for (const Part& part : {Part{4, 9, 1}, Part{0, 1, 1}, Part{0, 2, 1}, Part{12, 13, 1}, Part{10, 13, 1},
+                               Part{2, 8, 2}, Part{6, 9, 3}}) {
+        Input whole = open(0, std::nullopt, part.every, true), cut = open(part.from, part.to, part.every, true),
+              alone = open(part.from, part.to, part.every, false);
+        MotionStream &all = *whole.stream().value(), &some = *cut.stream().value();
+        const std::size_t segments = some.motion().segments.size();
+        for (std::size_t s = 0; s < segments; ++s)
+          EXPECT_EQ(cubic_of(some, s), cubic_of(all, part.from / part.every + s))
+              << names.back() << ' ' << part.from << ' ' << part.to << ' ' << s;
+        if (part.from == 4) {
+          EXPECT_NE(cubic_of(*alone.stream().value(), 0), cubic_of(all, 4));
+        }
+      }
+    }
   }
 }
 
