@@ -119,6 +119,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
   wanted.velocities = options.path.needs_velocities();
+  wanted.ends_of_whole = options.path.is_curved();
   Result<Input> opened = open_input(std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
@@ -126,14 +127,14 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
   if (document != nullptr && how.shard)
     return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
-  if (const Status known = check_path(input, how.path); !known) return known.error();
+  if (const Status known = check_path("audit", input, how.path); !known) return known.error();
   if (resumed != nullptr) {
     if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
   }
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   progress.clear();
-  warn_if_sparse("audit", found.value().path, found.value().bend);
+  warn_if_sparse("audit", found.value().path, keyframe_count(found.value()), found.value().bend);
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.tolerance,
                  can_be_baked ? words_of(options.input, how.path) : ""};

@@ -214,6 +214,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
 Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.velocities = options.path.needs_velocities();
+  wanted.ends_of_whole = options.path.is_curved();
   wanted.shading = KeepShading::kAll;
   return open_input(std::move(wanted), progress);
 }
@@ -243,7 +244,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence is written as .glb");
-  if (const Status status = check_path(input, how.path); !status) return status.error();
+  if (const Status status = check_path("bake", input, how.path); !status) return status.error();
   MotionStream& stream = *input.stream().value();
   const Motion& motion = stream.motion();
   if (motion.kind == MotionKind::kTargets)
@@ -263,7 +264,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   progress.clear();
   if (!baked) return baked.error();
   warn(baked.value().warnings);
-  warn_if_sparse("bake", how.path, baked.value().bend);
+  warn_if_sparse("bake", how.path, baked.value().keyframes, baked.value().bend);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
@@ -328,6 +329,7 @@ Result<int> run(BakeArguments options) {
   }
   InputOptions wanted = options.input;
   wanted.velocities = options.path.needs_velocities();
+  wanted.ends_of_whole = options.path.is_curved();
   wanted.stream = true;
   if (options.crease_angle == 180) wanted.shading = KeepShading::kRead;
   Result<Input> input = open_input(std::move(wanted), progress);

@@ -147,7 +147,7 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   const std::size_t segments =
       compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
   compare_options.progress = watching_ranks(progress.callback("comparing", "segments", segments));
-  if (const Status status = check_path(input, compare_options.path); !status) return status.error();
+  if (const Status status = check_path("compare", input, compare_options.path); !status) return status.error();
   if (resumed != nullptr) {
     if (input.document() != nullptr || motion.value()->motion().kind != MotionKind::kSequence)
       return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
@@ -162,7 +162,10 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   }
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
-  if (comparison) warn_if_sparse("compare", comparison.value().path, comparison.value().bend);
+  if (comparison) {
+    const Comparison& found = comparison.value();
+    warn_if_sparse("compare", found.path, found.segments + 1, found.bend);
+  }
   return comparison;
 }
 
@@ -204,6 +207,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   for (InputOptions& wanted : inputs) {
     wanted.stream = true;
     wanted.velocities = options.path.needs_velocities();
+    wanted.ends_of_whole = options.path.is_curved();
     Result<Input> input = open_input(wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress, resumed) : Result<Comparison>(input.error());

@@ -201,6 +201,7 @@ Result<int> run(const SampleArguments& options) {
   wanted.allow_mesh = true;
   wanted.stream = true;
   wanted.velocities = options.path.needs_velocities();
+  wanted.ends_of_whole = options.path.is_curved();
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input(std::move(wanted), progress);
   if (!input) return input.error();
@@ -208,10 +209,10 @@ Result<int> run(const SampleArguments& options) {
   if (!read) return read.error();
   const Motion& motion = read.value()->motion();
   if (request.sample.path != PathKind::kLinear) {
-    if (const Status status = check_path(input.value(), request.sample.path); !status) return status.error();
+    if (const Status status = check_path("sample", input.value(), request.sample.path); !status) return status.error();
     const Result<double> bend = bend_of(*read.value());
     if (!bend) return bend.error();
-    warn_if_sparse("sample", request.sample.path, bend.value());
+    warn_if_sparse("sample", request.sample.path, motion.keyframes.size(), bend.value());
   }
   const Result<Moments> moments = moments_of(input.value(), request.asked);
   if (!moments) return moments.error();

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "chronormal/workflow/audit.h"
 #include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
@@ -15,6 +14,26 @@
 
 namespace chronormal::cli {
 namespace {
+
+// Wrong velocities give curves that look like any others, so that nothing but a comparison with positions finds them.
+Status warn_of_velocities(const std::string& command, MotionStream& stream) {
+  const Result<VelocityFit> found = velocity_fit(stream);
+  if (!found) return found.error();
+  const VelocityFit& fit = found.value();
+  if (fit.is_plausible()) return Success{};
+  const bool is_reversed = fit.direction < 0 && fit.length > 0;
+  say(command,
+      is_reversed
+          ? std::string(
+                "the velocities point against the way that vertices go from keyframe to keyframe: hermite paths "
+                "swing back and forth with them. Are they reversed, or keyframes too far apart?")
+          : formatted("at the velocities of the keyframes vertices would go {:.3g} times the way that they go from "
+                      "keyframe to keyframe: velocities count per second of the times of the keyframes, which files "
+                      "without times have one second apart (--fps)",
+                      fit.length),
+      Tone::kWarning);
+  return Success{};
+}
 
 std::string morph_names() {
   std::string names;
@@ -100,7 +119,7 @@ Result<PathKind> PathArgument::read() const {
   return path;
 }
 
-Status check_path(Input& input, PathKind path) {
+Status check_path(const std::string& command, Input& input, PathKind path) {
   if (path == PathKind::kLinear) return Success{};
   if (input.document() != nullptr)
     return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
@@ -108,17 +127,31 @@ Status check_path(Input& input, PathKind path) {
   if (!stream) return stream.error();
   if (const Status status = chronormal::check_path(stream.value()->motion(), path); !status)
     return misuse("--path", status.error().message);
-  return Success{};
+  return path == PathKind::kHermite ? warn_of_velocities(command, *stream.value()) : Success{};
 }
 
-void warn_if_sparse(const std::string& command, PathKind path, double bend) {
-  if (!(path != PathKind::kLinear && bend > kTooSparse)) return;
+void warn_if_sparse(const std::string& command, PathKind path, std::size_t keyframes, double bend) {
+  if (path == PathKind::kCatmullRom && keyframes == 2)
+    say(command, "two keyframes have no curve through them: vertices move straight between them, as on linear paths",
+        Tone::kWarning);
+  if (!(path != PathKind::kLinear && is_too_sparse(bend))) return;
   say(command,
       formatted(
           "the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and "
           "above {:.2f} nothing tells what happened between",
           up_to_hundredths(bend), kTooSparse),
       Tone::kWarning);
+}
+
+std::size_t keyframe_count(const Audit& audit) noexcept {
+  return audit.subjects.empty() ? 3 : audit.subjects.front().segments + 1;
+}
+
+std::string path_words(PathKind path, std::size_t keyframes, double bend) {
+  std::string words = formatted("{} paths, which ", path_name(path));
+  if (keyframes > 2) return words + formatted("bend by {:.2f} of their length", up_to_hundredths(bend));
+  return words + (path == PathKind::kCatmullRom ? "are straight between two keyframes"
+                                                : "follow from two keyframes and their velocities");
 }
 
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {

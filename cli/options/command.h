@@ -13,6 +13,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
@@ -90,13 +91,19 @@ struct PathArgument {
   [[nodiscard]] std::vector<Option> table(const std::string& what);
   /// Errors: kUsage for a path that does not exist.
   [[nodiscard]] Result<PathKind> read() const;
+  [[nodiscard]] bool is_curved() const { return name != path_name(PathKind::kLinear); }
   /// Whether the input has to have velocities.
   [[nodiscard]] bool needs_velocities() const { return name == path_name(PathKind::kHermite); }
 };
-/// Checks that an input has such paths (normals/paths.h). Errors: kUsage where it does not; those of reading it.
-[[nodiscard]] Status check_path(Input& input, PathKind path);
-/// Warns where the keyframes are too far apart for curves through them.
-void warn_if_sparse(const std::string& command, PathKind path, double bend);
+/// Checks that an input has such paths (normals/paths.h), and warns where its velocities are not those of its motion.
+/// Errors: kUsage where it has no such paths; those of reading it.
+[[nodiscard]] Status check_path(const std::string& command, Input& input, PathKind path);
+/// Warns where the keyframes are too few or too far apart for curves through them.
+void warn_if_sparse(const std::string& command, PathKind path, std::size_t keyframes, double bend);
+/// The keyframes of a sequence that was audited on curved paths, or 3 where nothing moves and nothing was counted.
+[[nodiscard]] std::size_t keyframe_count(const Audit& audit) noexcept;
+/// What paths are, for reports: "catmull-rom paths, which bend by 0.12 of their length".
+[[nodiscard]] std::string path_words(PathKind path, std::size_t keyframes, double bend);
 
 /// Errors: kUsage where hosts are named and the input is no glTF file.
 [[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);

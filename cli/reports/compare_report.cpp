@@ -30,8 +30,7 @@ std::string headline(const NamedComparison& input) {
                           element_kind_name(c.kind))) +
          (c.path == PathKind::kLinear
               ? std::string()
-              : formatted("held against the exact normals of {} paths, which bend by {:.2f} of their length\n",
-                          path_name(c.path), up_to_hundredths(c.bend)));
+              : formatted("held against the exact normals of {}\n", path_words(c.path, c.segments + 1, c.bend)));
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }

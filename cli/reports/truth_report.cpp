@@ -31,15 +31,20 @@ std::string remarks(const TruthComparison& c) {
   const TruthRow* const curved = find_row(c, "catmull-rom", "exact");
   if (linear != nullptr && exact != nullptr && exact->quality.mean() > kAsGood * linear->quality.mean())
     text += formatted(
-        "\nThe exact normals of straight motion (polynomial) are no nearer to this motion than linear: {} and {}\n"
+        "\nThe exact normals of straight motion (polynomial) are {} to this motion than linear: {} and {}\n"
         "degrees in the mean, since its vertices did not move straight between the keyframes that were kept.\n",
-        mean_of(*exact), mean_of(*linear));
-  if (c.bend > kTooSparse)
+        exact->quality.mean() < linear->quality.mean() ? "hardly nearer" : "no nearer", mean_of(*exact),
+        mean_of(*linear));
+  if (is_too_sparse(c.bend))
     text += formatted(
         "\nThe keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and\n"
         "above {:.2f} nothing tells what happened between. More keyframes help; no scheme does.\n",
         up_to_hundredths(c.bend), kTooSparse);
-  if (curved == nullptr) text += "\nTwo keyframes have no curve through them: with three, curved paths take part.\n";
+  if (curved == nullptr)
+    text += find_row(c, "hermite", "exact") == nullptr
+                ? "\nTwo keyframes have no curve through them: with three, curved paths take part.\n"
+                : "\nTwo keyframes have no curve through them without their velocities: with three, catmull-rom takes "
+                  "part.\n";
   std::size_t degenerate = 0;
   for (const TruthRow& row : c.rows) degenerate = std::max(degenerate, row.quality.degenerate);
   if (degenerate > 0)

@@ -42,8 +42,11 @@ template <class... Args>
   return fmt::format(text, as_argument(args)...);
 }
 
-/// A share in hundredths, rounded up: what is above a limit of some hundredths is not printed as the limit itself.
-[[nodiscard]] inline double up_to_hundredths(double share) noexcept { return std::ceil(100 * share - 1e-9) / 100; }
+/// A share of 0 or more in hundredths, rounded up: what is above a limit of some hundredths is not printed as the limit
+/// itself. A share that is above some hundredths by a millionth or less, which is rounding, counts as these.
+[[nodiscard]] inline double up_to_hundredths(double share) noexcept {
+  return std::max(std::ceil(100 * share - 1e-4), 0.0) / 100;
+}
 
 }  // namespace chronormal::cli
 

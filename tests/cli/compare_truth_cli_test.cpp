@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 class CompareTruth : public testing::Test {
  protected:
   // Two triangles that turn by an angle from frame to frame, about an axis through neither.
-  void write_turn(double angle, int frames) {
+  void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;
       text.precision(9);
@@ -29,13 +29,24 @@ class CompareTruth : public testing::Test {
         text << "v " << c * p[0] + s * p[2] << ' ' << p[1] << ' ' << c * p[2] - s * p[0] << '\n';
       text << "f 1 2 3\nf 2 4 3\n";
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
+      if (!with_velocities) continue;
+      std::ostringstream ply;
+      ply.precision(9);
+      ply << "ply\nformat ascii 1.0\nelement vertex 4\n";
+      for (const char* name : {"x", "y", "z", "vx", "vy", "vz"}) ply << "property float " << name << '\n';
+      ply << "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+      for (const auto& p : places) {
+        const double x = c * p[0] + s * p[2], z = c * p[2] - s * p[0];
+        ply << x << ' ' << p[1] << ' ' << z << ' ' << angle * z << " 0 " << -angle * x << '\n';
+      }
+      ply << "4 0 1 3 2\n";
+      folder_.write("f" + std::to_string(frame) + ".ply", ply.str());
     }
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments) const {
     return run_shell(std::string(kProgram) + " compare 'f*.obj' " + arguments, folder_.path());
   }
 
- private:
   test::TemporaryFolder folder_;
 };
 
@@ -63,11 +74,11 @@ TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
   EXPECT_EQ(json["rows"].back()["path"], "catmull-rom");
 }
 
-TEST_F(CompareTruth, says_where_keyframes_are_too_far_apart_and_where_exact_is_no_nearer) {
+TEST_F(CompareTruth, says_where_keyframes_are_too_far_apart_and_where_exact_is_hardly_nearer) {
   write_turn(0.1, 9);
   const std::string near = run("--truth 2").out;
   EXPECT_EQ(near.find("too far apart"), std::string::npos) << near;
-  EXPECT_NE(near.find("no nearer to this motion than linear"), std::string::npos) << near;
+  EXPECT_NE(near.find("hardly nearer to this motion than linear"), std::string::npos) << near;
   write_turn(0.9, 9);
   const std::string far = run("--truth 2").out;
   EXPECT_NE(far.find("too far apart for a curve"), std::string::npos) << far;
@@ -84,7 +95,39 @@ TEST_F(CompareTruth, refuses_what_does_not_go_with_it) {
         << refused.err;
   }
   EXPECT_EQ(run("--truth 1").exit_code, 2);
-  EXPECT_EQ(run("--truth 5").exit_code, 2);
+  const ProcessResult refused = run("--truth 5");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("of 5 keyframes, keeping every 5th one keeps the first alone"), std::string::npos)
+      << refused.err;
+  EXPECT_NE(refused.err.find("keep every 4th or more of them"), std::string::npos) << refused.err;
+  write_turn(0.2, 2);
+  const ProcessResult two = run_shell(std::string(kProgram) + " compare f0.obj f1.obj --truth 2", folder_.path());
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_NE(two.err.find("a motion of two keyframes has none to leave out"), std::string::npos) << two.err;
+}
+
+TEST_F(CompareTruth, says_that_velocities_make_a_curve_of_two_keyframes) {
+  write_turn(0.2, 3, true);
+  const ProcessResult result = run_shell(std::string(kProgram) + " compare 'f*.ply' --truth 2", folder_.path());
+  EXPECT_NE(result.out.find("hermite"), std::string::npos) << result.out << result.err;
+  EXPECT_NE(result.out.find("no curve through them without their velocities"), std::string::npos) << result.out;
+}
+
+TEST_F(CompareTruth, calls_exact_hardly_nearer_where_it_is_a_little_nearer) {
+  for (const double angle : {0.1, 0.2, 0.4}) {
+    write_turn(angle, 9);
+    const Json json = Json::parse(run("--truth 2 --json").out);
+    double linear = 0, exact = 0;
+    for (const Json& row : json["rows"]) {
+      if (row["scheme"] == "linear") linear = row["mean_degrees"];
+      if (row["scheme"] == "polynomial") exact = row["mean_degrees"];
+    }
+    const std::string text = run("--truth 2").out;
+    EXPECT_EQ(text.find("are no nearer to this motion than linear") != std::string::npos, exact >= linear) << text;
+    EXPECT_EQ(text.find("are hardly nearer to this motion than linear") != std::string::npos,
+              exact < linear && exact > 0.98 * linear)
+        << text;
+  }
 }
 
 }  // namespace

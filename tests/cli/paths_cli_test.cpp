@@ -32,6 +32,24 @@ class Paths : public testing::Test {
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
     }
   }
+  // One triangle that turns as these do, with a multiple of its velocities in a second a frame.
+  void write_turn_with_velocities(double angle, double factor) {
+    for (int frame = 0; frame < 5; ++frame) {
+      std::ostringstream text;
+      text.precision(9);
+      text << "ply\nformat ascii 1.0\nelement vertex 3\n";
+      for (const char* name : {"x", "y", "z", "vx", "vy", "vz"}) text << "property float " << name << '\n';
+      text << "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+      const double c = std::cos(angle * frame), s = std::sin(angle * frame), rate = factor * angle;
+      const double places[3][3] = {{1, 0, 0}, {2, 0.3, 0.2}, {1.5, 1, 0.4}};
+      for (const auto& p : places) {
+        const double x = c * p[0] + s * p[2], z = c * p[2] - s * p[0];
+        text << x << ' ' << p[1] << ' ' << z << ' ' << rate * z << " 0 " << -rate * x << '\n';
+      }
+      text << "3 0 1 2\n";
+      folder_.write("v" + std::to_string(frame) + ".ply", text.str());
+    }
+  }
   [[nodiscard]] ProcessResult run(const std::string& arguments) const {
     return run_shell(std::string(kProgram) + " " + arguments, folder_.path());
   }
@@ -50,6 +68,49 @@ TEST_F(Paths, that_bend_a_little_too_much_are_not_printed_as_bending_by_the_limi
   const ProcessResult result = run("compare 'f*.obj' --path catmull-rom --schemes linear --no-times");
   EXPECT_NE(result.err.find("its paths bend by 0.51 of their length, and above 0.50"), std::string::npos) << result.err;
   EXPECT_NE(result.out.find("paths, which bend by 0.51 of their length"), std::string::npos) << result.out;
+}
+
+TEST_F(Paths, that_bend_by_the_limit_but_for_rounding_are_not_too_sparse) {
+  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees
+  const ProcessResult result = run("compare 'f*.obj' --path catmull-rom --schemes linear --no-times");
+  EXPECT_EQ(result.err.find("too far apart"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("paths, which bend by 0.50 of their length"), std::string::npos) << result.out;
+}
+
+TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
+  write_turn(0.3);
+  for (const std::string command : {"compare f0.obj f1.obj", "audit f0.obj f1.obj", "bake f0.obj f1.obj -o out.glb",
+                                    "sample f0.obj f1.obj --times 0.5 -o out.npz"}) {
+    const ProcessResult result = run(command + " --path catmull-rom");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("two keyframes have no curve through them"), std::string::npos) << result.err;
+    EXPECT_EQ((result.out + result.err).find("-0.00"), std::string::npos) << result.out;
+  }
+  for (const std::string command : {"compare", "audit"})
+    EXPECT_NE(run(command + " f0.obj f1.obj --path catmull-rom")
+                  .out.find("catmull-rom paths, which are straight between two keyframes"),
+              std::string::npos)
+        << command;
+}
+
+TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
+  for (const std::string command : {"compare 'v*.ply'", "audit 'v*.ply'", "bake 'v*.ply' --force -o out.glb",
+                                    "sample 'v*.ply' --times 0:4:3 --force -o out.npz"}) {
+    for (const double factor : {1.0, 100.0, -1.0, 0.01}) {
+      write_turn_with_velocities(0.3, factor);
+      const ProcessResult result = run(command + " --path hermite");
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(result.err.find("at the velocities of the keyframes vertices would go") != std::string::npos,
+                factor == 100 || factor == 0.01)
+          << command << factor << result.err;
+      EXPECT_EQ(result.err.find("velocities point against the way") != std::string::npos, factor == -1)
+          << command << factor << result.err;
+    }
+  }
+  // Velocities of a motion at 24 frames a second, where frames count as seconds.
+  write_turn_with_velocities(0.3, 24);
+  EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
+  EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);
 }
 
 TEST_F(Paths, compare_has_a_row_for_the_curve_and_says_what_it_is_held_against) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chronormal/normals/weighting.h"
+#include "cli/options/command.h"
 #include "cli/reports/audit/audit_advice.h"
 #include "cli/reports/audit/audit_findings.h"
 #include "cli/reports/audit/audit_words.h"
@@ -59,8 +60,8 @@ std::string headline(const Audited& input) {
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
   if (audit.path != PathKind::kLinear)
-    text += formatted("  the right normals are those of {} paths, which bend by {:.2f} of their length\n",
-                      path_name(audit.path), up_to_hundredths(audit.bend));
+    text +=
+        formatted("  the right normals are those of {}\n", path_words(audit.path, keyframe_count(audit), audit.bend));
   text += weighting_words(input);
   if (audit.still > 0)
     text += formatted("  {} nothing that could be judged\n",

@@ -136,6 +136,13 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
   return result;
 }
 
+// "2nd", "3rd", "4th", "11th".
+std::string ordinal(std::size_t n) {
+  const bool is_teen = n % 100 >= 11 && n % 100 <= 13;
+  const char* const ending = is_teen ? "th" : n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
+  return std::to_string(n) + ending;
+}
+
 Status check(const Motion& motion, const TruthOptions& options) {
   const auto refuse = [](const std::string& message) { return Error{ErrorCode::kUsage, "", message}; };
   if (options.every < 2)
@@ -144,9 +151,15 @@ Status check(const Motion& motion, const TruthOptions& options) {
     return refuse(
         "vertices of blend shapes move straight between their weights: the exact normals are the truth there, and "
         "compare without --truth holds schemes against them");
-  if (motion.keyframes.size() <= options.every)
-    return refuse("there are " + std::to_string(motion.keyframes.size()) + " keyframes: of these, keeping every " +
-                  std::to_string(options.every) + "th leaves no two");
+  const std::size_t count = motion.keyframes.size();
+  if (count < 3)
+    return refuse(
+        "a motion of two keyframes has none to leave out: its normals are interpolated between these two, and "
+        "nothing is known about what happened there");
+  if (count <= options.every)
+    return refuse("of " + std::to_string(count) + " keyframes, keeping every " + ordinal(options.every) +
+                  " one keeps the first alone, and normals are interpolated between two: keep every " +
+                  ordinal(count - 1) + " or more of them");
   return Success{};
 }
 

@@ -16,7 +16,7 @@ std::string json_text(const Json& json) {
 void put_path(Json& json, PathKind path, double bend) {
   json["path"] = path_name(path);
   json["bend"] = bend;
-  json["is_too_sparse"] = bend > kTooSparse;
+  json["is_too_sparse"] = is_too_sparse(bend);
 }
 
 }  // namespace chronormal::inline internal

@@ -13,7 +13,7 @@ std::string truth_json(const NamedTruthComparison& input) {
   json["kept_keyframes"] = c.kept;
   json["left_out_keyframes"] = c.left_out;
   json["bend"] = c.bend;
-  json["is_too_sparse"] = c.bend > kTooSparse;
+  json["is_too_sparse"] = is_too_sparse(c.bend);
   json["rows"] = Json::array();
   for (const TruthRow& row : c.rows) {
     const Quality& q = row.quality;
