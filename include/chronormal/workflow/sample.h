@@ -8,7 +8,8 @@
 ///
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are:
 /// at times by curves of the segment or from its positions, whichever costs less for as many times as are asked for
-/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that
+/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions; on curved paths by
+/// the control normals of the curve, as PathCurves has them (normals/path_curves.h). At weights that
 /// holds for positions that are rounded to 48 bits, and not to float32. Other weightings, which are no polynomials, are
 /// computed anew in double.
 ///
@@ -44,6 +45,7 @@
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/path_curves.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
@@ -112,10 +114,12 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
-  // Computes the pose of a mesh whose vertices are there, and refuses positions beyond float32.
-  [[nodiscard]] Result<Pose> pose_at(const std::vector<Vec3d>& positions, const std::string& mover) const;
+  // On a curved path, whose keyframes are held. Refuses positions beyond float32.
+  [[nodiscard]] Result<Pose> pose_on_curve(std::size_t segment, double t);
   // Anew, and for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, double t) const;
+  // Makes them units, where the options ask for that.
+  [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   }
@@ -126,6 +130,8 @@ class NormalSampler {
   SampleOptions options_;
   std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
   std::optional<SegmentNormals> segment_normals_;  // of one segment
+  std::optional<PolynomialSegment<3>> curve_;      // of one segment, on curved paths
+  PathCurves path_curves_;                         // on that curve
   std::size_t segment_ = 0;                        // which
 };
 

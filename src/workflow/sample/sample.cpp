@@ -11,6 +11,9 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/path_curves.h"
+#include "chronormal/normals/paths.h"
+#include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
 #include "normals/curves/path_stream.h"
 
@@ -48,16 +51,35 @@ std::vector<float> positions_at(const Segment& segment, double t) {
 
 // Positions in double, as the point half way between two in float32: one takes what the other had to round. So a pose
 // is a segment at t = 1/2, and loses nothing.
-struct DoublePositions {
+struct DoublePose {
   static constexpr double kMiddle = 0.5;
-  std::vector<float> from, to;
+  std::vector<float> from, to, rounded;
 
   void push_back(double coordinate) {
-    const float rounded = clamped_to_float(2 * coordinate);
-    from.push_back(rounded);
-    to.push_back(static_cast<float>(2 * coordinate - double{rounded}));
+    const float twice = clamped_to_float(2 * coordinate);
+    from.push_back(twice);
+    to.push_back(static_cast<float>(2 * coordinate - double{twice}));
+    rounded.push_back(static_cast<float>(coordinate));
+  }
+  // It refers to this pose.
+  [[nodiscard]] Segment segment(const Topology& topology) const {
+    return {&topology, VectorView<const float>::packed(from.data(), from.size() / 3),
+            VectorView<const float>::packed(to.data(), to.size() / 3)};
   }
 };
+
+// Refuses positions beyond float32.
+Result<DoublePose> double_pose(const std::vector<Vec3d>& positions, const std::string& mover) {
+  DoublePose pose;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (const double coordinate : {positions[v].x, positions[v].y, positions[v].z}) {
+      if (!(std::fabs(coordinate) <= kLargestFloat))
+        return misuse(mover + " vertex " + std::to_string(v) + " out of the range of float32");
+      pose.push_back(coordinate);
+    }
+  }
+  return pose;
+}
 
 std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
   std::vector<Vec3d> normals(segment.topology->face_count());
@@ -150,6 +172,10 @@ std::vector<float> NormalSampler::normals_anew(const Segment& segment, double t)
   }
   const std::vector<Vec3d> exact =
       are_faces() ? all_face_normals_at(segment, t) : all_weighted_normals_at(segment, *groups_, options_.weighting, t);
+  return as_asked(exact);
+}
+
+std::vector<float> NormalSampler::as_asked(std::span<const Vec3d> exact) const {
   std::vector<float> normals(3 * exact.size());
   const auto result = VectorView<float>::packed(normals.data(), exact.size());
   parallel_each(exact.size(), kBlock, [&](std::size_t i) {
@@ -165,13 +191,46 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const double t = instant.value().t;
   const std::size_t here = instant.value().segment;
   if (const Status status = hold_paths(*stream_, here, here, options_.path); !status) return status.error();
-  if (options_.path != PathKind::kLinear) {
-    const auto curve = path_segment(*motion_, here, options_.path);
-    return pose_at(positions_at(curve, t), "this path moves");
-  }
+  if (options_.path != PathKind::kLinear) return pose_on_curve(here, t);
   const Segment segment = motion_->segment(here);
   return Pose{positions_at(segment, t),
               are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
+}
+
+Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
+  if (!curve_ || segment_ != segment) {
+    curve_ = path_segment(*motion_, segment, options_.path);
+    segment_ = segment;
+    if (are_exact_units())
+      path_curves_ =
+          PathCurves(are_faces() ? all_path_normals(*curve_) : all_path_normals(*curve_, *groups_), Threads::kAll);
+  }
+  Result<DoublePose> pose = double_pose(positions_at(*curve_, t), "this path moves");
+  if (!pose) return pose.error();
+  Pose result{std::move(pose.value().rounded), {}};
+  if (are_exact_units()) {
+    result.normals.resize(3 * element_count());
+    path_curves_.unit_normals(t, VectorView<float>::packed(result.normals.data(), element_count()), Threads::kAll);
+    return result;
+  }
+  // The positions are rounded to double, and with them a face without area gets a normal. Nothing but the curve itself
+  // tells that this is rounding.
+  std::vector<Vec3d> of_faces(motion_->topology.face_count());
+  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
+    polynomial_face_normals_at(*curve_, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
+  });
+  if (are_faces()) {
+    result.normals = as_asked(of_faces);
+    return result;
+  }
+  const Segment segment_at_t = pose.value().segment(motion_->topology);
+  std::vector<Vec3d> of_elements(element_count());
+  parallel_blocks(of_elements.size(), kBlock, [&](IndexRange elements) {
+    weighted_normals_at(segment_at_t, *groups_, options_.weighting, DoublePose::kMiddle, of_faces, elements,
+                        std::span(of_elements).subspan(elements.first, elements.count));
+  });
+  result.normals = as_asked(of_elements);
+  return result;
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
@@ -189,24 +248,10 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
     }
   });
 
-  return pose_at(positions, "these weights move");
-}
-
-Result<Pose> NormalSampler::pose_at(const std::vector<Vec3d>& positions, const std::string& mover) const {
-  DoublePositions pose;
-  Pose result;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (const double coordinate : {positions[v].x, positions[v].y, positions[v].z}) {
-      if (!(std::fabs(coordinate) <= kLargestFloat))
-        return misuse(mover + " vertex " + std::to_string(v) + " out of the range of float32");
-      pose.push_back(coordinate);
-      result.positions.push_back(static_cast<float>(coordinate));
-    }
-  }
-  const Segment segment{&motion_->topology, VectorView<const float>::packed(pose.from.data(), positions.size()),
-                        VectorView<const float>::packed(pose.to.data(), positions.size())};
-  result.normals = normals_anew(segment, DoublePositions::kMiddle);
-  return result;
+  Result<DoublePose> pose = double_pose(positions, "these weights move");
+  if (!pose) return pose.error();
+  const Segment segment = pose.value().segment(motion_->topology);
+  return Pose{std::move(pose.value().rounded), normals_anew(segment, DoublePose::kMiddle)};
 }
 
 Pose NormalSampler::at_rest() const {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -377,6 +378,47 @@ TEST(NormalSampler, mesh_that_stands_still_has_normals) {
     const Pose pose = sampler.at_rest();
     EXPECT_EQ(pose.normals.size(), crease == 180 ? 24U : 72U);
     EXPECT_EQ(pose.positions, still.keyframes[0].positions);
+  }
+}
+
+// Three corners on a line that moves as a whole, so that double rounds positions on curves but float32 not those of
+// keyframes.
+TEST(Sampler, a_face_that_never_has_area_has_no_normal_on_curved_paths_as_on_straight_ones) {
+  Motion motion;
+  motion.topology = Topology::triangles(4, std::vector<std::uint32_t>{0, 1, 2, 0, 1, 3}).value();
+  for (const double time : {0.0, 1.0, 2.0, 3.0}) {
+    const std::array<double, 3> start = {0.5 + 1.25 * time, 0.25 + 0.375 * time * time, 0.125 - 0.75 * time * time},
+                                along = {0.25, 0.5, 0.125};
+    Motion::Keyframe& keyframe = motion.keyframes.emplace_back();
+    keyframe.time = time;
+    for (const double place : {0.0, 1.0, 3.0})
+      for (std::size_t c = 0; c < 3; ++c) keyframe.positions.push_back(static_cast<float>(start[c] + place * along[c]));
+    for (std::size_t c = 0; c < 3; ++c) keyframe.positions.push_back(static_cast<float>(start[c] + (c == 2 ? 1 : 0)));
+  }
+  motion.connect_as_sequence();
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    for (const NormalLength length : {NormalLength::kUnit, NormalLength::kArea}) {
+      SampleOptions options = options_of(ElementKind::kFaces);
+      options.path = path;
+      options.length = length;
+      NormalSampler sampler = sampler_of(motion, options);
+      for (const double time : {0.37, 0.5, 1.21, 2.9}) {
+        const Pose pose = good(sampler.at_time(time));
+        EXPECT_EQ(std::vector<float>(pose.normals.begin(), pose.normals.begin() + 3), std::vector<float>(3)) << time;
+        EXPECT_NE(std::vector<float>(pose.normals.begin() + 3, pose.normals.end()), std::vector<float>(3)) << time;
+      }
+    }
+    // Vertex 2 belongs to that face alone, and the others have the direction of the other face.
+    for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle, Weighting::kUniform}) {
+      SampleOptions options = options_of(ElementKind::kVertices, weighting), of_faces = options_of(ElementKind::kFaces);
+      options.path = of_faces.path = path;
+      NormalSampler sampler = sampler_of(motion, options), faces = sampler_of(motion, of_faces);
+      for (const double time : {0.37, 1.21}) {
+        const Pose pose = good(sampler.at_time(time));
+        EXPECT_EQ(vector_at(pose.normals, 2), Vector()) << time;
+        EXPECT_LT(reference::angle(vector_at(pose.normals, 0), vector_at(good(faces.at_time(time)).normals, 1)), 2e-6);
+      }
+    }
   }
 }
 
