@@ -101,6 +101,62 @@ TEST(BakeCurved, velocities_of_the_file_are_targets_of_their_own) {
   EXPECT_NEAR(worst.angle, bake.report.largest_error, 1e-3);
 }
 
+// A dense motion whose velocities are those of the motion.
+Motion with_velocities(std::size_t keyframes) {
+  std::vector<double> times, before, after;
+  constexpr double kStep = 0x1p-9;
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    times.push_back(static_cast<double>(k) / static_cast<double>(keyframes - 1));
+    before.push_back(times.back() - kStep);
+    after.push_back(times.back() + kStep);
+  }
+  Motion motion = test::curved_motion(times, 2, 16, 8);
+  const Motion earlier = test::curved_motion(before, 2, 16, 8), later = test::curved_motion(after, 2, 16, 8);
+  for (std::size_t k = 0; k < keyframes; ++k)
+    for (std::size_t c = 0; c < motion.keyframes[k].positions.size(); ++c)
+      motion.keyframes[k].velocities.push_back(static_cast<float>(
+          (double{later.keyframes[k].positions[c]} - double{earlier.keyframes[k].positions[c]}) / (2 * kStep)));
+  return motion;
+}
+
+TEST(BakeCurved, normals_follow_velocities_of_the_file_as_closely_as_those_that_follow_from_positions) {
+  const Motion motion = with_velocities(25);
+  const double from_positions = baked(motion, PathKind::kCatmullRom, 90).report.largest_error;
+  const Baked bake = baked(motion, PathKind::kHermite, 90);
+  EXPECT_LT(bake.report.largest_error, 2 * from_positions);
+  EXPECT_LT(bake.report.largest_error, 0.01);
+  const Worst worst = worst_of(motion, ShownGlb(bake.glb), true, 40);
+  EXPECT_LT(worst.distance, 2e-6);
+  EXPECT_NEAR(worst.angle, bake.report.largest_error, 1e-3);
+}
+
+TEST(BakeCurved, a_part_of_a_sequence_moves_as_the_whole_does) {
+  const Motion whole = with_velocities(13);
+  Motion part = whole;
+  part.keyframes = {whole.keyframes.begin() + 4, whole.keyframes.begin() + 9};
+  part.connect_as_sequence();
+  // What these parabolas have at the ends of the part, times being even.
+  for (const std::size_t k : {4U, 8U}) {
+    std::vector<float>& velocities = part.keyframes[k - 4].end_velocities;
+    for (std::size_t c = 0; c < whole.keyframes[k].positions.size(); ++c)
+      velocities.push_back(6 * (whole.keyframes[k + 1].positions[c] - whole.keyframes[k - 1].positions[c]));
+  }
+  for (Motion::Keyframe& keyframe : part.keyframes) keyframe.time -= whole.keyframes[4].time;
+  const Baked bake = baked(part, PathKind::kCatmullRom, 0.5);
+  EXPECT_EQ(bake.report.targets, 4U + 2U) << "both ends have velocities of their own";
+  EXPECT_LT(bake.report.largest_error, 0.1);
+  const ShownGlb glb(bake.glb);
+  for (const std::size_t s : {4U, 7U}) {
+    for (const double t : {0.25, 0.5, 0.75}) {
+      const auto right = test::on_curve(whole, s, static_cast<long double>(t));
+      const auto weights = glb.weights((1 - t) * part.keyframes[s - 4].time + t * part.keyframes[s - 3].time);
+      for (std::size_t v = 0; v < glb.vertices(); ++v)
+        for (std::size_t c = 0; c < 3; ++c)
+          EXPECT_NEAR(glb.position(v, weights)[c], static_cast<double>(right[3 * v + c]), 2e-6) << s << ' ' << v;
+    }
+  }
+}
+
 TEST(BakeCurved, an_element_without_area_at_the_first_key_is_right_later) {
   Motion motion = test::curved_motion(kTimes, 1, 8, 4);
   std::vector<float>& first = motion.keyframes[0].positions;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -124,14 +125,44 @@ class CurvedWalk {
   std::vector<Vec3d> ends_;  // directions where the last segment ends
 };
 
+// How fast the direction of an element turns where a segment begins or ends, per second; 0 where it has none there.
+Vec3d turning_at(const Controls& n, bool at_end, double duration) {
+  const std::size_t last = n.size() - 1;
+  const Vec3d here = at_end ? n[last] : n[0];
+  const double size = length(here), degree = static_cast<double>(last);
+  if (size == 0) return {};
+  const Vec3d slope = (degree / size) * (at_end ? n[last] - n[last - 1] : n[1] - n[0]);
+  const Vec3d u = (1 / size) * here, turn = slope - dot(slope, u) * u;
+  // Where a face all but vanishes at the key, a curve with this slope would swing far beyond both of its ends.
+  const double most = 3;
+  const double angle = length(turn);
+  if (!(angle < std::numeric_limits<double>::max())) return {};
+  return (std::min(1.0, most / std::max(angle, most)) / duration) * turn;
+}
+
+// How fast the directions of all elements turn at a key, from a segment that begins or ends there.
+std::vector<Vec3d> turnings(const std::vector<Controls>& normals, bool at_end, double duration) {
+  std::vector<Vec3d> result(normals.size());
+  parallel_each(result.size(), kCurvedBlock,
+                [&](std::size_t e) { result[e] = rounded_to_float(turning_at(normals[e], at_end, duration)); });
+  return result;
+}
+
+// The same of a key whose target has velocities: from the segment before it, which is read before the next one.
+struct KeyTurnings {
+  std::vector<Vec3d> at_start, at_end;  // of a segment; empty where a key has no such target
+};
+
 // The sum of the deltas of the keys of a segment for one element, as a cubic.
 Bernstein<Vec3d, 3> shown_by_keys(const CurvedWalk& walk, const Vec3d& normal, const SegmentShares& shares,
-                                  std::size_t element) {
+                                  const KeyTurnings& turning, double duration, std::size_t element) {
   Bernstein<Vec3d, 3> shown;
   for (Vec3d& c : shown) c = normal;
   for (std::size_t k = 0; k < shares.of_key.size(); ++k)
     for (std::size_t i = 0; i < shown.size(); ++i)
       shown[i] = shown[i] + shares.of_key[k][i] * walk.key(shares.first + k)[element];
+  if (!turning.at_start.empty()) shown[1] = shown[1] + (duration / 3) * turning.at_start[element];
+  if (!turning.at_end.empty()) shown[2] = shown[2] - (duration / 3) * turning.at_end[element];
   return shown;
 }
 
@@ -188,8 +219,8 @@ ElementBend bend_of_element(const Bernstein<Vec3d, 3>& keys, const Controls& n, 
 
 std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path) {
   std::vector<std::size_t> keys;
-  for (std::size_t k = 0; k < motion.keyframes.size() && path == PathKind::kHermite; ++k)
-    if (!motion.keyframes[k].velocities.empty()) keys.push_back(k);
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
+    if (!given_velocities(motion.keyframes[k], path).empty()) keys.push_back(k);
   return keys;
 }
 
@@ -226,6 +257,19 @@ Status each_curved_key(const CurvedSource& source, std::span<const SequenceEleme
   return Success{};
 }
 
+Status each_key_turning(const CurvedSource& source, std::span<const std::size_t> keys,
+                        const std::function<Status(std::size_t key, const std::vector<Vec3d>& deltas)>& body) {
+  const Motion& motion = source.stream->motion();
+  for (const std::size_t k : keys) {
+    const std::size_t s = k == 0 ? 0 : k - 1;
+    if (Status status = hold_paths(*source.stream, s, s, source.path); !status) return status;
+    const PolynomialSegment<3> path = path_segment(motion, s, source.path);
+    const std::vector<Controls> normals = all_path_normals(path, *source.groups);
+    if (Status status = body(k, turnings(normals, k > 0, path.end_time - path.start_time)); !status) return status;
+  }
+  return Success{};
+}
+
 Result<double> each_curved_bend(
     const CurvedSource& source, std::span<const SequenceElement> elements, double tolerance,
     const std::function<Status(const CurveBend& bend, const std::vector<Vec3d>& deltas)>& body,
@@ -235,18 +279,24 @@ Result<double> each_curved_bend(
   const auto is_given = std::make_unique<bool[]>(times.size());
   for (const std::size_t k : keys_with_velocities(motion, source.path)) is_given[k] = true;
   CurvedWalk walk(source, elements);
+  KeyTurnings turning;
   double largest = 0;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const SegmentShares shares = shares_of(times, s, {is_given.get(), times.size()});
     if (const Status status = walk.read_to_key(shares.first + shares.of_key.size() - 1); !status) return status.error();
     const std::vector<Controls>& normals = walk.normals(s);
+    const double duration = times[s + 1] - times[s];
+    if (s > 0) turning.at_start = std::move(turning.at_end);
+    if (s == 0 && is_given[0]) turning.at_start = turnings(normals, false, duration);
+    turning.at_end.clear();
+    if (is_given[s + 1]) turning.at_end = turnings(normals, true, duration);
     std::vector<Vec3d> even(elements.size()), odd(elements.size());
     const double error = parallel_fold<double>(
         elements.size(), kCurvedBlock,
         [&](std::size_t e, double& worst) {
           if (elements[e].has_none) return;
-          const ElementBend bend =
-              bend_of_element(shown_by_keys(walk, elements[e].normal, shares, e), normals[e], tolerance);
+          const ElementBend bend = bend_of_element(
+              shown_by_keys(walk, elements[e].normal, shares, turning, duration, e), normals[e], tolerance);
           even[e] = bend.even;
           odd[e] = bend.odd;
           worst = std::max(worst, bend.error);

@@ -56,6 +56,12 @@ struct CurveBend {
     const CurvedSource& source, std::span<const SequenceElement> elements,
     const std::function<Status(std::size_t key, const std::vector<Vec3d>& deltas)>& body);
 
+/// Calls body(key, deltas) for each of these keys: how fast the normals turn there, per second, which makes the shown
+/// curve follow them through the key. Without it the curve of normals would stand still at keys whose positions do not.
+[[nodiscard]] Status each_key_turning(
+    const CurvedSource& source, std::span<const std::size_t> keys,
+    const std::function<Status(std::size_t key, const std::vector<Vec3d>& deltas)>& body);
+
 /// Calls body(bend, deltas) for the bends of all segments in order, and done(segments) after each segment. There are
 /// bends where an element is off by more than the tolerance, in radians: the fewest that keep it, or else those that
 /// leave the smallest error. Returns the largest error that is left, in radians.
@@ -64,8 +70,8 @@ struct CurveBend {
     const std::function<Status(const CurveBend& bend, const std::vector<Vec3d>& deltas)>& body,
     const std::function<void(std::size_t segments)>& done);
 
-/// Finds the keys that have velocities of their own, and so one more target: the velocities are its positions, and its
-/// weight has slope 1 at the key.
+/// Finds the keys that have velocities of their own (given_velocities() in normals/paths.h), and so one more target: the
+/// velocities are its positions, what each_key_turning() gives are its normals, and its weight has slope 1 at the key.
 [[nodiscard]] std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path);
 
 /// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file. The

@@ -263,10 +263,11 @@ Status write_curved(const CurvedSource& source, const SequenceNormals& normals,
   });
   if (!status) return status;
   const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, source.path);
-  for (const std::size_t k : with_velocities) {
-    file.add_velocities(k, motion.keyframes[k].velocities);
-    if (status = file.check(); !status) return status;
-  }
+  status = each_key_turning(source, with_velocities, [&](std::size_t k, const std::vector<Vec3d>& deltas) {
+    file.add_velocities(k, given_velocities(motion.keyframes[k], source.path), deltas);
+    return file.check();
+  });
+  if (!status) return status;
   GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
   std::vector<CurveBend> bends;
   const Result<double> error = each_curved_bend(

@@ -185,9 +185,9 @@ void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals)
   add_target("bend " + std::to_string(segment), zero_positions(), normals);
 }
 
-void SequenceFile::add_velocities(std::size_t key, std::span<const float> velocities) {
+void SequenceFile::add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals) {
   add_target("velocities " + std::to_string(key),
-             builder_.add_vectors(vertices_.positions(velocities), {true, dense_zeros_}), {});
+             builder_.add_vectors(vertices_.positions(velocities), {true, dense_zeros_}), normals);
 }
 
 void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {

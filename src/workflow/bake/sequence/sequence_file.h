@@ -75,8 +75,8 @@ class SequenceFile {
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
   /// Adds a target for the bend of a segment; there may be several.
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
-  /// Adds a target that moves vertices, (V, 3), and turns no normal.
-  void add_velocities(std::size_t key, std::span<const float> velocities);
+  /// Adds a target that moves vertices by the velocities of a key, (V, 3), and normals by how fast they turn there.
+  void add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals);
 
   /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more; those of the
   /// spool.
