@@ -6,7 +6,8 @@
 ///     Result<ElementPaths> paths = ElementPaths::make(std::move(sequence), options);
 ///     paths.value().unit_normals(time, VectorView<float>::packed(xyz, paths.value().size()));
 ///
-/// Accuracy   of PathCurves: within kPathAngle of the exact normal of the path.
+/// Accuracy   that of PathCurves: within kPathAngle of the exact normal of the path, but for needles (docs/theory.md,
+///            section 11).
 /// Cost       The curves of one segment are kept, 84 bytes an element: that of the last time. A time in another segment
 ///            prepares it first, so that times in order are fast.
 /// Units      times: seconds of the sequence.

@@ -26,7 +26,8 @@
 
 namespace chronormal {
 
-/// The largest angle, in radians, between a normal of PathCurves and the exact one of the same control normals.
+/// The largest angle, in radians, between a normal of PathCurves and the exact one of the same control normals. How far
+/// these may be from those of the curve itself, for needles above all, is in docs/theory.md, section 11.
 inline constexpr double kPathAngle = 1e-6;
 
 /// Computes the control normals of all faces, or of all groups of their corners, on all cores. Each takes 168 bytes.
