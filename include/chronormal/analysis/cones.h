@@ -20,7 +20,8 @@
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Curtis, Yoon, Manocha: ICCD (2009), for the control normals and cones of them; Tang, Manocha, Tong:
-///            Fast continuous collision detection using deforming non-penetration filters (2010); Shirman, Abi-Ezzi: The cone of normals technique (1993).
+///            Fast continuous collision detection using deforming non-penetration filters (2010); Shirman, Abi-Ezzi:
+///            The cone of normals technique (1993).
 #ifndef CHRONORMAL_ANALYSIS_CONES_H_
 #define CHRONORMAL_ANALYSIS_CONES_H_
 

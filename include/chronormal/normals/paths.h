@@ -80,8 +80,8 @@ enum class PathKind {
 
 /// The cubic from keys[i] to keys[i + 1]. The velocity at a key is that of the parabola through it and its two
 /// neighbours (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the
-/// nearest four: of as many as there are, so that between two keys the motion is straight. A key that has end_velocities
-/// has these.
+/// nearest four: of as many as there are, so that between two keys the motion is straight. A key that has
+/// end_velocities has these.
 /// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);
@@ -109,8 +109,8 @@ struct VelocityShares {
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
 /// Above this bend, a curve through the keyframes tells little about the motion.
 inline constexpr double kTooSparse = 0.5;
-/// Whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid turn by
-/// 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
+/// Whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid turn
+/// by 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
 /// Velocities against positions, to find out whether the velocities are those of the motion.

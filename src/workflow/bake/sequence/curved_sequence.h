@@ -70,8 +70,9 @@ struct CurveBend {
     const std::function<Status(const CurveBend& bend, const std::vector<Vec3d>& deltas)>& body,
     const std::function<void(std::size_t segments)>& done);
 
-/// Finds the keys that have velocities of their own (given_velocities() in normals/paths.h), and so one more target: the
-/// velocities are its positions, what each_key_turning() gives are its normals, and its weight has slope 1 at the key.
+/// Finds the keys that have velocities of their own (given_velocities() in normals/paths.h), and so one more target:
+/// the velocities are its positions, what each_key_turning() gives are its normals, and its weight has slope 1 at the
+/// key.
 [[nodiscard]] std::vector<std::size_t> keys_with_velocities(const Motion& motion, PathKind path);
 
 /// The weights of the targets of keys 1, 2 ..., of those with velocities, and of bends, at the times of the file. The
