@@ -1,5 +1,6 @@
 # Measures for tools/truth/truth.py what errors of normals come to on the screen, and how much dn/dt jumps at keyframes.
-# Everything is computed in double from the positions of keyframes alone.
+# The right normals are computed here, in double, from positions alone; those that schemes show come from the program
+# (normals_shown.cpp).
 import numpy as np
 
 LIGHT = np.array([0.4, 0.5, 0.77]) / np.linalg.norm([0.4, 0.5, 0.77])
@@ -19,28 +20,6 @@ def normals_of(positions, faces):
     for c in range(3):
         np.add.at(sums, faces[:, c], areas)
     return unit(sums)
-
-
-def slerp(a, b, t):
-    angle = np.arccos(np.clip(np.sum(a * b, 1), -1, 1))[:, None]
-    sine = np.where(angle > 1e-6, np.sin(angle), 1)
-    arc = (np.sin((1 - t) * angle) * a + np.sin(t * angle) * b) / sine
-    return unit(np.where(angle > 1e-6, arc, (1 - t) * a + t * b))
-
-
-def de_casteljau(points, t):
-    while len(points) > 1:
-        points = [slerp(a, b, t) for a, b in zip(points, points[1:])]
-    return points[0]
-
-
-def schemes(at, t):
-    """Unit normals by scheme, interpolated from the exact ones, at(t), at the nodes of the scheme."""
-    start, end = at(0), at(1)
-    return {'linear': unit((1 - t) * start + t * end),
-            'slerp': slerp(start, end, t),
-            'quadratic': unit((1 - t) * (1 - 2 * t) * start + 4 * t * (1 - t) * at(0.5) + t * (2 * t - 1) * end),
-            'decasteljau:4': de_casteljau([start, at(1 / 3), at(2 / 3), end], t)}
 
 
 def seen(positions, faces, size, view):
@@ -79,9 +58,9 @@ def levels(normals, faces, pixels):
     return 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def differences(start, end, faces, view, t=0.25, size=512):
-    """By scheme: (angles in degrees of vertices that move, differences in levels of pixels) to exact normals, on the surface
-    that is shown, whose vertices move straight."""
+def differences(start, end, faces, view, shown, t, size=512):
+    """By scheme: (angles in degrees of vertices that turn, differences in levels of pixels that show such a vertex) to exact
+    normals, on the surface that is shown, whose vertices move straight. shown has the unit normals at t by scheme."""
     at = lambda s: normals_of((1 - s) * start + s * end, faces)
     positions, exact = (1 - t) * start + t * end, at(t)
     pixels = seen(positions, faces, size, view)
@@ -89,47 +68,26 @@ def differences(start, end, faces, view, t=0.25, size=512):
     turning = np.linalg.norm(at(1) - at(0), axis=1) > 1e-6
     touched = turning[faces[pixels[0]]].any(1)
     result = {}
-    for name, normals in schemes(at, t).items():
+    for name, normals in shown.items():
         angles = np.degrees(np.arctan2(np.linalg.norm(np.cross(normals, exact), axis=1), np.sum(normals * exact, 1)))
         result[name] = angles[turning], np.abs(levels(normals, faces, pixels) - right)[touched]
     return result
 
 
-def catmull_rom(keys, times, s, t):
-    """Positions on the curves of chronormal: velocities are those of parabolas, and at both ends of the cubic through four keyframes."""
-    def velocity(k):
-        first, last = (max(k - 1, 0), min(k + 2, len(keys))) if 0 < k < len(keys) - 1 else (0, 4) if k == 0 else (len(keys) - 4, len(keys))
-        nodes = range(max(first, 0), min(last, len(keys)))
-        total = 0
-        for i in nodes:
-            if i == k:
-                share = sum(1 / (times[k] - times[j]) for j in nodes if j != k)
-            else:
-                share = np.prod([(times[k] - times[j]) / (times[i] - times[j]) for j in nodes if j not in (i, k)]) / (times[i] - times[k])
-            total = total + share * keys[i]
-        return total
-
-    d = times[s + 1] - times[s]
-    return ((1 + 2 * t) * (1 - t) ** 2 * keys[s] + t * t * (3 - 2 * t) * keys[s + 1]
-            + d * t * (1 - t) ** 2 * velocity(s) - d * t * t * (1 - t) * velocity(s + 1))
+# Where normals have to be known for jumps(): the ends of a segment, and two steps from each.
+STEP = 1 / 128
+MOMENTS = [0, STEP, 2 * STEP, 1 - 2 * STEP, 1 - STEP, 1]
 
 
-def jumps(keys, times, faces, at):
-    """How much dn/dt jumps at the keyframes between, as a share of its mean size there: at(s, t) are the unit normals in
-    segment s. Means over vertices and keyframes."""
-    h = 1e-4
+def jumps(shown, times):
+    """How much dn/dt jumps at the keyframes between, as a share of its mean size there: shown[s] has the unit normals in
+    segment s at MOMENTS. Means over vertices and keyframes."""
+    lengths = np.diff(times)
+    slope = lambda at, step, length: (-3 * at[0] + 4 * at[1] - at[2]) / (2 * step * length)
     jumped = speed = 0
-    for k in range(1, len(keys) - 1):
-        before = (at(k - 1, 1) - at(k - 1, 1 - h)) / (h * (times[k] - times[k - 1]))
-        after = (at(k, h) - at(k, 0)) / (h * (times[k + 1] - times[k]))
+    for s in range(len(shown) - 1):
+        before = slope(shown[s][:2:-1], -STEP, lengths[s])
+        after = slope(shown[s + 1][:3], STEP, lengths[s + 1])
         jumped += np.linalg.norm(after - before, axis=1).sum()
         speed += (np.linalg.norm(before, axis=1) + np.linalg.norm(after, axis=1)).sum() / 2
     return jumped / speed
-
-
-def mach_bands(keys, times, faces):
-    """The share by which dn/dt jumps, by the path between keyframes."""
-    normals = [normals_of(key, faces) for key in keys]
-    return {'linear': jumps(keys, times, faces, lambda s, t: unit((1 - t) * normals[s] + t * normals[s + 1])),
-            'polynomial': jumps(keys, times, faces, lambda s, t: normals_of((1 - t) * keys[s] + t * keys[s + 1], faces)),
-            'curve': jumps(keys, times, faces, lambda s, t: normals_of(catmull_rom(keys, times, s, t), faces))}
