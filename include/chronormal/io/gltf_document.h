@@ -84,6 +84,9 @@ struct GltfTrack {
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
+  /// KHR_animation_pointer gives every weight a channel of its own, which are put together here; channel is that of the
+  /// first of these weights. All of them have the same keys and interpolation: other files are refused.
+  bool is_assembled = false;
 };
 
 struct GltfAnimation {

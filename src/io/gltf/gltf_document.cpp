@@ -207,20 +207,68 @@ void GltfDocument::State::release(std::size_t vertices) const noexcept {
   bytes.release();
 }
 
-Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) const {
-  const gltf::TrackSource& source = state_->model.track_sources[animation][track];
-  Result<std::vector<float>> times = state_->bytes.floats(source.input);
-  if (!times) return times.error();
+namespace {
+
+// The times of keys, which must ascend.
+Result<std::vector<float>> read_times(gltf::Bytes& bytes, std::size_t accessor) {
+  Result<std::vector<float>> times = bytes.floats(accessor);
+  if (!times) return times;
   if (times.value().front() < 0)
-    return invalid_input(state_->bytes.accessor_place(source.input), "the time of the first key is negative");
+    return invalid_input(bytes.accessor_place(accessor), "the time of the first key is negative");
   for (std::size_t k = 1; k < times.value().size(); ++k) {
     if (!(times.value()[k - 1] < times.value()[k]))
-      return invalid_input(state_->bytes.accessor_place(source.input),
+      return invalid_input(bytes.accessor_place(accessor),
                            "the time of key " + std::to_string(k) + " is not after that of the one before");
   }
-  Result<std::vector<float>> values = state_->bytes.floats(source.output);
+  return times;
+}
+
+// Puts the channels of single weights together; the weights of all others are at rest, and so are their tangents.
+Result<std::vector<double>> assembled_values(gltf::Bytes& bytes, const gltf::TrackSource& source,
+                                             const std::vector<float>& times, bool is_cubic) {
+  const std::size_t targets = source.rest.size(), rows = times.size() * (is_cubic ? 3 : 1);
+  const std::uint64_t wanted = std::uint64_t{sizeof(double)} * rows * targets;
+  if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(source.output)); !status)
+    return status.error();
+  std::vector<double> values(rows * targets);
+  for (std::size_t row = is_cubic ? 1 : 0; row < rows; row += is_cubic ? 3 : 1)
+    std::copy(source.rest.begin(), source.rest.end(), values.begin() + static_cast<std::ptrdiff_t>(row * targets));
+  for (const gltf::ElementSource& element : source.elements) {
+    if (element.input != source.input) {
+      const Result<std::vector<float>> own = read_times(bytes, element.input);
+      if (!own) return own.error();
+      if (own.value() != times)
+        return invalid_input(bytes.accessor_place(element.input),
+                             "the keys are not at the same times as those of the other weights of this node, each of "
+                             "which has a channel of its own");
+    }
+    const Result<std::vector<float>> weights = bytes.floats(element.output);
+    if (!weights) return weights.error();
+    for (std::size_t row = 0; row < rows; ++row)
+      values[row * targets + element.target] = static_cast<double>(weights.value()[row]);
+  }
+  return values;
+}
+
+}  // namespace
+
+Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) const {
+  const gltf::TrackSource& source = state_->model.track_sources[animation][track];
+  const Result<std::vector<float>> times = read_times(state_->bytes, source.input);
+  if (!times) return times.error();
+  GltfKeys keys{{times.value().begin(), times.value().end()}, {}};
+  const GltfTrack& of_track = animations()[animation].tracks[track];
+  if (of_track.is_assembled) {
+    Result<std::vector<double>> values = assembled_values(state_->bytes, source, times.value(),
+                                                          of_track.interpolation == GltfInterpolation::kCubicSpline);
+    if (!values) return values.error();
+    keys.values = std::move(values).value();
+    return keys;
+  }
+  const Result<std::vector<float>> values = state_->bytes.floats(source.output);
   if (!values) return values.error();
-  return GltfKeys{{times.value().begin(), times.value().end()}, {values.value().begin(), values.value().end()}};
+  keys.values.assign(values.value().begin(), values.value().end());
+  return keys;
 }
 
 Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_index) const {

@@ -505,12 +505,14 @@ TEST(BakeTraps, a_pointer_to_what_is_not_there_and_a_second_one_to_the_same_weig
 
 TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targets) {
   const auto with_single = [](const std::string& pointer) {
-    GltfBuilder builder = moving_hills();
+    GltfBuilder builder = test::hills_document(2);
     builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
     builder.add_mesh(builder.json["meshes"][0]["primitives"][0]);
-    builder.json["animations"][0]["channels"].push_back(
-        {{"sampler", 0},
-         {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+    const bool drives_weights = pointer.starts_with("/meshes/0/weights/") || pointer.starts_with("/nodes/0/weights/");
+    if (!drives_weights) builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0.25F, 0, 1});
+    builder.add_track(0, 0, kTimes, std::vector<float>{0, 0.25F, 1});
+    builder.json["animations"][0]["channels"].back()["target"] = {
+        {"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
     return builder;
   };
   for (const char* const pointer : {"/meshes/0/weights/1", "/nodes/0/weights/1"}) {

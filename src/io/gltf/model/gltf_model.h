@@ -84,8 +84,19 @@ struct PrimitiveSource {
   std::optional<Draco> draco;
 };
 
+/// A channel that drives one weight.
+struct ElementSource {
+  std::size_t target = 0, input = 0, output = 0;  ///< input, output: accessors
+
+  friend bool operator==(const ElementSource&, const ElementSource&) = default;
+};
+
 struct TrackSource {
   std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
+  /// Where every weight has a channel of its own, these channels, ascending by target; input and output are those of
+  /// the first then. Weights without a channel stay as they are in rest.
+  std::vector<ElementSource> elements = {};
+  std::vector<double> rest = {};
 };
 
 struct Model {

@@ -74,11 +74,25 @@ class Parser {
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  /// The nodes whose weights a target of a channel drives by KHR_animation_pointer; none where it drives something
-  /// else.
-  std::vector<std::size_t> nodes_pointed_to(const JsonView& target);
-  void parse_track(const JsonView& animation, const JsonView& channel, std::size_t channel_index, std::size_t node,
-                   GltfAnimation& result, std::vector<TrackSource>& sources);
+  /// What a channel drives: all weights of some nodes, or one of them; no nodes where it is something else.
+  struct Driven {
+    std::vector<std::size_t> nodes = {};
+    std::optional<std::size_t> target = {};
+  };
+  /// The same of KHR_animation_pointer.
+  Driven pointed_to(const JsonView& target);
+  /// A channel of single weights, and which.
+  struct LoneWeight {
+    std::size_t channel = 0, target = 0;
+  };
+  void parse_track(const JsonView& animation, std::size_t channel_index, std::size_t node, GltfAnimation& result,
+                   std::vector<TrackSource>& sources);
+  /// Puts the channels of single weights of a node together as one track.
+  void assemble_track(const JsonView& animation, std::size_t node, const std::vector<LoneWeight>& weights,
+                      GltfAnimation& result, std::vector<TrackSource>& sources);
+  /// Reads and checks the sampler of a channel, which gives a key so many weights. Returns false after a complaint.
+  bool parse_sampler(const JsonView& animation, std::size_t channel_index, std::size_t weights_per_key,
+                     GltfTrack& track, TrackSource& source);
   /// The expressions of a VRM avatar. What is not as they are defined is passed over: no geometry depends on it.
   void parse_expressions(const nlohmann::json& root);
 

@@ -125,9 +125,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
   }
   if (baked.has_lone_weight && (is_harmless || plan.encoding == BakeEncoding::kSmallest)) {
-    warn(
-        "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: it gets none, and its "
-        "poses are not judged");
+    warn("KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: the mesh gets none");
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;

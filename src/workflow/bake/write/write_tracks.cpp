@@ -75,7 +75,8 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
   for (std::size_t a = 0; a < document.animations().size(); ++a) {
     const GltfAnimation& animation = document.animations()[a];
     std::set<std::size_t> of_tracks;
-    for (const GltfTrack& track : animation.tracks) of_tracks.insert(track.channel);
+    for (const GltfTrack& track : animation.tracks)
+      if (!track.is_assembled) of_tracks.insert(track.channel);
     for (std::size_t c = 0; c < animation.channel_count; ++c) {
       const std::string channel = item(item("/animations", a) + "/channels", c);
       const std::string pointer = channel + "/target/extensions/KHR_animation_pointer/pointer";
