@@ -7,15 +7,17 @@
 //     CHRONORMAL_FAULT=mmap:1:short        the file that is mapped first is empty from then on
 //     CHRONORMAL_FAULT=any:7:signal15      before the seventh call of any kind but malloc, the process gets SIGTERM
 //     CHRONORMAL_FAULT=A,B                 two of these
+//     CHRONORMAL_ROUNDING=down             floating-point numbers are rounded down from the start, or "up", or to "zero"
 //     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
 //                                          "start" how many times memory was asked for before the first other call
 //
 // Calls count from main() on: what the libraries need to start is not ours. close() closes before it fails, as Linux
-// does. fsync() only counts, since no power will be cut. Nothing here allocates, and all goes to the kernel directly.
+// does, and unlink() removes. fsync() only counts, since no power will be cut. Nothing here allocates, and all goes to the kernel directly.
 
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -24,6 +26,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cfenv>
 #include <csignal>
 #include <cstdarg>
 #include <cstddef>
@@ -39,9 +42,27 @@ void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 namespace {
 
-enum Kind { kMalloc, kWrite, kRead, kFsync, kClose, kRename, kOpen, kMmap, kStat, kChange, kThread, kAny, kKinds };
-constexpr const char* kNames[kKinds] = {"malloc", "write", "read", "fsync",  "close",  "rename",
-                                        "open",   "mmap",  "stat", "change", "thread", "any"};
+enum Kind {
+  kMalloc,
+  kWrite,
+  kRead,
+  kFsync,
+  kClose,
+  kRename,
+  kOpen,
+  kMmap,
+  kStat,
+  kChange,
+  kTruncate,
+  kSeek,
+  kUnlink,
+  kLock,
+  kThread,
+  kAny,
+  kKinds
+};
+constexpr const char* kNames[kKinds] = {"malloc", "write",  "read",     "fsync", "close",  "rename", "open",   "mmap",
+                                        "stat",   "change", "truncate", "seek",  "unlink", "lock",   "thread", "any"};
 
 struct Fault {
   int kind = kKinds;
@@ -67,6 +88,11 @@ bool take(const char*& text, const char* word) {
   if (std::strncmp(text, word, length) != 0) return false;
   text += length;
   return true;
+}
+
+__attribute__((constructor)) void set_rounding() {
+  const char* text = std::getenv("CHRONORMAL_ROUNDING");
+  if (text != nullptr) std::fesetround(*text == 'd' ? FE_DOWNWARD : *text == 'u' ? FE_UPWARD : FE_TOWARDZERO);
 }
 
 __attribute__((constructor)) void read_faults() {
@@ -183,6 +209,29 @@ ssize_t write(int file, const void* bytes, std::size_t size) {
     return -1;
   }
   return ::syscall(SYS_write, file, bytes, fault != nullptr && size > 1 ? size / 2 : size);
+}
+ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t at) {
+  const Fault* const fault = fault_at(kWrite);
+  if (fault != nullptr && !fault->is_short) {
+    errno = fault->error;
+    return -1;
+  }
+  return ::syscall(SYS_pwrite64, file, bytes, fault != nullptr && size > 1 ? size / 2 : size, at);
+}
+int ftruncate(int file, off_t size) noexcept {
+  return fails(kTruncate) ? -1 : static_cast<int>(::syscall(SYS_ftruncate, file, size));
+}
+off_t lseek(int file, off_t at, int from) noexcept {
+  return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
+}
+// What cannot be removed stays: nobody can ask the program to do better than to try.
+int unlink(const char* path) noexcept {
+  const bool is_refused = fails(kUnlink);
+  const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);
+  return is_refused ? -1 : static_cast<int>(result);
+}
+int flock(int file, int operation) noexcept {
+  return fails(kLock) ? -1 : static_cast<int>(::syscall(SYS_flock, file, operation));
 }
 ssize_t read(int file, void* bytes, std::size_t size) {
   const Fault* const fault = fault_at(kRead);
