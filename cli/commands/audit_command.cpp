@@ -13,6 +13,7 @@
 #include "chronormal/workflow/json.h"
 #include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/options/resume.h"
 #include "cli/ranks/ranks.h"
 #include "cli/reports/audit/audit_files.h"
@@ -38,6 +39,10 @@ struct AuditArguments {
   bool no_weld = false;
   bool json = false;
 };
+
+// What a gate says where there is nothing to look at: a build that has lost its animations must not pass.
+constexpr const char* kNothingMoves =
+    "nothing moves stored normals, so that there is nothing to judge, and --tolerance is of no use";
 
 // A word as a shell reads it back.
 std::string shell_word(const std::string& word) {
@@ -131,6 +136,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   if (resumed != nullptr) {
     if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
   }
+  how.expansion = input.expansion();
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   progress.clear();
@@ -157,10 +163,12 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.errors) {
-    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }
+  std::vector<NamedFile> outputs = {{"OUT", options.common.output}};
+  if (options.errors) outputs.push_back({"--errors", *options.errors});
+  if (const Status distinct = check_distinct(outputs, input_files(options.input)); !distinct) return distinct.error();
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   how.shard = shard.value();
@@ -178,6 +186,12 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   return how;
 }
 
+// Why small normals do not pass; place ends the sentence.
+std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
+  return formatted("where faces all but vanish, the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}",
+                   error.faint_worst, *audited.tolerance, place);
+}
+
 // Why a host does not pass.
 std::string why_beyond(const Audited& audited, const HostAudit& found) {
   if (found.beyond > 0)
@@ -186,6 +200,8 @@ std::string why_beyond(const Audited& audited, const HostAudit& found) {
   if (found.error.unlit > 0)
     return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
                      counted(found.error.unlit, "pair", "pairs"));
+  if (found.error.worst <= *audited.tolerance)
+    return formatted("{}: {}", found.host.title, why_faint(audited, found.error, ""));
   return formatted("{}: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", found.host.title,
                    found.error.worst, *audited.tolerance, worst_label(audited, found));
 }
@@ -195,6 +211,9 @@ std::string why_beyond(const Audited& audited) {
   if (error.unlit > 0)
     return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
                      unlit_label(audited));
+  if (!audited.audit.is_judged())
+    return "no pair could be judged, since no face that moves has an area: nothing is known to be right";
+  if (error.worst <= *audited.tolerance) return why_faint(audited, error, ": " + faint_label(audited));
   return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
                    *audited.tolerance, worst_label(audited));
 }
@@ -204,8 +223,8 @@ std::string why_beyond(const Audited& audited) {
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
   const std::vector<HostAudit>& hosts = audited.audit.hosts;
-  if (hosts.empty()) say("audit", place + why_beyond(audited), Tone::kError);
-  for (const HostAudit& found : hosts)
+  if (hosts.empty() || !audited.audit.is_judged()) say("audit", place + why_beyond(audited), Tone::kError);
+  for (const HostAudit& found : audited.audit.is_judged() ? hosts : std::vector<HostAudit>())
     if (!audited.passed(found)) say("audit", place + why_beyond(audited, found), Tone::kError);
   return false;
 }
@@ -235,7 +254,12 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
                                               : print_to(options.common.output, text, options.common.force);
   if (!written) return written.error();
-  return options.shard.text || say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
+  if (options.shard.text) return kExitDone;
+  if (options.tolerance && found.audit.subjects.empty()) {
+    say("audit", kNothingMoves, Tone::kError);
+    return kExitBeyond;
+  }
+  return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
 // Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
@@ -269,6 +293,13 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
     files.emplace_back(name, audited.error());
     say("audit", audited.error().text(), Tone::kError);
     exit = worse_exit(exit, static_cast<int>(audited.error().code));
+  }
+  const bool any_moves = std::any_of(files.begin(), files.end(), [](const AuditedFile& file) {
+    return !file.error || file.error->judged + file.error->faint > 0;
+  });
+  if (options.tolerance && !any_moves && exit == kExitDone) {
+    say("audit", kNothingMoves, Tone::kError);
+    exit = kExitBeyond;
   }
   const std::string text =
       options.json ? audit_files_json(std::move(files), options.tolerance) : audit_files_text(files);

@@ -14,8 +14,11 @@
 #include "chronormal/io/poses_file.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/reports/bake_report.h"
+#include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "core/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -90,7 +93,6 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     return misuse("--json", "it goes to the standard output: write the result to a file");
   if (options.drivers) {
     if (options.drivers->empty() || *options.drivers == "-") return misuse("--drivers", "it must name a file");
-    if (*options.drivers == options.common.output) return misuse("--drivers", "it must be another file than OUT");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
@@ -156,6 +158,16 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   return result;
 }
 
+// Whether all normals of the result can be lit, as far as an audit looked at them; says so where that is asked for by a
+// tolerance, and where it is not so.
+bool is_lit(const BakeArguments& options, const BakeReport& report) {
+  const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
+  if (!options.tolerance || unlit == 0) return true;
+  say("bake", formatted("{} of the result cannot be lit, which no tolerance allows", counted(unlit, "pair", "pairs")),
+      Tone::kError);
+  return false;
+}
+
 Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
@@ -207,7 +219,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   warn_if_worse(told);
   const Result<int> reported = report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
   if (!reported) return reported.error();
-  return code;
+  return is_lit(options, told) ? code : kExitBeyond;
 }
 
 // Opens the input with the normals of all keyframes, which an audit judges.
@@ -292,7 +304,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   const bool is_stated = result.path != PathKind::kLinear || encoding == BakeEncoding::kEndpoint;
   const bool is_beyond_tolerance = options.tolerance && ((result.keys && result.keys->beyond > 0) ||
                                                          (is_stated && result.largest_error > *options.tolerance));
-  return is_beyond_tolerance ? kExitBeyond : kExitDone;
+  return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
 // Without -o the last of several files is where to write, where it can be: IN OUT.
@@ -311,6 +323,18 @@ Status take_output(BakeArguments& options) {
   return Success{};
 }
 
+// No output may replace another one, or what is read. OUT alone may be INPUT: it has everything that INPUT has.
+Status check_files(const BakeArguments& options) {
+  std::vector<NamedFile> poses;
+  if (options.poses && *options.poses != "random") poses.push_back({"--poses", *options.poses});
+  std::vector<NamedFile> others = {{"standard output", "-"}}, read = input_files(options.input);
+  if (options.drivers) others.push_back({"--drivers", *options.drivers});
+  read.insert(read.end(), poses.begin(), poses.end());
+  if (const Status distinct = check_distinct(others, read); !distinct || options.plan) return distinct;
+  if (!is_stream(options.common.output)) others.insert(others.begin(), {"OUT", options.common.output});
+  return check_distinct(others, poses);
+}
+
 Result<int> run(BakeArguments options) {
   if (const Status status = take_output(options); !status) return status.error();
   Progress progress(options.common.quiet);
@@ -327,6 +351,7 @@ Result<int> run(BakeArguments options) {
   if (options.drivers && writes) {
     if (const Status output = check_output(*options.drivers, options.common.force); !output) return output.error();
   }
+  if (const Status distinct = check_files(options); !distinct) return distinct.error();
   InputOptions wanted = options.input;
   wanted.velocities = options.path.needs_velocities();
   wanted.ends_of_whole = options.path.is_curved();

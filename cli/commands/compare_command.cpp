@@ -10,6 +10,7 @@
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/options/resume.h"
 #include "cli/ranks/ranks.h"
 #include "cli/reports/compare_report.h"
@@ -144,6 +145,7 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   compare_options.tolerance = options.tolerance;
   compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
   compare_options.path = options.path.read().value();
+  compare_options.expansion = input.expansion();
   const std::size_t segments =
       compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
   compare_options.progress = watching_ranks(progress.callback("comparing", "segments", segments));
@@ -226,10 +228,23 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   return comparisons;
 }
 
+// No output may replace another one, or what is read.
+Status check_files(const CompareArguments& options) {
+  std::vector<NamedFile> outputs = {{"OUT", options.common.output}}, read = input_files(options.input);
+  if (options.errors) outputs.push_back({"--errors", *options.errors});
+  for (const std::string& file : options.each ? options.input.files : std::vector<std::string>()) {
+    InputOptions one = options.input;
+    one.files = {file};
+    for (NamedFile& found : input_files(one)) read.push_back(std::move(found));
+  }
+  return check_distinct(outputs, read);
+}
+
 Result<int> run_blend(const CompareArguments& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
     return misuse(option, "it is about schemes, and does not go with --blend");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  if (const Status distinct = check_files(options); !distinct) return distinct.error();
   Progress progress(options.common.quiet);
   const auto comparison = compare_blend_input(options.input, options.elements, options.blend, progress);
   if (!comparison) return comparison.error();
@@ -283,6 +298,7 @@ Result<int> run(const CompareArguments& options) {
   if (const auto elements = options.elements.options(); !elements) return elements.error();
   const Result<PathKind> path = options.path.read();
   if (!path) return path.error();
+  if (const Status distinct = check_files(options); !distinct) return distinct.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
@@ -302,7 +318,6 @@ Result<int> run(const CompareArguments& options) {
     return misuse("--resume", "it keeps the sums of one motion: leave out --each and --errors");
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
-    if (*options.errors == options.common.output) return misuse("--errors", "it must be another file than OUT");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }
@@ -345,9 +360,14 @@ Result<int> run(const CompareArguments& options) {
   int exit = kExitDone;
   for (const NamedComparison& input : comparisons.value()) {
     if (!options.tolerance || input.comparison.cheapest || options.shard.text) continue;
+    const std::vector<SchemeComparison>& schemes = input.comparison.schemes;
+    const bool is_judged = std::any_of(schemes.begin(), schemes.end(),
+                                       [](const SchemeComparison& scheme) { return scheme.quality.count > 0; });
     say("compare",
-        formatted("{}: no scheme is within the tolerance of {:g} degrees at every time", printable(input.name),
-                  *options.tolerance),
+        is_judged ? formatted("{}: no scheme is within the tolerance of {:g} degrees at every time",
+                              printable(input.name), *options.tolerance)
+                  : formatted("{}: no scheme could be judged, since no element has a normal at any sample",
+                              printable(input.name)),
         Tone::kError);
     exit = kExitBeyond;
   }

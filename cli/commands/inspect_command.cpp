@@ -5,6 +5,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/json.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/reports/inspect_report.h"
 #include "cli/terminal/print.h"
 
@@ -31,6 +32,8 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
 
 Result<int> run(const InspectArguments& options) {
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
+  if (!distinct) return distinct.error();
   Progress progress(options.common.quiet);
   const auto inspected = open_and_inspect(options.input, progress);
   if (!inspected) return inspected.error();

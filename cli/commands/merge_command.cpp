@@ -7,6 +7,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/terminal/print.h"
 #include "io/bytes/file.h"
 #include "io/cache/npy.h"
@@ -22,6 +23,11 @@ struct MergeArguments {
 Result<int> run(const MergeArguments& options) {
   if (options.parts.empty()) return misuse("", "there is nothing to merge: name the parts");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  std::vector<NamedFile> read;
+  for (const std::string& path : options.parts)
+    if (path != "-") read.push_back({"PART", path});
+  if (const Status distinct = check_distinct({{"OUT", options.common.output}}, read); !distinct)
+    return distinct.error();
   std::vector<Part> parts;
   for (const std::string& path : options.parts) {
     const Result<FileBytes> file = FileBytes::open(path);

@@ -11,6 +11,7 @@
 #include "chronormal/workflow/json.h"
 #include "cli/commands/query_question.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/reports/query_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
@@ -74,17 +75,30 @@ Result<int> run(const QueryArguments& options) {
           is_file ? check_query_output(output, options.common.force) : check_output(output, options.common.force);
       !status)
     return status.error();
+  std::vector<NamedFile> read = input_files(options.input);
+  for (const Option& option : question.value().options) {
+    const auto* const file = std::get_if<std::string*>(&option.target);
+    if (option.spelling.starts_with("--points ") && file != nullptr) read.push_back({"--points", **file});
+  }
+  if (const Status distinct = check_distinct({{"OUT", output}}, read); !distinct) return distinct.error();
 
   Progress progress(options.common.quiet);
   Result<Input> input = open_input(options.input, progress);
   if (!input) return input.error();
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();
-  const Result<QueryAnswer> answer =
-      ask.value()(*motion.value(), options.span, progress.callback(question.value().name));
-  progress.clear();
-  if (!answer) return answer.error();
+  QuerySpan span = options.span;
+  span.expansion = input.value().expansion();
   const std::string& name = input.value().name();
+  const auto named = [&name](Error error) {
+    if (error.code == ErrorCode::kInvalidInput) error.place = name + ", " + error.place;
+    return error;
+  };
+  const Result<QueryAnswer> answer = ask.value()(*motion.value(), span, progress.callback(question.value().name));
+  progress.clear();
+  if (!answer) return named(answer.error());
+  const std::uint64_t bytes = options.json ? json_bytes_of_query(answer.value()) : bytes_of_query(answer.value());
+  if (const Status status = span.expansion.check(bytes, "the answer"); !status) return named(status.error());
   const Status written =
       is_file ? write_query(answer.value(), output, options.common.force)
               : print_to(output, options.json ? query_json(name, answer.value()) : query_text(name, answer.value()),

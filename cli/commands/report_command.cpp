@@ -10,6 +10,7 @@
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/report.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/reports/report_report.h"
 #include "cli/terminal/print.h"
 #include "io/bytes/extension.h"
@@ -76,6 +77,11 @@ Result<int> run(const ReportArguments& options) {
   Result<ReportOptions> how = understand(options, progress);
   if (!how) return how.error();
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  std::vector<NamedFile> files_read = input_files(options.input);
+  if (options.page_template) files_read.push_back({"--template", *options.page_template});
+  const Status distinct =
+      check_distinct({{"OUT", options.common.output}, {"standard output", "-"}}, std::move(files_read));
+  if (!distinct) return distinct.error();
   std::string page_template;
   if (!is_container(options)) {
     Result<std::string> read = read_template(options);

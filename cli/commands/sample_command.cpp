@@ -6,6 +6,7 @@
 #include "chronormal/workflow/sample.h"
 #include "cli/options/command.h"
 #include "cli/options/moments.h"
+#include "cli/options/outputs.h"
 #include "cli/options/resume.h"
 #include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
@@ -136,11 +137,16 @@ Result<Request> understand(const SampleArguments& options) {
     if (format.value() != SampleFormat::kNpy)
       return misuse("--resume", "only .npy files can be continued: write one, or give the times in several runs");
     if (const Status output = options.resume.check_output(options.common); !output) return output.error();
+    const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
+    if (!distinct) return distinct.error();
     // An interrupted run may have written OUT just before its end, as continue_samples() finds out.
     return request;
   }
-  if (const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count()); !files)
-    return files.error();
+  const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count());
+  if (!files) return files.error();
+  std::vector<NamedFile> outputs;
+  for (const std::string& file : files.value()) outputs.push_back({"OUT", file});
+  if (const Status distinct = check_distinct(outputs, input_files(options.input)); !distinct) return distinct.error();
   return request;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <string>
 
 #include "chronormal/io/output.h"
@@ -19,9 +20,11 @@ namespace {
 constexpr std::size_t kLongestEnding = 256;
 std::string who_ends = "chronormal: ";
 bool is_rank = false, is_silent = false;
+thread_local volatile std::sig_atomic_t writes_to_stderr = 0;  // the handler of SIGPIPE runs in the thread that writes
 
 void write_to_stderr(std::string_view text) noexcept {
   const int system_error = errno;
+  writes_to_stderr = 1;
   while (!text.empty()) {
     const ssize_t count = ::write(STDERR_FILENO, text.data(), text.size());
     if (count > 0) {
@@ -33,10 +36,13 @@ void write_to_stderr(std::string_view text) noexcept {
     pollfd waiting{STDERR_FILENO, POLLOUT, 0};  // the other side made the pipe non-blocking
     if (::poll(&waiting, 1, -1) < 0 && errno != EINTR) break;
   }
+  writes_to_stderr = 0;
   errno = system_error;
 }
 
 }  // namespace
+
+bool is_saying() noexcept { return writes_to_stderr != 0; }
 
 Status print(std::string_view text) { return print_to("-", text, false); }
 

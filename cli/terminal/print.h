@@ -30,6 +30,9 @@ void say_raw(std::string_view text) noexcept;
 /// of a signal.
 void say_ending(std::string_view message) noexcept;
 
+/// Whether this thread writes to stderr just now. Safe to call from the handler of a signal.
+[[nodiscard]] bool is_saying() noexcept;
+
 /// Makes this process one of several that share a task: only the first of them, rank 0, says anything, and none shows
 /// colours. But every rank says why it ends, with its number.
 void speak_as_rank(int rank);

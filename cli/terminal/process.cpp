@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cfenv>
 #include <csignal>
 #include <cstddef>
 #include <exception>
@@ -53,6 +54,15 @@ extern "C" void end_by_signal(int signal) {
   (void)std::raise(signal);
 }
 
+// A pipe that nobody reads any more. What is only said may get lost: write() fails then, and the program goes on. Where
+// data that were asked for get lost, the program ends as every other one does in front of `head`.
+extern "C" void end_by_lost_reader(int signal) {
+  if (is_saying()) return;
+  remove_temporaries();
+  (void)std::signal(signal, SIG_DFL);
+  (void)std::raise(signal);
+}
+
 extern "C" void end_by_lost_input(int /*signal*/) {
   remove_temporaries();
   end_line_and_say("an input became shorter while it was read, or can not be read any more");
@@ -81,10 +91,10 @@ void end_by_exception() {
   ::_exit(kExitFailed);
 }
 
-void install(int signal, void (*handler)(int)) {
+void install(int signal, void (*handler)(int), unsigned flags = SA_RESETHAND) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // of SIG_IGN nothing
+  action.sa_flags = static_cast<int>(flags);  // of SIG_IGN nothing
   (void)::sigfillset(&action.sa_mask);
   (void)::sigaction(signal, &action, nullptr);
 }
@@ -105,6 +115,8 @@ void open_standard_streams() {
 }  // namespace
 
 void prepare_process() noexcept {
+  // A library that was loaded before may have set another rounding mode, or have subnormal numbers flushed to zero.
+  (void)std::fesetenv(FE_DFL_ENV);
   open_standard_streams();
   stderr_is_terminal = ::isatty(STDERR_FILENO);
   for (const Ending& ending : kEndings) {
@@ -112,6 +124,7 @@ void prepare_process() noexcept {
   }
   install(SIGBUS, end_by_lost_input);
   install(SIGXFSZ, SIG_IGN);
+  if (!is_ignored(SIGPIPE)) install(SIGPIPE, end_by_lost_reader, 0);
 #ifdef NDEBUG
   install(SIGABRT, end_by_abort);
 #endif

@@ -8,14 +8,17 @@
 ///     SIGABRT                                     the same: the C library aborts where it gets no memory for a thread
 ///     an exception where none may be              removes temporary files, and exit code 1
 ///
-/// SIGPIPE ends the program as it ends every other one: no temporary file is there while it writes to a pipe.
+/// SIGPIPE ends the program as it ends every other one where data were asked for, as in front of `head`. Where nobody
+/// reads stderr, what is said gets lost, and nothing else changes. Where SIGPIPE is ignored already, it stays ignored:
+/// writing data is an error then.
 #ifndef CLI_TERMINAL_PROCESS_H_
 #define CLI_TERMINAL_PROCESS_H_
 
 namespace chronormal::cli {
 
 /// Opens what is closed of stdin, stdout and stderr, so that no file takes their place and gets what is meant for them:
-/// reading and writing there stays an error. Installs the handlers. To be called first of all.
+/// reading and writing there stays an error. Installs the handlers. Has the floating point unit of this thread, and of
+/// those that it starts, round to nearest. To be called first of all.
 void prepare_process() noexcept;
 
 /// Has oneTBB load what it needs, so that it happens once and here: where memory runs out just then, dlopen() of the C

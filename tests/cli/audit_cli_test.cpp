@@ -247,16 +247,68 @@ TEST_F(AuditCli, file_comes_on_standard_input_and_leaves_by_o) {
   expect_error("hinge.glb -o out.json", 1, "out.json");
 }
 
-TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_every_gate) {
+TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_no_gate_alone) {
   test::ShadedMesh mesh = test::hinge();
   mesh.targets.clear();
   folder_.write("still.glb", mesh.file().glb());
-  const std::string text = text_of("still.glb --tolerance 0");
-  EXPECT_EQ(text, "still.glb: nothing to judge: no target and no animation moves stored normals\n");
+  EXPECT_EQ(text_of("still.glb"), "still.glb: nothing to judge: no target and no animation moves stored normals\n");
+  const ProcessResult gate = run("still.glb --tolerance 180 --json"),
+                      several = run("still.glb still.glb --tolerance 1");
+  EXPECT_EQ(gate.exit_code, 4);
+  expect_words(gate.err, {"chronormal audit: nothing moves stored normals, so that there is nothing to judge"});
+  EXPECT_EQ(Json::parse(gate.out)["passed"], false);
+  EXPECT_EQ(several.exit_code, 4);
+  EXPECT_EQ(Json::parse(run("still.glb still.glb --tolerance 1 --json").out)["passed"], false);
   mesh = test::hinge();
   mesh.normals.clear();
   folder_.write("flat.glb", mesh.file().glb());
   expect_words(text_of("flat.glb"), {"nothing to judge", "has no normals, and is shown flat, which is right"});
+}
+
+TEST_F(AuditCli, motion_of_which_no_pair_can_be_judged_passes_no_gate) {
+  folder_.write("line_0.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  folder_.write("line_1.obj", "v 0 0 1\nv 1 0 1\nv 3 0 1\nf 1 2 3\n");
+  const ProcessResult gate = run("line_0.obj line_1.obj --tolerance 180 --json");
+  EXPECT_EQ(gate.exit_code, 4);
+  expect_words(gate.err, {"no pair could be judged"});
+  const Json json = Json::parse(gate.out);
+  EXPECT_EQ(json["passed"], false);
+  EXPECT_EQ(json["judged"], 0);
+  EXPECT_EQ(run("line_0.obj line_1.obj").exit_code, 0);
+  const ProcessResult compared =
+      run_shell(std::string(kProgram) + " compare line_0.obj line_1.obj --tolerance 0", folder_.path(), "");
+  EXPECT_EQ(compared.exit_code, 4);
+  expect_words(compared.err, {"no scheme could be judged"});
+  ASSERT_EQ(run("line_0.obj line_1.obj --tolerance 180 --shard 1/1 -o part.json").exit_code, 0);
+  EXPECT_EQ(run_shell(std::string(kProgram) + " merge part.json", folder_.path(), "").exit_code, 4);
+}
+
+// A triangle that shrinks to a hundredth is lit from behind: it is drawn, and its direction is exact.
+TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
+  const std::string big = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+  const auto small = [](const std::string& size, const std::string& at) {
+    return "v " + at + " 0 0\nv " + at + size + " 0 0\nv " + at + " 0" + size + " 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n";
+  };
+  folder_.write("big.obj", big);
+  folder_.write("small.obj", small(".009", "0"));
+  folder_.write("far.obj", small(".009", "100000"));  // of which float32 keeps no more than a point or a line
+  for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
+    const std::string arguments = "big.obj small.obj " + rule;
+    const Json json = json_of(arguments);
+    EXPECT_EQ(json["worst_degrees"], 0.0) << "as before, sums leave such pairs out";
+    EXPECT_EQ(json["no_normal"], 3);
+    EXPECT_EQ(json["faint"], 3);
+    EXPECT_NEAR(json["faint_worst_degrees"].get<double>(), 180, 1e-3) << rule;
+    EXPECT_EQ(json["subjects"][0]["faint_at"]["time"], 1.0);
+    const ProcessResult gate = run(arguments + " --tolerance 1 --json");
+    EXPECT_EQ(gate.exit_code, 4) << rule;
+    EXPECT_EQ(Json::parse(gate.out)["passed"], false);
+    expect_words(gate.err, {"where faces all but vanish, the worst error is 180 degrees", "at 1 s"});
+    EXPECT_EQ(run(arguments + " --tolerance 180").exit_code, 0);
+    EXPECT_EQ(json_of("big.obj far.obj " + rule)["faint"], 0);
+  }
+  ASSERT_EQ(run("big.obj small.obj --rule step --tolerance 1 --shard 1/1 -o part.json").exit_code, 0);
+  EXPECT_EQ(run_shell(std::string(kProgram) + " merge part.json", folder_.path(), "").exit_code, 4);
 }
 
 TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {

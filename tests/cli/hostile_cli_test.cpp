@@ -15,6 +15,7 @@
 #include "tests/support/gltf_documents.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::hostile_cli_test {
@@ -71,6 +72,21 @@ TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
           "compare --base " + both + " --blend 2",
           "compare --base " + both + " --blend 2 --csv",
           "compare --base " + both + " --blend 2 --json",
+          "compare " + both + " --certify",
+          "compare " + both + " --tolerance 0",
+          "compare " + both + " --path catmull-rom",
+          "audit " + both + " --path catmull-rom",
+          "audit " + both + " --shard 1/1 --force -o " + quoted(name + ".part"),
+          "merge " + quoted(name + ".part") + " --force -o " + quoted(name + ".json"),
+          "merge " + quoted(name + ".json"),
+          "merge " + missing,
+          "query collapse " + both,
+          "query cones " + both + " --json",
+          "query facing " + both + " --direction 0,0,1 --force -o " + quoted(name + ".npz"),
+          "query " + quoted(name) + " " + both,
+          "query contain " + both + " --points " + missing,
+          "report " + both + " --force -o " + quoted(name + ".bin"),
+          "report " + both + " --template " + missing + " --force -o " + quoted(name + ".html"),
           "audit " + both,
           "audit " + both + " --json",
           "audit " + both + " --tolerance 0.1",
@@ -111,13 +127,27 @@ TEST_F(HostileCli, names_in_a_gltf_file_are_printed_without_what_a_terminal_obey
   for (auto& node : builder.json["nodes"]) node["name"] = name;
   builder.json["animations"][0]["name"] = name;
   folder_.write("face.glb", builder.glb());
-  for (const std::string arguments :
-       {"inspect face.glb", "inspect face.glb --json", "inspect face.glb --animation 0",
-        "inspect face.glb --animation no", "audit face.glb", "audit face.glb --json",
-        "audit face.glb --animation 0 --tolerance 0", "compare face.glb", "compare face.glb --csv",
-        "compare face.glb --blend 2", "compare face.glb --blend 2 --csv",
-        "compare face.glb --blend 2 --json --animation 0", "bake face.glb -o out.glb --force",
-        "bake face.glb -o out.glb --force --json --encode endpoint", "sample face.glb --times 0 -o x.npy"}) {
+  for (const std::string arguments : {"inspect face.glb",
+                                      "inspect face.glb --json",
+                                      "inspect face.glb --animation 0",
+                                      "inspect face.glb --animation no",
+                                      "audit face.glb",
+                                      "audit face.glb --json",
+                                      "audit face.glb --animation 0 --tolerance 0",
+                                      "audit face.glb --host all",
+                                      "query cones face.glb",
+                                      "query collapse face.glb --json",
+                                      "report face.glb -o out.bin --force",
+                                      "report face.glb -o out.bin --force --json",
+                                      "compare face.glb --certify",
+                                      "compare face.glb",
+                                      "compare face.glb --csv",
+                                      "compare face.glb --blend 2",
+                                      "compare face.glb --blend 2 --csv",
+                                      "compare face.glb --blend 2 --json --animation 0",
+                                      "bake face.glb -o out.glb --force",
+                                      "bake face.glb -o out.glb --force --json --encode endpoint",
+                                      "sample face.glb --times 0 -o x.npy"}) {
     const ProcessResult result = run(arguments);
     EXPECT_LE(result.exit_code, 4) << arguments;
     EXPECT_EQ(find_unsafe(result.out), "") << arguments << "\n" << result.out;
@@ -228,6 +258,139 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   EXPECT_NE(result.err.find("quad, one, two, three: by --encode exact"), std::string::npos) << result.err;
   const std::size_t first = result.err.find("by --encode exact");
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
+}
+
+// Whatever its name looks like, an output is never written over another one, or over what is read.
+TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name) {
+  folder_.write("a.obj", kFirst);
+  folder_.write("b.obj", kSecond);
+  folder_.write("moving.glb", test::sparse_document().glb());
+  folder_.write("same.npz", "old");
+  folder_.write("drivers.glb", "old");
+  folder_.write("part.json", "{}");
+  std::filesystem::create_symlink("new.npz", folder_ / "link.npz");
+  std::filesystem::create_hard_link(folder_ / "a.obj", folder_ / "hard.txt");
+  std::filesystem::create_directory(folder_ / "sub");
+  for (const std::string arguments :
+       {"audit a.obj b.obj --errors ./same.npz -o same.npz", "audit a.obj b.obj --errors ./new.npz -o new.npz",
+        "audit a.obj b.obj --errors link.npz -o sub/../new.npz", "audit a.obj b.obj --errors same.npz > same.npz",
+        "audit a.obj b.obj -o hard.txt", "audit moving.glb -o ./moving.glb",
+        "compare a.obj b.obj --errors ./same.npz -o same.npz", "compare a.obj b.obj -o ./b.obj",
+        "compare --each --base a.obj ./b.obj -o b.obj", "compare --base a.obj b.obj --blend 2 -o a.obj",
+        "bake moving.glb -o drivers.glb --drivers ./drivers.glb", "bake moving.glb -o out.glb --drivers ./moving.glb",
+        "bake moving.glb -o moving.glb --poses ./moving.glb", "bake moving.glb -o same.npz.glb > same.npz.glb",
+        "query collapse a.obj b.obj -o ./a.obj --json", "sample a.obj b.obj --times 0 -o ./a.obj",
+        "inspect a.obj b.obj -o ./a.obj", "merge part.json -o ./part.json",
+        "report moving.glb -o p.bin --no-plan > p.bin"}) {
+    const std::vector<std::string> inputs = {"a.obj", "b.obj", "moving.glb"};
+    std::vector<std::string> before;
+    for (const std::string& name : inputs) before.push_back(test::read_whole(folder_ / name));
+    const auto words = arguments.find(" >") == std::string::npos
+                           ? arguments + " --force"
+                           : std::string(arguments).insert(arguments.find(" >"), " --force");
+    expect(run(words), 2, {"it must be another file than"});
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
+  }
+  EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);         // it has all that was there
+  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // by its extension alone
+  EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
+}
+
+// A pipe that nobody reads takes no messages, which changes no exit code. Where it is to take data, the program ends as
+// others do in front of `head`.
+TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
+  folder_.write("a.obj", kFirst);
+  folder_.write("b.obj", kSecond);
+  const auto run_into_closed_pipe = [&](const std::string& arguments, const std::string& redirected) {
+    return run_shell("exec 4>code; mkfifo -m 600 pipe; exec 3<>pipe 5>pipe; exec 3>&-; " + std::string(kProgram) + ' ' +
+                         arguments + ' ' + redirected + "; echo $? >&4; rm pipe",
+                     folder_.path());
+  };
+  const auto code = [&] { return test::read_whole(folder_ / "code"); };
+  (void)run_into_closed_pipe("audit a.obj b.obj", "2>&5 >out.txt");
+  EXPECT_EQ(code(), "0\n");
+  (void)run_into_closed_pipe("audit a.obj b.obj --tolerance 0", "2>&5 >out.txt");
+  EXPECT_EQ(code(), "4\n");
+  (void)run_into_closed_pipe("audit a.obj missing.obj", "2>&5 >out.txt");
+  EXPECT_EQ(code(), "1\n");
+  (void)run_into_closed_pipe("audit a.obj b.obj --no-such", "2>&5 >out.txt");
+  EXPECT_EQ(code(), "2\n");
+  (void)run_into_closed_pipe("audit a.obj b.obj", ">&5 2>err.txt");
+  EXPECT_EQ(code(), "141\n");
+  EXPECT_EQ(test::read_whole(folder_ / "err.txt"), "");
+}
+
+// A library that is loaded before the program may have set another rounding mode: nothing comes of it.
+TEST_F(HostileCli, the_rounding_mode_of_a_host_changes_no_byte) {
+  if (std::string(kProgram).ends_with("_sanitized"))
+    GTEST_SKIP() << "the layer would replace the malloc of a sanitizer";
+  folder_.write("a.obj", kFirst);
+  folder_.write("b.obj", kSecond);
+  folder_.write("moving.glb", test::sparse_document().glb());
+  for (const std::string arguments :
+       {"audit a.obj b.obj --json", "audit moving.glb --json", "compare a.obj b.obj --json --no-times",
+        "sample a.obj b.obj --times 0.3 -o -", "query cones a.obj b.obj --json",
+        "bake moving.glb -o out.glb --force --encode exact --json", "report moving.glb -o out.bin --force --json"}) {
+    const ProcessResult usual = run(arguments);
+    for (const std::string mode : {"down", "up", "zero"}) {
+      const ProcessResult other =
+          run(arguments, "LD_PRELOAD=" + std::string(kFaultLayer) + " CHRONORMAL_ROUNDING=" + mode + " ");
+      EXPECT_EQ(other.exit_code, 0) << arguments << ", " << mode;
+      EXPECT_EQ(other.out, usual.out) << arguments << ", " << mode;
+    }
+  }
+}
+
+// 127 kB may not become 455 MB: an answer has a row for every face of every target.
+TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
+  test::GltfBuilder builder;
+  std::vector<float> positions, lift;
+  std::vector<std::uint16_t> corners;
+  constexpr std::uint16_t kSide = 60;
+  for (std::uint16_t y = 0; y < kSide; ++y) {
+    for (std::uint16_t x = 0; x < kSide; ++x) {
+      positions.insert(positions.end(), {static_cast<float>(x), static_cast<float>(y), 0.0F});
+      lift.insert(lift.end(), {0.0F, 0.0F, static_cast<float>(x * y % 7)});
+      if (x == 0 || y == 0) continue;
+      const int v = y * kSide + x;
+      for (const int corner : {v, v - 1, v - kSide, v - 1, v - kSide - 1, v - kSide})
+        corners.push_back(static_cast<std::uint16_t>(corner));
+    }
+  }
+  const std::size_t base = builder.add_positions(positions), indices = builder.add_indices(corners);
+  const std::size_t delta = builder.add_positions(lift);
+  Json targets = Json::array();
+  for (int k = 0; k < 150; ++k) targets.push_back({{"POSITION", delta}});
+  builder.add_node(
+      builder.add_mesh({{"attributes", {{"POSITION", base}}}, {"indices", indices}, {"targets", targets}}));
+  folder_.write("many.glb", builder.glb());
+  for (const std::string arguments :
+       {"query cones many.glb", "query shutter many.glb -o s.npz", "query cones many.glb --json",
+        "compare many.glb --schemes linear --errors e.npz"}) {
+    expect(run(arguments), 3, {"ask for", "--max-expansion"});
+  }
+  EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
+}
+
+TEST_F(HostileCli, a_file_of_the_kernel_without_size_or_end_is_empty) {
+  // Only root may open the log of the kernel, which never ends.
+  const std::string file = ::access("/proc/kmsg", R_OK) == 0 ? "/proc/kmsg" : "/proc/self/mounts";
+  expect(run("inspect " + file, "timeout 20 "), 3, {file.substr(file.rfind('/') + 1)});
+}
+
+// Results that are larger than a stack of 256 kB stay on the heap.
+TEST_F(HostileCli, a_small_stack_is_enough) {
+  if (std::string(kProgram).ends_with("_sanitized")) GTEST_SKIP() << "a sanitizer needs more";
+  folder_.write("a.obj", kFirst);
+  folder_.write("b.obj", kSecond);
+  folder_.write("moving.glb", test::sparse_document().glb());
+  for (const std::string arguments :
+       {"audit a.obj b.obj", "audit moving.glb --host all", "bake moving.glb -o out.glb", "bake a.obj b.obj -o s.glb",
+        "report moving.glb -o out.bin", "compare a.obj b.obj", "query cones a.obj b.obj", "inspect moving.glb"}) {
+    const ProcessResult result = run(arguments, "ulimit -s 256; ");
+    EXPECT_EQ(result.exit_code, 0) << arguments << ": " << result.err;
+  }
 }
 
 }  // namespace

@@ -59,6 +59,20 @@ TEST(Numbers, no_command_prints_nan_or_infinity) {
                                        "inspect point.obj",
                                        "bake a.obj b.obj -o seq.glb",
                                        "bake a.obj b.obj -o seq.glb --force --encode endpoint --json",
+                                       "compare a.obj b.obj --certify",
+                                       "compare a.obj b.obj --certify --json",
+                                       "compare a.obj b.obj a.obj --path catmull-rom",
+                                       "compare point.obj point.obj --tolerance 1",
+                                       "audit a.obj b.obj a.obj --path catmull-rom --json",
+                                       "audit point.obj point.obj --tolerance 1",
+                                       "audit a.obj b.obj --shard 1/1 --tolerance 1 -o part.json",
+                                       "merge part.json",
+                                       "query cones a.obj b.obj",
+                                       "query shutter a.obj b.obj --json",
+                                       "query shutter point.obj point.obj",
+                                       "query facing a.obj b.obj --direction 0,0,1",
+                                       "query collapse a.obj b.obj --json",
+                                       "report a.obj b.obj -o r.bin --json",
                                        "sample a.obj b.obj --times 0,0.5,1 --format obj -o -"};
   for (const std::string file : {"weights.glb", "normals.glb", "times.glb", "still.glb"}) {
     for (const std::string form : {"", " --json", " --csv"})
@@ -69,6 +83,10 @@ TEST(Numbers, no_command_prints_nan_or_infinity) {
         commands.push_back(verb + file + form);
       for (const char* const how : {"exact", "endpoint"})
         commands.push_back("bake " + file + " -o out.glb --force --encode " + how + form);
+    }
+    for (const std::string form : {"", " --json"}) {
+      commands.push_back("report " + file + " -o out.bin --force --no-plan" + form);
+      commands.push_back("query shutter --animation a " + file + form);
     }
     commands.push_back("sample " + file + " --weights 1e38,1e38 --format obj -o -");
   }

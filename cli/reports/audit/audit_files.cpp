@@ -65,7 +65,10 @@ std::string audit_files_json(std::vector<AuditedFile> files, std::optional<doubl
   const bool passed = std::all_of(files.begin(), files.end(), [](const AuditedFile& file) {
     return file.json.contains("passed") && file.json["passed"] == true;
   });
-  json["passed"] = tolerance ? Json(passed) : Json();
+  const bool any_judged = std::any_of(files.begin(), files.end(), [](const AuditedFile& file) {
+    return file.error && file.error->judged + file.error->faint > 0;
+  });
+  json["passed"] = tolerance ? Json(passed && any_judged) : Json();
   json["files"] = Json::array();
   for (AuditedFile& file : files) json["files"].push_back(std::move(file.json));
   return json_text(json);

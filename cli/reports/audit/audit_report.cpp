@@ -69,6 +69,9 @@ std::string headline(const Audited& input) {
   if (audit.error.no_normal > 0)
     text += formatted("  {} without a right direction: the normal of the geometry all but vanishes there\n",
                       pairs(audit.error.no_normal));
+  if (audit.error.faint_worst > input.tolerance.value_or(kAuditFault))
+    text += formatted("  {} of these have one all the same, and are off by up to {} degrees: --tolerance counts them\n",
+                      grouped(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
     text += formatted("  {} cannot be lit, which counts as 180 degrees: the first is at {}\n", pairs(audit.error.unlit),
                       unlit_label(input));
@@ -203,6 +206,14 @@ std::string unlit_label(const Audited& input) {
   const auto first =
       std::find_if(subjects.begin(), subjects.end(), [](const AuditSubject& s) { return s.error.unlit > 0; });
   return first == subjects.end() ? "" : place_words(input, *first, first->error.unlit_at);
+}
+
+std::string faint_label(const Audited& input) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  const auto worst = std::max_element(
+      subjects.begin(), subjects.end(),
+      [](const AuditSubject& a, const AuditSubject& b) { return a.error.faint_worst < b.error.faint_worst; });
+  return worst == subjects.end() ? "" : place_words(input, *worst, worst->error.faint_at);
 }
 
 std::string audit_text(const Audited& input) {

@@ -21,7 +21,8 @@ struct Audited {
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
-  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was.
+  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was. A file in which nothing
+  /// moves keeps it.
   [[nodiscard]] bool passed() const { return !tolerance || audit.is_within(*tolerance); }
 };
 
@@ -36,6 +37,9 @@ struct Audited {
 
 /// The same for the first pair that cannot be lit.
 [[nodiscard]] std::string unlit_label(const Audited& input);
+
+/// The same for the worst pair of those whose right normal all but vanishes.
+[[nodiscard]] std::string faint_label(const Audited& input);
 
 }  // namespace chronormal::cli
 

@@ -16,9 +16,12 @@
 /// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
 /// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a pair is off by 180 degrees, the most
 ///            that there is, and is counted.
-/// No normal  pairs whose n(t) is below 1e-4 of the largest control normal of its element over the motion have no right
-///            direction, so that no angle is measured there and they are counted apart. What they show must be finite;
-///            and it must not be zero where the faces around have an area, which is drawn.
+/// No normal  pairs whose n(t) is below 1e-4 of the largest control normal of its element over the motion are
+///            counted apart, and are in no mean and no worst error. What they show must be finite; and it must not be
+///            zero where the faces around have an area, which is drawn.
+/// Faint      those of them whose n(t) is more than what rounding the positions to float32 may change it by have a
+///            direction all the same, and a gate must not pass what is lit from behind: is_within() of audits and hosts
+///            looks at them, with the angle less what that rounding explains.
 /// Units      degrees; weights; seconds.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
@@ -91,6 +94,8 @@ struct AuditOptions {
   /// With these the shards find out together, by maximize(), which vertices move and how long normals get, so that each
   /// of them looks at its own segments alone.
   const Peers* peers = nullptr;
+  /// How much the errors that are kept may take: that of the files behind a motion. A document has its own.
+  Expansion expansion = Expansion::unlimited();
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -165,8 +170,8 @@ struct HostAudit {
   /// if it left these out.
   std::size_t beyond = 0;
 
-  /// Whether the host shows the file, and every pair as MotionError::is_within() has it.
-  [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.is_within(degrees); }
+  /// Whether the host shows the file, and every pair as MotionError::passes() has it.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
 };
 
 struct Audit {
@@ -190,9 +195,14 @@ struct Audit {
   std::vector<ErrorTable> errors;
   std::vector<SegmentErrors> measured;  ///< of a shard: one for each of its segments; all else covers these alone
 
-  /// Whether every host that was named shows no more, or the rule where none was: MotionError::is_within().
+  /// Whether there was anything to judge. Where nothing turns normals, or no face ever has an area, nothing is known to
+  /// be right.
+  [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
+  /// Whether every host that was named shows no more, or the rule where none was: MotionError::passes(). Of motions
+  /// some pair must have been judged; a file in which nothing moves is within anything.
   [[nodiscard]] bool is_within(double degrees) const noexcept {
-    if (hosts.empty()) return error.is_within(degrees);
+    if (!subjects.empty() && !is_judged()) return false;
+    if (hosts.empty()) return error.passes(degrees);
     return std::all_of(hosts.begin(), hosts.end(),
                        [degrees](const HostAudit& host) { return host.is_within(degrees); });
   }

@@ -29,6 +29,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
@@ -98,6 +99,8 @@ struct CompareOptions {
   /// Told of each segment that was computed, in order, so that a later run can have it among `known`; may be empty. An
   /// error that it returns ends the comparison.
   std::function<Status(const ComparedSegment&)> keep = {};
+  /// How much the errors that are kept may take: that of the file behind the motion.
+  Expansion expansion = Expansion::unlimited();
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -131,7 +134,7 @@ struct Comparison {
   std::optional<double> tolerance = {};        ///< degrees, where it was given
   PathKind path = PathKind::kLinear;           ///< whose exact normals all rows are compared with
   double bend = 0;                             ///< of a curved path: bend_of(), to hold against kTooSparse
-  std::optional<std::size_t> cheapest = {};    ///< of the schemes: within the tolerance for certain; nothing: none is
+  std::optional<std::size_t> cheapest = {};    ///< of those judged: within the tolerance for certain; nothing: none is
   std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
   std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
 };

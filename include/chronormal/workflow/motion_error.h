@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace chronormal {
 
@@ -30,16 +31,38 @@ struct AuditPlace {
   double at = 0;                               ///< weight of the target, or time in seconds
 };
 
+/// The counts in these bins. They take 18 kB, which is too much for a stack; an object that was moved from keeps them.
+class FineBins {
+ public:
+  FineBins() : counts_(kAuditFineBins) {}
+  FineBins(const FineBins&) = default;
+  FineBins& operator=(const FineBins&) = default;
+  ~FineBins() = default;
+
+  [[nodiscard]] constexpr std::size_t size() const noexcept { return kAuditFineBins; }
+  [[nodiscard]] std::size_t& operator[](std::size_t bin) noexcept { return counts_[bin]; }
+  [[nodiscard]] std::size_t operator[](std::size_t bin) const noexcept { return counts_[bin]; }
+  friend bool operator==(const FineBins&, const FineBins&) = default;
+
+ private:
+  std::vector<std::size_t> counts_;
+};
+
 struct MotionError {
   std::size_t judged = 0;  ///< pairs
   double sum = 0, sum_of_squares = 0;
   double worst = 0;
   AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
-  std::array<std::size_t, kAuditFineBins> counts{};  ///< the same in finer bins
+  FineBins counts;            ///< the same in finer bins
   std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
   std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
   AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
+  /// Of those without a normal: n(t) is small, but the positions as float32 determine its direction. Each of these is
+  /// off by the angle less what such rounding of the positions may turn n(t).
+  std::size_t faint = 0;
+  double faint_worst = 0;
+  AuditPlace faint_at;  ///< the first pair of that error; means nothing where faint_worst is 0
 
   [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
   [[nodiscard]] double rms() const noexcept {
@@ -50,6 +73,8 @@ struct MotionError {
   [[nodiscard]] double percentile(double share) const noexcept;
   /// Whether every pair can be lit and none is off by more than this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
+  /// The same for a gate, which leaves out no pair that has a direction.
+  [[nodiscard]] bool passes(double degrees) const noexcept { return is_within(degrees) && faint_worst <= degrees; }
   void add(double degrees, const AuditPlace& place) noexcept;
   void add_unlit(const AuditPlace& place) noexcept;
   void add(const MotionError& other) noexcept;

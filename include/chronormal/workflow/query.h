@@ -24,6 +24,7 @@
 
 #include "chronormal/analysis/facing.h"
 #include "chronormal/core/result.h"
+#include "chronormal/io/expansion.h"
 #include "chronormal/io/points_file.h"
 #include "chronormal/motion/motion.h"
 
@@ -33,6 +34,8 @@ namespace chronormal {
 /// or to its end.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
+  /// How much the answer may take, which has a row for every face of every segment: that of the file behind the motion.
+  Expansion expansion = Expansion::unlimited();
 };
 
 /// What a span takes of one segment: [t0, t1], with t0 < t1.
@@ -116,8 +119,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
 ///     member    meshlet, face
 /// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first
-/// keyframe. Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple of 4 up
-/// to 512, and for a mesh of larger faces.
+/// keyframe. Errors: of segment_parts() and of span.expansion.check(); kUsage, with --meshlets as the place, for a
+/// number that is no multiple of 4 up to 512, and for a mesh of larger faces.
 [[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
@@ -126,13 +129,17 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
 ///               ends_off (degrees from mean_unit to it): one row for each segment and face
 ///     span      the same without segment, over all parts together, weighed by their duration; not for targets
-/// Errors: of segment_parts().
+/// Errors: of segment_parts() and of span.expansion.check().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN
 /// where the table has no name. Errors: kUsage for another extension; those of write_output().
 [[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
+
+/// How many bytes the arrays of an answer have in memory and as .npz, and at most as JSON.
+[[nodiscard]] std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept;
+[[nodiscard]] std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept;
 
 /// Refuses before a long computation what write_query() would refuse.
 [[nodiscard]] Status check_query_output(const std::string& path, bool force);

@@ -57,7 +57,9 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
     return Error{ErrorCode::kFailed, place, "this is a device, not a file, and may have no end"};
 
   FileBytes file;
-  if (!is_stdin && S_ISREG(status.st_mode) && status.st_size > 0) {
+  // Some files of the kernel have no size, and /proc/kmsg no end either: there is nothing in such a file.
+  if (S_ISREG(status.st_mode) && status.st_size == 0) return file;
+  if (!is_stdin && S_ISREG(status.st_mode)) {
     const auto size = static_cast<std::size_t>(status.st_size);
     void* const mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapping != MAP_FAILED) {

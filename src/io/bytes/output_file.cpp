@@ -17,6 +17,7 @@
 #include "chronormal/io/output.h"
 #include "core/charconv.h"
 #include "io/bytes/descriptor.h"
+#include "io/bytes/same_file.h"
 #include "io/bytes/temporary_file.h"
 
 namespace chronormal {
@@ -63,19 +64,6 @@ std::optional<int> stream_descriptor(std::string_view path) {
     if (code == std::errc{} && end == last && number >= 0) return number;
   }
   return std::nullopt;
-}
-
-// The file that is written when a program writes to path: the end of a chain of symbolic links, which need not exist.
-std::string follow_links(const std::string& path) {
-  constexpr int kLongestChain = 40;
-  std::filesystem::path target = path;
-  for (int i = 0; i < kLongestChain; ++i) {
-    std::error_code error;
-    const std::filesystem::path next = std::filesystem::read_symlink(target, error);
-    if (error) break;
-    target = next.is_absolute() ? next : target.parent_path() / next;
-  }
-  return target.string();
 }
 
 // Makes the rename last through a power cut. Errors are ignored, since some file systems cannot do it.
@@ -168,8 +156,11 @@ Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::u
   state->file = std::make_unique<TemporaryFile>(partial, state->replaces ? 0600 : 0666);
   const auto size = static_cast<off_t>(kept);
   if (!state->file->is_open() || ::ftruncate(state->descriptor(), size) != 0 ||
-      ::lseek(state->descriptor(), size, SEEK_SET) != size)
-    return failure(partial.name, errno);
+      ::lseek(state->descriptor(), size, SEEK_SET) != size) {
+    Error error = failure(partial.name, errno);
+    if (kept == 0) (void)::unlink(partial.name.c_str());  // it holds nothing that a later run could go on with
+    return error;
+  }
   return OutputFile(std::move(state));
 }
 

@@ -117,6 +117,11 @@ void MotionError::add(const MotionError& other) noexcept {
     worst = other.worst;
     worst_at = other.worst_at;
   }
+  faint += other.faint;
+  if (other.faint_worst > faint_worst) {
+    faint_worst = other.faint_worst;
+    faint_at = other.faint_at;
+  }
 }
 
 double MotionError::percentile(double share) const noexcept {
@@ -130,6 +135,14 @@ double MotionError::percentile(double share) const noexcept {
 }
 
 inline namespace internal {
+
+double faint_degrees(const Vec3d& shown, const Vec3d& right, double rounding) noexcept {
+  const double size = length(right);
+  if (!(size > rounding)) return kNotJudged;
+  if (shown == Vec3d{}) return 180;
+  const double explained = portable::asin(rounding / size);
+  return std::max(0.0, angle_between(shown, right) - explained) * kDegreesPerRadian;
+}
 
 Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept {
   if (rule == AuditRule::kStep) return to_float(unit(t < 1 ? from : to));

@@ -322,9 +322,8 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     ErrorTable table;
     if (options.keep_errors) {
       table = table_of(shading);
-      if (const Status status = reserve_rows(table, count_rows(document, m, tracks, only.has_value(), options));
-          !status)
-        return status.error();
+      const std::size_t rows = count_rows(document, m, tracks, only.has_value(), options);
+      if (const Status status = reserve_rows(table, rows, document.expansion()); !status) return status.error();
     }
     const MeshAudit mesh{
         document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr, watch};

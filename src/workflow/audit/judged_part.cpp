@@ -110,6 +110,22 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   });
 }
 
+double JudgedPart::rounding_of(std::span<const Vec3d> positions, std::size_t element) const {
+  double sum = 0;
+  for (std::uint32_t i = element_offsets_[element]; i < element_offsets_[element + 1]; ++i) {
+    const std::uint32_t f = faces_of_element_[i];
+    const std::span<const std::uint32_t> corners = corners_of(f);
+    const double of_face = rounding_of_area(corners.size(), [&](std::size_t c) { return positions[corners[c]]; });
+    if (corners_of_element_.empty()) {
+      sum += of_face;
+      continue;
+    }
+    const Vec3d normal = face_normal(positions, f);
+    if (normal != Vec3d{}) sum += length(term(positions, f, corners_of_element_[i], normal)) / length(normal) * of_face;
+  }
+  return sum;
+}
+
 Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face) const {
   const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[face] + c]]; };
   const std::size_t corners = face_offsets_[face + 1] - face_offsets_[face];

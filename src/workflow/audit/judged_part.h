@@ -20,6 +20,19 @@ inline constexpr std::size_t kRange = 4096;
 /// Where terms cancel, a sum below this share of their size is nothing but rounding, and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
+/// By how much the normal of a polygon may change, at most, where each coordinate of its corners is rounded to float32,
+/// which changes it by 2^-24 of itself: d n is the sum over the corners of d p[c] x (p[c+1] - p[c-1]).
+template <class VertexAt>
+[[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
+  constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // of the largest of three coordinates
+  double sum = 0;
+  for (std::size_t c = 0; c < corners; ++c) {
+    const Vec3d chord = vertex((c + 1) % corners) - vertex((c + corners - 1) % corners);
+    sum += kOfVector * max_abs(vertex(c)) * length(chord);
+  }
+  return sum;
+}
+
 /// Something that shows a normal: a vertex, or a corner where a vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
@@ -57,6 +70,10 @@ class JudgedPart {
   /// Computes the normals of its faces and elements from positions of vertices(): cross products, and for elements
   /// their weighted sums (normals/weighting.h), without a look at what is rounding.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
+
+  /// By how much the normal of an element may change, at most, where each of these positions is rounded to float32. The
+  /// weights of its faces count as if they stayed the same.
+  [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
   [[nodiscard]] Vec3d face_normal(std::span<const Vec3d> positions, std::size_t face) const;

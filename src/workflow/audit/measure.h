@@ -24,12 +24,14 @@
 
 namespace chronormal::inline internal {
 
-/// Below this part of its largest control normal, the direction of a normal means nothing.
+/// Below this part of its largest control normal, a normal is left out of all sums: what stored normals show there is
+/// mostly what they had to be elsewhere. A gate looks at it all the same, as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
 
-/// Counts an error of [0, 180] degrees in both histograms.
+/// Counts an error of [0, 180] degrees in both histograms. Where a host rounds otherwise than to nearest, an angle may
+/// also be -0, or a little beyond 180: nothing may be indexed by such bits unchecked.
 inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   std::size_t bin = 0;
   for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
@@ -39,9 +41,13 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
-  const std::uint64_t number = bit_cast<std::uint64_t>(degrees) >> kFractionBits;
-  ++errors.counts[number >= kFirst ? static_cast<std::size_t>(number - kFirst + 1) : 0];
+  const std::uint64_t number = degrees > 0 ? bit_cast<std::uint64_t>(degrees) >> kFractionBits : 0;
+  ++errors.counts[number >= kFirst ? std::min<std::size_t>(number - kFirst + 1, kAuditFineBins - 1) : 0];
 }
+
+/// How far what is shown is from a right normal, in degrees, at least: less what may have turned that one where rounding
+/// changes it by so much. kNotJudged where rounding may give it any direction.
+[[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double rounding) noexcept;
 
 /// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
@@ -114,9 +120,11 @@ template <class Source>
 }
 
 /// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and add_unlit()
-/// do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged.
-template <class Degrees, class At>
-void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const At& at, MotionError& result) {
+/// do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged; faint(output, i) is asked for that of a
+/// pair that is not judged, which a gate looks at.
+template <class Degrees, class Faint, class At>
+void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
+                MotionError& result) {
   double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
   std::size_t judged = 0;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -125,6 +133,12 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (degrees < 0) {
       if (degrees == kNotJudged) {
         ++result.no_normal;
+        const double faint = faint_of(output, i);
+        if (faint >= 0) ++result.faint;
+        if (faint > result.faint_worst) {
+          result.faint_worst = faint;
+          result.faint_at = at(output);
+        }
         continue;
       }
       if (result.unlit++ == 0) result.unlit_at = at(output);
@@ -183,6 +197,12 @@ template <class Source, class Shown>
     }
     add_errors(
         outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
+        [&](const JudgedOutput& output, std::size_t i) {
+          const Vec3d& normal = placed.normals.elements[output.element];
+          if (normal == Vec3d{}) return kNotJudged;
+          return faint_degrees(shown(first + i, output), source.right(output, normal),
+                               placed.part.rounding_of(placed.positions, output.element));
+        },
         [&](const JudgedOutput& output) { return source.at(segment, t, output); }, of_blocks[b]);
     for (std::size_t i = first; !each.empty() && i < end; ++i) {
       const double found = degrees[i - first];

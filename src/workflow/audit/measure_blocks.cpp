@@ -139,6 +139,24 @@ void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   }
 }
 
+// What the rounding of positions to float32 may change in the normal of an element.
+double rounding_at(const Segment& segment, double t, const Block& block, std::size_t e) {
+  double sum = 0;
+  for (std::uint32_t i = e == 0 ? 0 : block.face_ends[e - 1]; i < block.face_ends[e]; ++i) {
+    const std::uint32_t* const corners = &block.corners[3 * std::size_t{block.faces[i]}];
+    sum += rounding_of_area(3, [&](std::size_t c) {
+      return lerp(to_double(segment.from[corners[c]]), to_double(segment.to[corners[c]]), t);
+    });
+  }
+  return sum;
+}
+
+// What a host shows of an element between what it keeps at the ends.
+Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
+  const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
+  return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
+}
+
 double time_of_sample(std::size_t i, std::size_t samples) {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
@@ -165,6 +183,12 @@ void measure_block(const Segment& segment, std::size_t number, const Block& bloc
     add_errors(
         part.outputs().subspan(block.outputs.first, block.outputs.count),
         [&](const JudgedOutput& output, std::size_t) { return scratch.degrees[output.element - block.elements.first]; },
+        [&](const JudgedOutput& output, std::size_t) {
+          const std::size_t e = output.element - block.elements.first;
+          const Vec3d normal = normal_of(right, e);
+          if (normal == Vec3d{}) return kNotJudged;
+          return faint_degrees(shown_at(scratch, e, weight), normal, rounding_at(segment, t, block, e));
+        },
         [&](const JudgedOutput& output) { return at(number, t, output); }, errors[i]);
   }
 }

@@ -298,7 +298,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (options.keep_errors) {
     result.errors.push_back({"", ElementKind::kVertices, topology, motion.keyframes[0].positions});
     const std::size_t rows = motion.segments.size() * options.samples.value_or(kAuditSamples);
-    if (const Status status = reserve_rows(result.errors[0], rows); !status) return status.error();
+    if (const Status status = reserve_rows(result.errors[0], rows, options.expansion); !status) return status.error();
   }
   const Shard share = options.shard.value_or(Shard{});
   if (const Status status = check_known(options.known, share.of(motion.segments.size())); !status)

@@ -358,7 +358,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples, kept = rows.size() - (curved ? 1 : 0);
     ErrorTable room{names[0], kind, motion.topology, {}};
-    if (const Status status = reserve_rows(room, samples * kept); !status) return status.error();
+    if (const Status status = reserve_rows(room, samples * kept, options.expansion); !status) return status.error();
     each.assign(kept, std::vector<float>(samples * all->count()));
   }
   if ((options.shard || !options.known.empty()) && (options.keep_errors || options.keep_samples))

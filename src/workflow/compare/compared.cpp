@@ -15,10 +15,11 @@ namespace {
 // Below this mean, the error of linear is nothing but rounding, and the errors of other schemes are not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
+// A scheme that was held against no normal at all is not within anything.
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
   std::optional<std::size_t> cheapest;
   for (std::size_t s = 0; s < schemes.size(); ++s) {
-    if (schemes[s].certified->upper * kDegreesPerRadian > degrees) continue;
+    if (schemes[s].quality.count == 0 || schemes[s].certified->upper * kDegreesPerRadian > degrees) continue;
     if (!cheapest || evaluation_cost(schemes[s]) < evaluation_cost(schemes[*cheapest])) cheapest = s;
   }
   return cheapest;

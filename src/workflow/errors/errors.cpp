@@ -94,13 +94,15 @@ Status write_errors(std::span<const ErrorTable> tables, const std::string& path,
   return write_output(path, bytes.value(), force);
 }
 
-Status internal::reserve_rows(ErrorTable& table, std::size_t rows) {
+Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion) {
   const std::size_t columns = table.columns();
   if (columns > 0 && rows > kMostErrorBytes / sizeof(float) / columns)
     return Error{ErrorCode::kUsage, table.name,
                  "the errors of " + grouped(rows) + " samples of " + grouped(columns) + ' ' +
                      std::string(element_kind_name(table.kind)) +
                      " take more than 1 GiB: ask for fewer samples, or for less of the input"};
+  const std::uint64_t bytes = std::uint64_t{sizeof(float)} * rows * columns;
+  if (Status status = expansion.check(bytes, "the errors of every sample"); !status) return status;
   table.degrees.reserve(rows * columns);
   return Success{};
 }

@@ -34,6 +34,8 @@ void add_error(const MotionError& error, Json& json) {
   json["percentile_99_9_degrees"] = error.percentile(0.999);
   json["judged"] = error.judged;
   json["no_normal"] = error.no_normal;
+  json["faint"] = error.faint;
+  json["faint_worst_degrees"] = error.faint_worst;
   json["unlit"] = error.unlit;
 }
 
@@ -61,6 +63,7 @@ Json subject_json(const AuditSubject& subject) {
   add_error(subject.error, json);
   json["worst_at_keys_degrees"] = subject.at_keys.worst;
   json["worst_at"] = subject.error.worst > 0 ? place_json(subject.error.worst_at, moment_of(subject)) : Json();
+  json["faint_at"] = subject.error.faint_worst > 0 ? place_json(subject.error.faint_at, moment_of(subject)) : Json();
   json["unlit_at"] = subject.error.unlit > 0 ? place_json(subject.error.unlit_at, moment_of(subject)) : Json();
   json["histogram"] = histogram_json(subject.error);
   return json;
@@ -142,6 +145,7 @@ Json internal::audit_object(const std::string& input, const Audit& audit, std::o
 std::string audit_json(const std::string& input, const Audit& audit, std::optional<double> tolerance) {
   Json json = json_of_command("audit");
   json.update(audit_object(input, audit, tolerance));
+  if (tolerance && !audit.is_judged()) json["passed"] = false;  // of one input, and not of one among others
   return json_text(json);
 }
 

@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kVersion = 2;
+constexpr std::size_t kVersion = 3;
 constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
 
 // Reads the numbers of a list one after the other.
@@ -71,9 +71,11 @@ SchemeTally read_tally(Numbers numbers) {
 
 // Few of the fine bins are not empty; each of these is written with its number.
 Json error_json(const MotionError& error) {
-  Json json = {error.judged,           error.sum,         error.sum_of_squares, error.worst, error.worst_at.vertex,
-               error.worst_at.segment, error.worst_at.at, error.no_normal,      error.unlit, error.unlit_at.vertex,
-               error.unlit_at.segment, error.unlit_at.at};
+  Json json = {
+      error.judged,           error.sum,         error.sum_of_squares, error.worst,       error.worst_at.vertex,
+      error.worst_at.segment, error.worst_at.at, error.no_normal,      error.unlit,       error.unlit_at.vertex,
+      error.unlit_at.segment, error.unlit_at.at, error.faint,          error.faint_worst, error.faint_at.vertex,
+      error.faint_at.segment, error.faint_at.at};
   for (const std::size_t count : error.histogram) json.push_back(count);
   for (std::size_t bin = 0; bin < error.counts.size(); ++bin) {
     if (error.counts[bin] == 0) continue;
@@ -97,6 +99,9 @@ MotionError read_error(const JsonView& list) {
   error.no_normal = numbers.count();
   error.unlit = numbers.count();
   read_place(error.unlit_at);
+  error.faint = numbers.count();
+  error.faint_worst = numbers.real();
+  read_place(error.faint_at);
   for (std::size_t& count : error.histogram) count = numbers.count();
   while (!numbers.at_end()) {
     const std::size_t bin = numbers.count(), count = numbers.count();
@@ -454,7 +459,8 @@ Result<MergedParts> merge_parts(std::span<const Part> parts) {
   const Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
   if (!all) return all.error();
   const auto& [name, audit, tolerance] = all.value();
-  return MergedParts{audit_json(name, audit, tolerance), !tolerance || audit.is_within(*tolerance)};
+  return MergedParts{audit_json(name, audit, tolerance),
+                     !tolerance || (audit.is_judged() && audit.is_within(*tolerance))};
 }
 
 }  // namespace chronormal

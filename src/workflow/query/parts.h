@@ -3,6 +3,7 @@
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "chronormal/workflow/query.h"
 
 namespace chronormal::inline internal {
+
+/// Whether an answer may have a row of so many bytes for every face of every part. Errors: of Expansion::check().
+[[nodiscard]] inline Status check_rows(const Motion& motion, std::span<const SegmentPart> parts,
+                                       std::uint64_t bytes_per_row, const QuerySpan& span) {
+  const std::uint64_t rows = std::uint64_t{parts.size()} * motion.topology.face_count();
+  return span.expansion.check(bytes_per_row * rows, "the answer for every face of every segment");
+}
 
 /// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts.
 template <class T, class Answer>

@@ -66,6 +66,25 @@ Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const Query
   return from >= last ? no_motion("--from", from, first, last) : no_motion("--to", to, first, last);
 }
 
+std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept {
+  std::uint64_t bytes = 0;
+  for (const QueryTable& table : answer.tables) {
+    for (const QueryColumn& column : table.columns)
+      bytes += std::visit([](const auto& values) { return std::uint64_t{sizeof(values[0])} * values.size(); },
+                          column.values);
+  }
+  return bytes;
+}
+
+std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept {
+  constexpr std::uint64_t kLongestNumber = 25;  // "-1.2345678901234567e-300,"
+  std::uint64_t numbers = 0;
+  for (const QueryTable& table : answer.tables) {
+    for (const QueryColumn& column : table.columns) numbers += std::uint64_t{column.rows()} * column.width;
+  }
+  return kLongestNumber * numbers;
+}
+
 Status check_query_output(const std::string& path, bool force) {
   if (std::filesystem::path(path).extension() != ".npz")
     return Error{ErrorCode::kUsage, path, "arrays are written as .npz; --json is for programs, and a table for people"};

@@ -111,6 +111,8 @@ struct Rows {
 Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
+  constexpr std::uint64_t kBytesPerRow = 2 * sizeof(std::int64_t) + 13 * sizeof(double);
+  if (const Status status = check_rows(motion, parts.value(), kBytesPerRow, span); !status) return status.error();
   const std::vector<Means> found =
       for_parts<Means>(parts.value(), progress, [&](const SegmentPart& part) { return means_of(motion, part); });
   Rows rows;

@@ -289,9 +289,9 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
     }
   }
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 3, "command": "compare"})"}}).find("another version"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "bake"})"}}).find("of compare and of audit"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 3, "command": "bake"})"}}).find("of compare and of audit"),
             std::string::npos);
   std::string text = audit_parts(motion, {}, {}, 2)[0].text;
   const std::size_t list = text.find("\"error\":[");

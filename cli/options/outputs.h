@@ -1,0 +1,29 @@
+/// The files that a command writes, held against each other and against those that it reads: none may replace another,
+/// whatever their names look like.
+#ifndef CLI_OPTIONS_OUTPUTS_H_
+#define CLI_OPTIONS_OUTPUTS_H_
+
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/input.h"
+
+namespace chronormal::cli {
+
+/// A file, and the option that names it, for messages.
+struct NamedFile {
+  std::string option;
+  std::string path;
+};
+
+/// The files of an input, as far as they can be found without opening one; the rest has an error when it is opened.
+[[nodiscard]] std::vector<NamedFile> input_files(const InputOptions& input);
+
+/// Checks that each output is another file than those before it, and than all that are read; "-" is the standard
+/// output, which may be a file, too. Errors: kUsage, with the option of the output as the place.
+[[nodiscard]] Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_OPTIONS_OUTPUTS_H_
