@@ -268,6 +268,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
   folder_.write("same.npz", "old");
   folder_.write("drivers.glb", "old");
   folder_.write("part.json", "{}");
+  folder_.write("poses.glb", R"([{"a": 1}])");
   std::filesystem::create_symlink("new.npz", folder_ / "link.npz");
   std::filesystem::create_hard_link(folder_ / "a.obj", folder_ / "hard.txt");
   std::filesystem::create_directory(folder_ / "sub");
@@ -278,7 +279,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
         "compare a.obj b.obj --errors ./same.npz -o same.npz", "compare a.obj b.obj -o ./b.obj",
         "compare --each --base a.obj ./b.obj -o b.obj", "compare --base a.obj b.obj --blend 2 -o a.obj",
         "bake moving.glb -o drivers.glb --drivers ./drivers.glb", "bake moving.glb -o out.glb --drivers ./moving.glb",
-        "bake moving.glb -o moving.glb --poses ./moving.glb", "bake moving.glb -o same.npz.glb > same.npz.glb",
+        "bake moving.glb -o poses.glb --poses ./poses.glb", "bake moving.glb -o same.npz.glb > same.npz.glb",
         "query collapse a.obj b.obj -o ./a.obj --json", "sample a.obj b.obj --times 0 -o ./a.obj",
         "inspect a.obj b.obj -o ./a.obj", "merge part.json -o ./part.json",
         "report moving.glb -o p.bin --no-plan > p.bin"}) {

@@ -21,8 +21,8 @@ struct Audited {
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
-  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was. A file in which nothing
-  /// moves keeps it.
+  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was. A file in which
+  /// nothing moves keeps it.
   [[nodiscard]] bool passed() const { return !tolerance || audit.is_within(*tolerance); }
 };
 

@@ -43,8 +43,8 @@ struct NormalAtTime {
 };
 
 // Edges, and both products of each component after them, are within 10 u of the absolute products; and
-// each triangle of a fan adds a rounding. No test can tell 10 from 5: it is a bound of roundings that all go the same way,
-// and climbing from 60 triangles finds no error above 3.4 u of these products.
+// each triangle of a fan adds a rounding. No test can tell 10 from 5: it bounds roundings that all go the same way, and
+// climbing from 60 triangles finds no error above 3.4 u of these products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
   const double s = 1 - t;

@@ -136,11 +136,10 @@ double MotionError::percentile(double share) const noexcept {
 
 inline namespace internal {
 
-double faint_degrees(const Vec3d& shown, const Vec3d& right, double rounding) noexcept {
-  const double size = length(right);
-  if (!(size > rounding)) return kNotJudged;
+double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept {
+  if (!(length > rounding)) return kNotJudged;
   if (shown == Vec3d{}) return 180;
-  const double explained = portable::asin(rounding / size);
+  const double explained = portable::asin(rounding / length);
   return std::max(0.0, angle_between(shown, right) - explained) * kDegreesPerRadian;
 }
 

@@ -45,9 +45,9 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   ++errors.counts[number >= kFirst ? std::min<std::size_t>(number - kFirst + 1, kAuditFineBins - 1) : 0];
 }
 
-/// How far what is shown is from a right normal, in degrees, at least: less what may have turned that one where rounding
-/// changes it by so much. kNotJudged where rounding may give it any direction.
-[[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double rounding) noexcept;
+/// How far what is shown is from a right direction, in degrees, at least: less what may have turned it where rounding
+/// changes the normal behind it, of this length, by so much. kNotJudged where rounding may give it any direction.
+[[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
 /// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
@@ -200,7 +200,7 @@ template <class Source, class Shown>
         [&](const JudgedOutput& output, std::size_t i) {
           const Vec3d& normal = placed.normals.elements[output.element];
           if (normal == Vec3d{}) return kNotJudged;
-          return faint_degrees(shown(first + i, output), source.right(output, normal),
+          return faint_degrees(shown(first + i, output), source.right(output, normal), length(normal),
                                placed.part.rounding_of(placed.positions, output.element));
         },
         [&](const JudgedOutput& output) { return source.at(segment, t, output); }, of_blocks[b]);

@@ -187,7 +187,7 @@ void measure_block(const Segment& segment, std::size_t number, const Block& bloc
           const std::size_t e = output.element - block.elements.first;
           const Vec3d normal = normal_of(right, e);
           if (normal == Vec3d{}) return kNotJudged;
-          return faint_degrees(shown_at(scratch, e, weight), normal, rounding_at(segment, t, block, e));
+          return faint_degrees(shown_at(scratch, e, weight), normal, length(normal), rounding_at(segment, t, block, e));
         },
         [&](const JudgedOutput& output) { return at(number, t, output); }, errors[i]);
   }
