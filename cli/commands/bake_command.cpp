@@ -105,11 +105,12 @@ Result<BakeOptions> understand(const BakeArguments& options) {
 }
 
 // Whether some mesh has no form within what was asked for.
-bool is_beyond(const BakeArguments& options, const GltfBake& bake) {
+bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
-  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
-    return std::any_of(mesh.choices.begin(), mesh.choices.end(),
-                       [](const BakeChoice& choice) { return choice.chosen && !choice.within; });
+  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
+    return mesh.left_tangents > 0 || std::any_of(mesh.choices.begin(), mesh.choices.end(), [&](const auto& choice) {
+             return choice.chosen && (!choice.within || is_beyond_by_rounding(choice, how));
+           });
   });
 }
 
@@ -187,7 +188,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
 #ifdef __GLIBC__
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
-  const int code = is_beyond(options, baked.value()) ? kExitBeyond : kExitDone;
+  const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
   BakeReport told{input.name(), output, options.drivers, std::nullopt};
   if (options.plan) {
     warn(baked.value().warnings);

@@ -199,7 +199,9 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
       return text + "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n";
     return text + (are_all_within(bake)
                        ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
-                       : "nothing to bake: no other normals would be nearer; the output is as the input\n");
+                       : "nothing to bake: no other normals are nearer, and nowhere worse, in all of these hosts; the "
+                         "output is as "
+                         "the input\n");
   }
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);

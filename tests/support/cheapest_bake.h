@@ -6,8 +6,8 @@
 ///                       nothing | a delta driven by w (1 - w)
 ///     of each pair      nothing | a delta driven by w_i w_j
 ///
-/// Bytes are those of deltas other than the stored ones, 12 for each vertex or 16 for each that has one, whichever is
-/// less; and those by which the track grows. A LINEAR track is cut into equal pieces for each gap, as many as keep what
+/// Bytes are those of deltas other than the stored ones, 12 for each vertex, or 13 for each that has one where that is
+/// less by what more JSON takes; and those by which the track grows. A LINEAR track is cut into equal pieces for each gap, as many as keep what
 /// straight lines turn in its middle within a quarter of the tolerance.
 ///
 /// A combination does no harm where no normal is off by more than it was, or than the tolerance, along the track and
@@ -128,7 +128,10 @@ class CheapestBake {
     const auto count = static_cast<std::size_t>(std::count_if(deltas.begin(), deltas.end(), [](const V& d) {
       return std::max({std::fabs(d[0]), std::fabs(d[1]), std::fabs(d[2])}) > kNothing;
     }));
-    return std::min(12 * deltas.size(), 16 * count);
+    constexpr std::size_t kOfIndex = 1, kOfJson = 130;
+    const std::size_t sparse = 12 * count + (kOfIndex * count + 3) / 4 * 4;
+    if (count == 0) return 0;
+    return sparse + kOfJson < 12 * deltas.size() ? sparse : 12 * deltas.size();
   }
 
  private:

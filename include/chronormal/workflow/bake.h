@@ -70,7 +70,8 @@ struct BakeOptions {
   /// Of smallest: nothing but the animations of the file will ever be played, so that the deltas of the mesh's own
   /// targets may be fitted to these, and mean nothing alone.
   bool animations_only = false;
-  /// Of smallest: how many bytes of arrays of deltas a mesh may have; the nearest form that keeps to it is taken.
+  /// Of smallest: how many bytes of arrays of deltas and tangents a mesh may have, and its tracks may grow by; the
+  /// nearest form that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
   /// Of smallest: a program poses the meshes that no animation drives, and drives their extra targets as the file says,
   /// so that they may get some. Without it they get none.
@@ -109,7 +110,7 @@ struct HostChange {
 struct BakeChoice {
   /// "as it is", "own deltas", "pruned", "pairs", "quadratics", "low rank" or "harmless"
   std::string_view form;
-  std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas, and those by which tracks grow
+  std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
   /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights,
   /// or where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing
   /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
@@ -119,7 +120,18 @@ struct BakeChoice {
   std::vector<HostChange> hosts;
   bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
+  bool animations_only = false;  ///< its deltas are fitted to the animations, and mean nothing alone
+  /// Degrees, of the chosen form: the worst where compressors among the named hosts round what they keep, which no form
+  /// can help and no choice looks at; 0 where none of them does.
+  double rounded = 0;
 };
+
+/// Whether a form is near enough but for what compressors round, where these were named one by one and a tolerance was
+/// asked for. Among all hosts there are some that round normals by more than most tolerances.
+[[nodiscard]] inline bool is_beyond_by_rounding(const BakeChoice& choice, const BakeOptions& options) {
+  return options.tolerance && options.hosts.size() < kHosts.size() && choice.within &&
+         choice.rounded > *options.tolerance;
+}
 
 /// What was done to one mesh.
 struct BakedMesh {
@@ -129,22 +141,23 @@ struct BakedMesh {
   Weighting weighting = Weighting::kArea;  ///< of the right normals; means nothing where it was baked before
   std::size_t elements = 0;                ///< different normals
   std::vector<GltfExtraTarget> extras;     ///< targets that were added, now or by the bake before
-  std::size_t bytes = 0;                   ///< of new arrays, without those that an earlier mesh has too, and tracks
-  std::size_t undriven = 0;                ///< of exact: moving targets that no animation drives, baked as endpoint
-  std::size_t left_flat = 0;               ///< primitives without NORMAL that stay flat
+  std::size_t bytes = 0;  ///< of new arrays, without those that an earlier mesh has too, and those by which tracks grow
+  std::size_t undriven = 0;        ///< of exact: moving targets that no animation drives, baked as endpoint
+  std::size_t left_flat = 0;       ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
   /// Targets whose tangents leaned on the right normals: they are made anew, for hosts that add up tangents.
   std::size_t new_tangents = 0;
-  std::size_t stilled = 0;       ///< targets that moved normals and no position: their deltas are zero now
-  std::size_t without_base = 0;  ///< vertices whose faces have no area in the base: see docs/cli.md
+  std::size_t left_tangents = 0;  ///< those for which most_delta_bytes has no room: they stay as they are
+  std::size_t stilled = 0;        ///< targets that moved normals and no position: their deltas are zero now
+  std::size_t without_base = 0;   ///< vertices whose faces have no area in the base: see docs/cli.md
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
   /// active together are held against the weights of the file, at keys and up to fifteen instants between any two.
   double largest_error = 0;
   std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
   bool has_lone_weight = false;     ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
-  bool already_baked = false;       ///< nothing was changed
+  bool already_baked = false;       ///< nothing was changed; `choices` has what smallest finds it to be
   std::vector<HostChange> hosts;    ///< but of exact: what each named host shows, where the mesh changed
   std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
   std::size_t kept = 0;             ///< different normals that targets move and that keep the deltas of the file

@@ -19,6 +19,7 @@
 #include "chronormal/analysis/quality.h"
 #include "workflow/bake/exact/deltas.h"
 #include "workflow/bake/exact/plan.h"
+#include "workflow/bake/exact/shared_parts.h"
 #include "workflow/bake/forms/chosen_form.h"
 #include "workflow/bake/forms/smallest_form.h"
 #include "workflow/bake/mesh_weights.h"
@@ -130,9 +131,10 @@ MeshDeltas exact_deltas(const DeltaSource& source) {
 
 // Those of the other encodings, with what there is to say of them.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                         BakedMesh& report) {
+                         std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
   const auto choose = [&] {
-    if (source.plan.encoding == BakeEncoding::kSmallest) return choose_smallest(source, weights, options);
+    if (source.plan.encoding == BakeEncoding::kSmallest)
+      return choose_smallest(source, weights, options, tangent_bytes);
     return source.plan.encoding == BakeEncoding::kHarmless ? choose_harmless(source, weights, options)
                                                            : choose_endpoint(source, weights, options);
   };
@@ -143,10 +145,24 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
   report.left_out = chosen->left_out;
   report.resampling_error = chosen->track_error * kDegreesPerRadian;
   report.largest_error = chosen->fit_error * kDegreesPerRadian;
+  is_of_animations = chosen->animations_only;
   return {[&source, chosen](std::size_t i) { return chosen->own_deltas(source.shading, i); },
           [&source, chosen](std::size_t k) { return chosen->extra_deltas(source.shading, k); },
           {source.shading.mesh, chosen->drivers, source.plan.encoding != BakeEncoding::kEndpoint},
           chosen->changes(source.shading)};
+}
+
+// About how many bytes new tangents take.
+std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>& is_stale) {
+  std::size_t bytes = 0;
+  const SharedParts parts(source.shading);
+  for (std::size_t i = 0; i < is_stale.size(); ++i) {
+    if (!is_stale[i]) continue;
+    TargetDeltas deltas = tangent_deltas(source, i);
+    parts.join(deltas);
+    bytes += parts.bytes_of(deltas);
+  }
+  return bytes;
 }
 
 // How far a bake is: each target of a mesh counts once when its form is chosen, and once when it is written.
@@ -207,16 +223,24 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
-  MeshDeltas deltas = plan.encoding == BakeEncoding::kExact
-                          ? exact_deltas(source)
-                          : chosen_deltas(source, weights.value(), within, baked.report);
+  std::vector<bool> is_stale = find_stale_tangents(source, options.hosts);
+  std::size_t tangent_bytes = bytes_of_tangents(source, is_stale);
+  if (options.most_delta_bytes && tangent_bytes > *options.most_delta_bytes) {
+    baked.report.left_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
+    is_stale.assign(is_stale.size(), false);
+    tangent_bytes = 0;
+  }
+  bool is_of_animations = false;
+  MeshDeltas deltas =
+      plan.encoding == BakeEncoding::kExact
+          ? exact_deltas(source)
+          : chosen_deltas(source, weights.value(), within, tangent_bytes, baked.report, is_of_animations);
   warn_of_choice(mesh, options, baked.report, baked.warnings);
   for (std::size_t k = 0; k < deltas.grown.drivers.size(); ++k)
     baked.report.extras.push_back(deltas.grown.drivers.as_target(k, mesh.target_count + k));
 
   const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
   const bool any_new = deltas.is_new || any_base;
-  const std::vector<bool> is_stale = find_stale_tangents(source, options.hosts);
   baked.report.new_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
   if (!any_new && baked.report.new_tangents == 0) return Success{};
   if (baked.report.new_tangents > 0) writer.add_tangents();
@@ -244,8 +268,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras, deltas.grown.drivers.rest);
-  baked.report.unmarked_nodes = writer.set_mark(
-      {plan.encoding, false, baked.report.extras, plan.encoding == BakeEncoding::kSmallest && options.animations_only});
+  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras, is_of_animations});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.grown = std::move(deltas.grown);
@@ -266,6 +289,26 @@ bool any_tangents(const GltfMesh& mesh) {
                      [](const GltfPrimitive& primitive) { return primitive.has_tangents; });
 }
 
+// Judges a mesh that was baked before, so that a tolerance that it is beyond does not go unnoticed. Keyframes of a
+// sequence mean nothing alone, and cost more: they are judged where a tolerance is asked for.
+Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
+  const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
+  if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))
+    return Success{};
+  baked.report.weighting = weighting_of(shading, options);
+  if (baked.report.weighting == Weighting::kArea) shading.groups.forget_corners();
+  const Result<MeshWeights> weights = read_weights(document, shading);
+  if (!weights) return weights.error();
+  const NormalTerms terms(shading, baked.report.weighting);
+  const Result<MeshPlan> plan =
+      plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
+  if (!plan) return plan.error();
+  const DeltaSource source{shading, terms, plan.value(), shading.normals};
+  baked.report.choices.push_back(judge_baked(source, weights.value(), options));
+  warn_of_choice(document.meshes()[shading.mesh], options, baked.report, baked.warnings);
+  return Success{};
+}
+
 // Nothing for a mesh that does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
                                           Course& course, ZeroVectors& zeros, GltfEdit& edit) {
@@ -283,6 +326,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
     baked.report.already_baked = true;
     baked.report.encoding = mark.encoding;
     baked.report.extras = mark.extras;
+    if (Status status = judge_again(document, options, shading.value(), baked); !status) return status.error();
     return std::optional(std::move(baked));
   }
   if (!any_changes(shading.value())) return std::optional<MeshBake>();
@@ -333,6 +377,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   for (std::size_t n = 0; n < grown.size(); ++n) {
     BakedMesh& report = result.meshes[report_of_grown[n]];
     report.resampling_error += tracks.value().errors[n] * kDegreesPerRadian;
+    report.bytes += tracks.value().bytes[n];
     warn_of_track(document.meshes()[report.mesh], report, tracks.value().errors[n], warnings);
   }
   result.converted_tracks = tracks.value().converted;

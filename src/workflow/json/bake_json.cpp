@@ -56,7 +56,9 @@ Json choices_json(const BakedMesh& mesh) {
                        {"played", shown_json(choice.played)},
                        {"hosts", hosts_json(choice.hosts)},
                        {"within", choice.within},
-                       {"chosen", choice.chosen}});
+                       {"chosen", choice.chosen},
+                       {"animations_only", choice.animations_only},
+                       {"rounded_degrees", choice.rounded}});
   }
   return choices;
 }

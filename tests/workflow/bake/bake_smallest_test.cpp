@@ -1,12 +1,18 @@
 // The smallest form of a bake: extra targets that only the animations of the file drive, within a tolerance and a
-// limit.
+// limit; and what it promises of files that are long, that were baked before, or whose primitives share their arrays.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chronormal/workflow/audit.h"
 #include "tests/support/bake_fixture.h"
+#include "workflow/bake/judge/played_poses.h"
 
 namespace chronormal::bake_smallest_test {
 namespace {
@@ -115,6 +121,212 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   ASSERT_TRUE(baked.ok()) << baked.error;
   EXPECT_FALSE(baked.report.changed);
   EXPECT_EQ(chosen(baked).form, "as it is");
+}
+
+// Two targets that move only between two of very many keys.
+std::vector<float> wink(std::size_t keys, std::size_t at) {
+  std::vector<float> weights(2 * keys, 0.0F);
+  weights[2 * at] = weights[2 * at + 1] = 1;
+  return weights;
+}
+
+std::vector<float> seconds(std::size_t keys) {
+  std::vector<float> times(keys);
+  std::iota(times.begin(), times.end(), 0.0F);
+  return times;
+}
+
+TEST(BakeSmallest, sees_one_wink_in_a_long_animation_and_in_one_of_many) {
+  constexpr std::size_t kKeys = 3000;
+  GltfBuilder one = test::hills_document(2, 11), many = one;
+  one.add_track(0, 0, seconds(kKeys), wink(kKeys, 1501));
+  for (std::size_t clip = 0; clip < 60; ++clip) {
+    if (clip > 0) many.add_animation("clip");
+    std::vector<float> weights = wink(12, 5);
+    if (clip != 41) std::fill(weights.begin(), weights.end(), 0.0F), weights[3] = 0.001F;
+    many.add_track(clip, 0, seconds(12), weights);
+  }
+  for (const GltfBuilder* file : {&one, &many}) {
+    const Baked baked = test::bake_document(*file, smallest(0.5));
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    const BakeChoice& as_it_is = baked.report.meshes[0].choices.front();
+    EXPECT_GT(as_it_is.played.worst, 10) << "else nothing is judged here";
+    EXPECT_FALSE(as_it_is.within);
+    EXPECT_TRUE(chosen(baked).within);
+    const std::size_t animation = file == &one ? 0 : 41;
+    std::vector<test::Pose> poses;
+    for (int step = 0; step <= 100; ++step) {
+      const double time = (file == &one ? 1500.0 : 4.0) + step / 50.0;
+      const std::vector<float> before = baked.before->weights_at(animation, 0, time);
+      poses.push_back({{before.begin(), before.end()}, baked.after->weights_at(animation, 0, time)});
+    }
+    EXPECT_LT(shown_error(test::GltfTruth(*baked.before, 0), *baked.after, 0, poses).worst, 0.6);
+  }
+}
+
+TEST(BakeSmallest, the_keys_that_tell_most_are_those_where_weights_and_products_are_largest) {
+  const std::vector<float> times = seconds(1000), weights = wink(1000, 700);
+  WeightTrack track{GltfInterpolation::kLinear, {}, 2};
+  track.keys.times.assign(times.begin(), times.end());
+  track.keys.values.assign(weights.begin(), weights.end());
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  EXPECT_EQ(telling_keys(track, kAll), (std::vector<std::size_t>{0, 699, 700, 701}));
+  for (std::size_t key = 0; key < 1000; ++key) track.keys.values[2 * key] += key % 2 == 0 ? 0.01 : 0.02;
+  EXPECT_EQ(telling_keys(track, kAll).size(), 1000U);
+  for (const std::size_t most : {1U, 2U, 5U, 30U}) {
+    const std::vector<std::size_t> keys = telling_keys(track, most);
+    EXPECT_LE(keys.size(), most);
+    EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
+    EXPECT_TRUE(std::count(keys.begin(), keys.end(), 699U) + std::count(keys.begin(), keys.end(), 700U) > 0) << most;
+  }
+}
+
+TEST(BakeSmallest, is_not_beaten_by_exact_in_bytes_and_error_at_once_whatever_the_tracks) {
+  for (const char* interpolation : {"LINEAR", "CUBICSPLINE"}) {
+    for (unsigned seed = 40; seed < 52; ++seed) {
+      GltfBuilder builder = test::hills_document(3, seed);
+      const bool is_spline = std::string(interpolation) == "CUBICSPLINE";
+      std::vector<float> weights = random_weights((is_spline ? 9U : 3U) * kTimes.size(), seed);
+      if (seed % 2 == 0)
+        for (float& weight : weights) weight = 4 * weight - 0.5F;
+      builder.add_track(0, 0, kTimes, weights, interpolation);
+      BakeOptions exact = smallest(0.5);
+      exact.encoding = BakeEncoding::kExact;
+      const Baked ours = test::bake_document(builder, smallest(0.5)), theirs = test::bake_document(builder, exact);
+      ASSERT_TRUE(ours.ok() && theirs.ok()) << ours.error << theirs.error;
+      constexpr std::size_t kNames = 8;  // "smallest" is longer than "exact" in two places
+      const bool is_smaller = theirs.bytes.size() + kNames < ours.bytes.size();
+      const double error = test::track_error(ours).worst, of_exact = test::track_error(theirs).worst;
+      EXPECT_FALSE(is_smaller && 1.01 * of_exact < error)
+          << interpolation << ", seed " << seed << ": " << ours.bytes.size() << " bytes, " << error
+          << " degrees against " << theirs.bytes.size() << ", " << of_exact;
+      EXPECT_LT(error, 0.6) << interpolation << ", seed " << seed;
+    }
+  }
+}
+
+TEST(BakeSmallest, a_second_bake_judges_what_the_first_one_wrote_and_says_what_to_do) {
+  const Baked first = test::bake_document(driven_hills("LINEAR", 3), smallest(40));
+  ASSERT_TRUE(first.ok()) << first.error;
+  ASSERT_TRUE(first.report.changed);
+  const Baked same = test::bake_bytes(first.bytes, smallest(40)), nearer = test::bake_bytes(first.bytes, smallest(0.5));
+  ASSERT_TRUE(same.ok() && nearer.ok()) << same.error << nearer.error;
+  EXPECT_TRUE(chosen(same).within);
+  EXPECT_TRUE(same.report.warnings.empty());
+  EXPECT_FALSE(nearer.report.changed);
+  EXPECT_FALSE(chosen(nearer).within);
+  EXPECT_NEAR(chosen(nearer).played.worst, chosen(first).played.worst, 0.3 * chosen(first).played.worst);
+  ASSERT_EQ(nearer.report.warnings.size(), 1U);
+  EXPECT_NE(nearer.report.warnings[0].find("bake the original file with this tolerance"), std::string::npos);
+}
+
+TEST(BakeSmallest, fits_to_animations_alone_are_taken_only_where_they_are_better) {
+  for (const std::size_t hosts : {std::size_t{1}, kHosts.size()}) {
+    for (const unsigned seed : {61U, 62U, 63U}) {
+      GltfBuilder builder = test::hills_document(3, seed);
+      builder.add_track(0, 0, kTimes, random_weights(3 * kTimes.size(), seed));
+      BakeOptions options = smallest(0.5), animations_only;
+      options.hosts = {kHosts.begin(), kHosts.begin() + static_cast<std::ptrdiff_t>(hosts)};
+      animations_only = options;
+      animations_only.animations_only = true;
+      const Baked plain = test::bake_document(builder, options), fitted = test::bake_document(builder, animations_only);
+      ASSERT_TRUE(plain.ok() && fitted.ok()) << plain.error << fitted.error;
+      const BakeChoice &of_plain = chosen(plain), &of_fitted = chosen(fitted);
+      EXPECT_GE(of_fitted.within, of_plain.within) << hosts << " hosts, seed " << seed;
+      if (of_plain.within) {
+        EXPECT_LE(of_fitted.bytes, of_plain.bytes) << hosts << " hosts, seed " << seed;
+      } else {
+        EXPECT_LE(of_fitted.played.mean, 1.001 * of_plain.played.mean) << hosts << " hosts, seed " << seed;
+      }
+      EXPECT_EQ(fitted.mesh()["extras"]["chronormal"].contains("animations_only"), of_fitted.animations_only);
+    }
+  }
+}
+
+TEST(BakeSmallest, writes_one_array_for_primitives_that_share_theirs) {
+  GltfBuilder builder = driven_hills("LINEAR", 3), shared = builder;
+  auto& primitives = shared.json["meshes"][0]["primitives"];
+  test::Hills hills(3);
+  const std::size_t half = hills.corners.size() / 6 * 3;
+  auto second = primitives[0];
+  primitives[0]["indices"] = shared.add_indices(
+      std::vector<std::uint16_t>(hills.corners.begin(), hills.corners.begin() + static_cast<std::ptrdiff_t>(half)));
+  second["indices"] = shared.add_indices(
+      std::vector<std::uint16_t>(hills.corners.begin() + static_cast<std::ptrdiff_t>(half), hills.corners.end()));
+  primitives.push_back(second);
+  const Baked one = test::bake_document(builder, smallest(0.5)), two = test::bake_document(shared, smallest(0.5));
+  ASSERT_TRUE(one.ok() && two.ok()) << one.error << two.error;
+  EXPECT_EQ(two.report.added_bytes, one.report.added_bytes);
+  EXPECT_EQ(chosen(two).bytes, chosen(one).bytes);
+  EXPECT_EQ(two.mesh()["primitives"][0]["targets"], two.mesh()["primitives"][1]["targets"]);
+  EXPECT_LT(test::track_error(two).worst, 0.6);
+}
+
+TEST(BakeSmallest, the_bytes_of_a_plan_are_those_that_are_written) {
+  for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
+    const Baked baked = test::bake_document(driven_hills(interpolation, 3), smallest(0.5));
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    EXPECT_EQ(chosen(baked).bytes, baked.report.meshes[0].bytes) << interpolation;
+  }
+}
+
+TEST(BakeSmallest, a_limit_of_bytes_leaves_out_what_gains_least_and_no_more_than_that) {
+  GltfBuilder builder = test::hills_document(3, 71);
+  builder.add_track(0, 0, kTimes, random_weights(3 * kTimes.size(), 71));
+  const Baked whole = test::bake_document(builder, smallest(0.1));
+  ASSERT_TRUE(whole.ok()) << whole.error;
+  const double before = whole.report.meshes[0].choices.front().played.mean;
+  double mean = before;
+  for (const double part : {0.3, 0.5, 0.7, 0.9}) {
+    BakeOptions options = smallest(0.1);
+    options.most_delta_bytes = static_cast<std::size_t>(part * static_cast<double>(chosen(whole).bytes));
+    const Baked baked = test::bake_document(builder, options);
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    EXPECT_LE(chosen(baked).bytes, *options.most_delta_bytes) << part;
+    EXPECT_LE(baked.report.meshes[0].bytes, *options.most_delta_bytes) << part;
+    EXPECT_LE(chosen(baked).played.mean, 1.001 * mean) << part;
+    mean = chosen(baked).played.mean;
+  }
+  EXPECT_LT(mean, 0.9 * before);
+}
+
+TEST(BakeSmallest, says_where_a_compressor_that_is_named_rounds_by_more_than_the_tolerance) {
+  BakeOptions options = smallest(0.1);
+  options.hosts = find_hosts("meshopt").value();
+  const Baked rounded = test::bake_document(driven_hills("LINEAR", 3), options);
+  ASSERT_TRUE(rounded.ok()) << rounded.error;
+  const BakeChoice& choice = chosen(rounded);
+  EXPECT_GT(choice.rounded, 0.1) << "eight bits are half a degree";
+  EXPECT_EQ(is_beyond_by_rounding(choice, options), choice.within);
+  options.hosts = {kHosts[0]};
+  EXPECT_EQ(chosen(test::bake_document(driven_hills("LINEAR", 3), options)).rounded, 0);
+}
+
+TEST(BakeSmallest, names_of_targets_in_primitives_are_read_and_extended) {
+  GltfBuilder builder = driven_hills("LINEAR", 3);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < kTargets; ++k) names.push_back("t" + std::to_string(k));
+  builder.json["meshes"][0]["primitives"][0]["extras"]["targetNames"] = names;
+  const Baked baked = test::bake_document(builder, smallest(0.5));
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  ASSERT_GT(baked.report.added_targets, 0U);
+  EXPECT_EQ((*baked.source)->meshes()[0].target_names, names);
+  const auto& after = baked.mesh()["primitives"][0]["extras"]["targetNames"];
+  EXPECT_EQ(after.size(), kTargets + baked.report.added_targets);
+  EXPECT_FALSE(baked.mesh()["extras"].contains("targetNames"));
+}
+
+TEST(BakeSmallest, a_result_is_not_worse_because_fewer_normals_are_judged) {
+  MotionError before, after;
+  before.judged = 1000;
+  before.sum = after.sum = 50;
+  after.judged = 500;
+  EXPECT_FALSE(is_worse(after, before));
+  after.sum = 52;
+  EXPECT_TRUE(is_worse(after, before));
+  after.judged = 4000;  // of a track that got keys
+  after.sum = 200;
+  EXPECT_FALSE(is_worse(after, before));
 }
 
 }  // namespace

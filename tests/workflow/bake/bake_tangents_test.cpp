@@ -120,6 +120,22 @@ TEST(BakeTangents, stay_where_they_are_right_and_where_no_host_adds_them_up) {
   EXPECT_FALSE(three.mesh()["primitives"][0]["targets"][0].contains("TANGENT"));
 }
 
+TEST(BakeTangents, count_against_a_limit_of_bytes_and_stay_where_it_has_no_room) {
+  const ShadedMesh mesh = sheet(13, 0);
+  const Baked whole = bake_bytes(mesh.file().glb(), by_area());
+  ASSERT_TRUE(whole.ok()) << whole.error;
+  const std::size_t of_tangents = 2 * 12 * mesh.vertices();
+  for (const std::size_t most : {whole.report.meshes[0].bytes, of_tangents, of_tangents - 1}) {
+    BakeOptions options = by_area();
+    options.most_delta_bytes = most;
+    const Baked baked = bake_bytes(mesh.file().glb(), options);
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    EXPECT_LE(baked.report.meshes[0].bytes, most);
+    EXPECT_EQ(baked.report.meshes[0].new_tangents, most < of_tangents ? 0U : 2U) << most;
+    EXPECT_EQ(baked.report.meshes[0].left_tangents, most < of_tangents ? 2U : 0U) << most;
+  }
+}
+
 // Normals may need nothing where tangents do: then these are all that is written.
 TEST(BakeTangents, are_written_alone_where_the_normals_are_right) {
   ShadedMesh mesh = test::hinge();

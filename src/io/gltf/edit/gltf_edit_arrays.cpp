@@ -47,7 +47,16 @@ void add_place(std::size_t view, std::uint64_t offset, JsonObject& object) {
   if (offset > 0) object.add("byteOffset", std::to_string(offset));
 }
 
+std::size_t bytes_of_index(std::size_t last_used) { return last_used < 256 ? 1 : last_used < 65536 ? 2 : 4; }
+
 }  // namespace
+
+std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count, std::size_t components) {
+  const std::size_t of_value = components * sizeof(float), dense = count * of_value;
+  if (used == 0) return 0;
+  const std::size_t indices = (used * bytes_of_index(last_used) + 3) / 4 * 4, sparse = used * of_value + indices;
+  return sparse + kSparseJson >= dense ? dense : sparse;
+}
 
 NewArrays::Encoded NewArrays::encode(std::span<const float> values, std::size_t components,
                                      const GltfVectors& options) {
@@ -70,9 +79,8 @@ NewArrays::Encoded NewArrays::encode(std::span<const float> values, std::size_t 
     ++used;
     last_used = i;
   }
-  const std::size_t index_size = last_used < 256 ? 1 : last_used < 65536 ? 2 : 4;
-  const std::size_t sparse_bytes = used * (index_size + components * sizeof(float)) + kSparseJson;
-  if (options.dense || (used > 0 && sparse_bytes >= values.size_bytes())) {
+  const std::size_t index_size = bytes_of_index(last_used);
+  if (options.dense || bytes_of_floats(used, last_used, array.count, components) >= values.size_bytes()) {
     result.dense = bytes_of(values);
     return result;
   }

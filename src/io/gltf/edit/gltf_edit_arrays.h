@@ -17,6 +17,11 @@
 
 namespace chronormal::inline internal::gltf {
 
+/// How many bytes an array of floats takes, as the shorter of a dense and a sparse one: of `count` items `used` are other
+/// than zero, the last of them at `last_used`. Zeros alone take none.
+[[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
+                                          std::size_t components);
+
 /// Arrays of one kind share a buffer view: vectors, whose target is ARRAY_BUFFER (section 3.6.2.4 of the
 /// specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
 class NewArrays {

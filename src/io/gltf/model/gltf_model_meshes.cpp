@@ -52,13 +52,18 @@ void Parser::parse_mesh(const JsonView& item) {
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
   mesh.weights.resize(mesh.target_count, 0.0);
-  // Names are a convention, not part of the format: what does not fit is no fault.
-  try {
-    const nlohmann::json& names = document_->at(nlohmann::json::json_pointer(item.pointer() + "/extras/targetNames"));
-    if (names.is_array() && names.size() == mesh.target_count)
-      mesh.target_names = names.get<std::vector<std::string>>();
-  } catch (const nlohmann::json::exception&) {
-    mesh.target_names.clear();
+  // Names are a convention, not part of the format: what does not fit is no fault. Older versions of UniVRM write them
+  // into each primitive.
+  for (const char* const place : {"/extras/targetNames", "/primitives/0/extras/targetNames"}) {
+    const nlohmann::json::json_pointer pointer(item.pointer() + place);
+    if (!mesh.target_names.empty() || !document_->contains(pointer)) continue;
+    try {
+      const nlohmann::json& names = document_->at(pointer);
+      if (names.is_array() && names.size() == mesh.target_count)
+        mesh.target_names = names.get<std::vector<std::string>>();
+    } catch (const nlohmann::json::exception&) {
+      mesh.target_names.clear();
+    }
   }
   read_bake_mark(*document_, item.pointer(), complaint_.place(""), mesh);
   model_.meshes.push_back(std::move(mesh));

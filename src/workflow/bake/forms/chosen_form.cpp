@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "workflow/bake/exact/shared_parts.h"
 #include "workflow/bake/forms/form_poses.h"
 
 namespace chronormal::inline internal {
@@ -84,19 +85,16 @@ VertexColumns ChosenForm::columns(const GltfShading& shading) const {
 }
 
 std::size_t ChosenForm::bytes(const GltfShading& shading) const {
-  constexpr std::size_t kVector = 12, kIndex = 4, kTerm = 40;  // a term stands in the mesh and in its node
+  constexpr std::size_t kTerm = 40;  // a term stands in the mesh and in its node
   std::size_t total = 0;
   for (const GltfExtraTarget& sum : drivers.sums) total += kTerm * (sum.linear.size() + sum.quadratic.size());
-  const auto add = [&](const TargetDeltas& deltas) {
-    for (const std::vector<float>& of_part : deltas.of_parts) {
-      std::size_t used = 0;
-      for (std::size_t n = 0; n < of_part.size(); n += 3)
-        used += of_part[n] != 0 || of_part[n + 1] != 0 || of_part[n + 2] != 0 ? std::size_t{1} : 0;
-      total += std::min(sizeof(float) * of_part.size(), used * (kVector + kIndex));
-    }
+  const SharedParts parts(shading);
+  const auto add = [&](TargetDeltas deltas) {
+    parts.join(deltas);
+    total += parts.bytes_of(deltas);
   };
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
-    if (const std::optional<TargetDeltas> deltas = own_deltas(shading, i)) add(*deltas);
+    if (std::optional<TargetDeltas> deltas = own_deltas(shading, i)) add(std::move(*deltas));
   for (std::size_t k = 0; k < extras_.size(); ++k) add(extra_deltas(shading, k));
   return total;
 }
@@ -158,16 +156,8 @@ ChosenForm choose_of_lengths(const DeltaSource& source, const MeshWeights& weigh
   forms.push_back(by_vertex(all, vertices));
   ExtraDrivers& drivers = result.drivers;
   drivers.formulas = std::move(form.weights);
-  const auto extras_at = [&](std::size_t, double, std::span<const double> own, std::span<double> of_extras) {
-    for (std::size_t k = 0; k < of_extras.size(); ++k)
-      of_extras[k] = drivers.formulas[k].at(own[drivers.formulas[k].i], own[drivers.formulas[k].j]);
-  };
-  for (std::size_t t = 0; t < weights.tracks.size() && !form.extras.empty(); ++t) {
-    if (weights.tracks[t].interpolation != GltfInterpolation::kLinear) continue;
-    drivers.pieces[weights.names[t]] =
-        pieces_of(rights, weights.tracks[t], form.extras.size(), extras_at, vertices, forms[2],
-                  kPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
-  }
+  cut_tracks(rights, weights, hosts, vertices, forms.back(), kPartOfTracks * tolerance / kDegreesPerRadian, drivers,
+             result.track_error);
   const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, drivers, hosts, numbers, sampling);

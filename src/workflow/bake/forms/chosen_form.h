@@ -34,6 +34,7 @@ class ChosenForm {
   std::size_t left_out = 0;         ///< extra targets beyond the limit of the hosts
   double track_error = 0;           ///< radians: of straight pieces between keys, at worst
   double fit_error = 0;             ///< radians: a bound for the deltas of targets alone, of endpoint
+  bool animations_only = false;     ///< its deltas mean nothing for a target alone
   std::vector<BakeChoice> choices;  ///< of smallest: what was looked at
 
   /// What is written for each of the judged vertices.

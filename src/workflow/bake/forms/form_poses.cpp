@@ -13,6 +13,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
+// Of what straight pieces may leave: what cubics may, whose bound is the sum of all that might be off at once.
+constexpr double kPartOfSplines = 2;
 // Poses, as many as these numbers of deltas added up allow.
 constexpr double kSums = 1e9;
 constexpr std::size_t kLeastPoses = 12, kMostPoses = 1500;
@@ -90,6 +92,45 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     }
   });
   return {worst.begin(), worst.end()};
+}
+
+// Cuts the gaps of a LINEAR track until straight pieces of extra weights turn no normal by more than the tolerance
+// (radians), as far as a limit of pieces allows; `left` becomes no less than what they turn.
+std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
+                                     const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
+                                     const VertexColumns& columns, double tolerance, double& left) {
+  const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
+  // No gap gets more pieces than all of them may have.
+  for (std::size_t most = kMostPieces;; --most) {
+    std::vector<std::uint32_t> pieces;
+    std::size_t keys = 1;
+    double of_pieces = 0;
+    for (const double error : of_gaps) {
+      const double count = std::clamp(std::ceil(std::sqrt(error / tolerance)), 1.0, static_cast<double>(most));
+      pieces.push_back(static_cast<std::uint32_t>(count));
+      keys += pieces.back();
+      of_pieces = std::fmax(of_pieces, error / (count * count));
+    }
+    if (most > 1 && keys > std::max(kMostKeys, track.size())) continue;
+    left = std::fmax(left, of_pieces);
+    return pieces;
+  }
+}
+
+// Says of each formula how far a normal turns, at most, where its weight is off by 1 and the normal is as long as the
+// stored one.
+void set_gains(const RightNormals& rights, std::span<const std::uint32_t> vertices, const VertexColumns& columns,
+               ExtraDrivers& drivers) {
+  const std::size_t own = rights.targets();
+  for (ExtraWeight& formula : drivers.formulas) formula.gain = 0;
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    const double size = length(rights.stored(vertices[n]));
+    for (const auto& [column, delta] : columns.of(n)) {
+      if (column < own || !(size > 0)) continue;
+      double& gain = drivers.formulas[column - own].gain;
+      gain = std::fmax(gain, length(to_double(delta)) / size);
+    }
+  }
 }
 
 }  // namespace
@@ -216,9 +257,7 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
     }
     PoseSet& set = sets.emplace_back();
     set.hosts = {h};
-    for (const DrivingTrack& driving : tracks)
-      add_played_poses(driving, hosts[h], sampling.between_keys, sampling.phase,
-                       std::max<std::size_t>(2, sampling.most / tracks.size()), set.poses);
+    add_played_poses(tracks, hosts[h], sampling.between_keys, sampling.phase, sampling.most, set.poses);
   }
   sets.push_back({PoseSet::Kind::kFile, all, extras.standing(weights.poses)});
   if (sampling.animations_only) return sets;
@@ -245,19 +284,38 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   return sets;
 }
 
-std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
-                                     const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
-                                     const VertexColumns& columns, double tolerance, double& left) {
-  const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
-  const double most = std::clamp(static_cast<double>(kMostKeys) / static_cast<double>(track.size()), 1.0,
-                                 static_cast<double>(kMostPieces));
-  std::vector<std::uint32_t> pieces;
-  for (const double error : of_gaps) {
-    const double count = std::clamp(std::ceil(std::sqrt(error / tolerance)), 1.0, std::floor(most));
-    pieces.push_back(static_cast<std::uint32_t>(count));
-    left = std::fmax(left, error / (count * count));
+void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Host> hosts,
+                std::span<const std::uint32_t> vertices, const VertexColumns& columns, double tolerance,
+                ExtraDrivers& drivers, double& left) {
+  const bool play_splines = std::all_of(hosts.begin(), hosts.end(), [](const Host& host) {
+    return host.tracks == TrackRule::kSpecified && host.weight_bits == 32;
+  });
+  const std::size_t extras = drivers.size();
+  for (std::size_t t = 0; t < weights.tracks.size() && extras > 0; ++t) {
+    const WeightTrack& track = weights.tracks[t];
+    if (track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1 && play_splines) {
+      set_gains(rights, vertices, columns, drivers);
+      drivers.spline_tolerance = kPartOfSplines * tolerance;
+    }
+    if (track.interpolation != GltfInterpolation::kLinear || track.size() < 2) continue;
+    const auto curve = drivers.curves.find(weights.names[t]);
+    const CurveNodes nodes(track);
+    const auto extras_at = [&](std::size_t key, double part, std::span<const double> own, std::span<double> of_extras) {
+      if (curve != drivers.curves.end()) return curve->second.at(nodes, key, part, of_extras);
+      for (std::size_t k = 0; k < extras; ++k)
+        of_extras[k] = drivers.formulas[k].at(own[drivers.formulas[k].i], own[drivers.formulas[k].j]);
+    };
+    double of_pieces = 0;
+    std::vector<std::uint32_t> pieces =
+        pieces_of(rights, track, extras, extras_at, vertices, columns, tolerance, of_pieces);
+    std::size_t keys = 1;
+    for (const std::uint32_t count : pieces) keys += count;
+    const std::size_t in_key = track.targets + extras;
+    const bool are_fewer = keys * (in_key + 1) <= 3 * track.size() * in_key;
+    if (play_splines && (!are_fewer || of_pieces > tolerance)) continue;
+    drivers.pieces[weights.names[t]] = std::move(pieces);
+    left = std::fmax(left, of_pieces);
   }
-  return pieces;
 }
 
 std::size_t enough_poses(const GltfShading& shading, std::span<const VertexColumns> forms) {

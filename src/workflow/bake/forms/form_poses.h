@@ -71,12 +71,18 @@ struct Sampling {
 /// Of the tolerance: what straight pieces may leave of it.
 inline constexpr double kPartOfTracks = 0.25;
 
-/// Cuts the gaps of a LINEAR track until straight pieces of extra weights turn no normal by more than the tolerance
-/// (radians), as far as a limit of pieces allows; `left` becomes no less than what they turn.
-[[nodiscard]] std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track,
-                                                   std::size_t extra_count, const ExtrasAt& extras_at,
-                                                   std::span<const std::uint32_t> vertices,
-                                                   const VertexColumns& columns, double tolerance, double& left);
+/// Decides how the tracks of a file carry the weights of extra targets, so that they turn no normal by more than the
+/// tolerance (radians):
+///
+///     LINEAR         straight pieces of each gap, as far as a limit of their number allows; `left` becomes no less than
+///                    what they turn. Where all hosts play cubic splines and a spline takes fewer numbers, or pieces are
+///                    too few, it becomes one, which is exact
+///     CUBICSPLINE    more keys where all hosts play them as the specification says, for formulas
+///
+/// drivers must have its formulas or curves, and columns be the form that they drive.
+void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Host> hosts,
+                std::span<const std::uint32_t> vertices, const VertexColumns& columns, double tolerance,
+                ExtraDrivers& drivers, double& left);
 
 /// Different normals that keep what is stored, though targets move them.
 [[nodiscard]] std::size_t kept_elements(const GltfShading& shading, std::span<const std::uint32_t> vertices,

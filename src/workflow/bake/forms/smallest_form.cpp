@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -24,8 +25,12 @@ namespace {
 constexpr double kSmallestPartOfTracks = 0.2;
 constexpr unsigned kFirstSeed = 1, kSecondSeed = 2;
 
-// Poses that a choice is made by, and how often the limit of bytes is tried.
-constexpr std::size_t kMostPlayed = 200;
+// Poses that a choice is made by: so many, or on small meshes as many as these pairs of a vertex and a pose allow. A
+// form that is within the tolerance there is held against many more, which are all key intervals of all but the longest
+// animations.
+constexpr std::size_t kMostPlayed = 200, kMostPlayedOfSmall = 4000, kPlayedPairs = 4000000;
+constexpr std::size_t kMostVerified = 100000, kVerifiedPairs = 100000000;
+// How often the limit of bytes is tried.
 // Pairs of the targets of a rig that are worth a look.
 constexpr std::size_t kMostSmallestPairs = 48;
 constexpr int kTries = 4;
@@ -35,7 +40,14 @@ constexpr double kAlike = 1e-3;
 
 constexpr std::string_view kQuadratics = "quadratics";
 
+// At how many weights of each target alone a mesh is judged that was baked before.
+constexpr std::size_t kAloneSteps = 8;
+
 enum VertexForm : std::uint8_t { kStored, kOwn, kLowRank };
+
+bool has_new_base(const DeltaSource& source) {
+  return !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
+}
 
 // How many pairs of the targets of a rig move a normal both; a target with itself is one. No more than one beyond the
 // limit are counted.
@@ -144,6 +156,18 @@ ShownErrors errors_in_hosts(const RightNormals& rights, const GltfShading& shadi
   return most;
 }
 
+// The worst along the animations where compressors among the hosts round what they keep.
+double rounded_worst(const RightNormals& rights, const GltfShading& shading, std::span<const Host> hosts,
+                     std::span<const std::uint32_t> vertices, const VertexColumns& form, const PoseList& poses) {
+  double worst = 0;
+  for (const Host& host : hosts) {
+    if (shows_alike(host, judged_as(host)) || host.normals != NormalRule::kClamped) continue;
+    const VertexColumns kept = kept_columns(host, rights, vertices, form);
+    worst = std::fmax(worst, played_errors(rights, vertices, shading.element_of_vertex, kept, poses, host).worst);
+  }
+  return worst;
+}
+
 // By how many bytes the tracks grow that drive extra targets.
 std::size_t bytes_of_tracks(const MeshWeights& weights, const ExtraDrivers& drivers) {
   std::size_t bytes = 0;
@@ -159,17 +183,19 @@ std::size_t bytes_of_tracks(const MeshWeights& weights, const ExtraDrivers& driv
 // Holds one form of a mesh against the next.
 class Choice {
  public:
-  Choice(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options)
+  // Every form takes some bytes for tangents.
+  Choice(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
       : shading_(source.shading),
         weights_(weights),
         options_(options),
         rights_(shading_, source.terms, source.base_normals, source.plan.largest),
-        tolerance_(options.tolerance.value_or(kHarmlessTolerance)) {}
+        tolerance_(options.tolerance.value_or(kHarmlessTolerance)),
+        tangent_bytes_(tangent_bytes) {}
 
   // Looks at a form, and returns the bytes that it takes.
   std::size_t look_at(std::string_view name, ChosenForm form) {
     BakeChoice choice = measured(name, form);
-    const std::size_t bytes = choice.bytes;
+    const std::size_t bytes = choice.bytes - tangent_bytes_;
     take(std::move(choice), std::move(form));
     return bytes;
   }
@@ -179,14 +205,18 @@ class Choice {
   void look_at_best(std::string_view name, const Find& find) {
     std::optional<ChosenForm> nearest;
     BakeChoice of_nearest;
-    const auto is_enough = [&](std::size_t bytes) { return nearest && of_nearest.within && of_nearest.bytes <= bytes; };
+    const auto is_enough = [&](std::size_t bytes) {
+      return nearest && of_nearest.within && of_nearest.bytes - tangent_bytes_ <= bytes;
+    };
     find(is_enough, [&](ChosenForm form) {
       BakeChoice choice = measured(name, form);
-      if (!nearest || is_better(choice, of_nearest)) {
+      const std::size_t bytes = choice.bytes - tangent_bytes_;
+      if (!nearest || is_affordable(choice) > is_affordable(of_nearest) ||
+          (is_affordable(choice) == is_affordable(of_nearest) && is_better(choice, of_nearest))) {
         nearest = std::move(form);
         of_nearest = std::move(choice);
       }
-      return false;
+      return bytes;
     });
     if (nearest) take(std::move(of_nearest), std::move(*nearest));
   }
@@ -199,14 +229,16 @@ class Choice {
     const PoseList poses = played_poses(weights_, {}, shading_.set.targets.size(), kMostPlayed);
     return least_worst(rights_, own.vertices, shading_.element_of_vertex, forms, poses) > tolerance_;
   }
+  // How many bytes deltas and tracks may take.
   [[nodiscard]] std::size_t most_bytes() const {
-    return options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
+    const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
+    return most - std::min(most, tangent_bytes_);
   }
   [[nodiscard]] bool is_within() const { return best_ && of_best_.within; }
   // Whether a form is near enough, of no more bytes than these, and no plan asks for all the others.
   [[nodiscard]] bool is_found() const { return is_found_below(std::numeric_limits<std::size_t>::max()); }
   [[nodiscard]] bool is_found_below(std::size_t bytes) const {
-    return is_within() && of_best_.bytes <= bytes && !options_.plan;
+    return is_within() && of_best_.bytes - tangent_bytes_ <= bytes && !options_.plan;
   }
 
   // Notes what was tried and not made.
@@ -227,25 +259,44 @@ class Choice {
     }
     for (BakeChoice& choice : choices_)
       choice.chosen = !is_draft(choice) && choice.form == of_best_.form && choice.targets == of_best_.targets &&
-                      choice.bytes == of_best_.bytes;
+                      choice.bytes == of_best_.bytes && choice.animations_only == of_best_.animations_only;
+    for (BakeChoice& choice : choices_)
+      if (choice.chosen) choice.rounded = rounded_worst_of_best();
     best_->choices = std::move(choices_);
     return std::move(*best_);
   }
 
  private:
+  [[nodiscard]] double rounded_worst_of_best() const {
+    const PoseList poses = played_poses(weights_, best_->drivers, shading_.set.targets.size(), kMostPlayed);
+    return rounded_worst(rights_, shading_, options_.hosts, best_->judged(), best_->columns(shading_), poses);
+  }
   static bool is_draft(const BakeChoice& choice) { return choice.form == kQuadratics && choice.hosts.empty(); }
   [[nodiscard]] bool is_affordable(const BakeChoice& choice) const {
     const std::size_t targets = shading_.set.targets.size();
-    return choice.bytes <= most_bytes() && choice.targets - targets <= most_extras(options_, targets);
+    return choice.bytes - tangent_bytes_ <= most_bytes() && choice.targets - targets <= most_extras(options_, targets);
   }
 
   [[nodiscard]] BakeChoice measured(std::string_view name, const ChosenForm& form) const {
     const std::size_t targets = shading_.set.targets.size();
     BakeChoice choice{name, targets + form.drivers.size(), form.bytes(shading_), {}, form.hosts, false, false};
-    choice.bytes += bytes_of_tracks(weights_, form.drivers);
-    choice.played = errors_in_hosts(rights_, shading_, options_.hosts, form.judged(), form.columns(shading_),
-                                    played_poses(weights_, form.drivers, targets, kMostPlayed));
+    choice.bytes += bytes_of_tracks(weights_, form.drivers) + tangent_bytes_;
+    choice.animations_only = form.animations_only;
+    const VertexColumns columns = form.columns(shading_);
+    const auto errors_at = [&](const PoseList& poses) {
+      return errors_in_hosts(rights_, shading_, options_.hosts, form.judged(), columns, poses);
+    };
+    const std::size_t vertices = std::max<std::size_t>(1, form.judged().size());
+    const PoseList poses = played_poses(weights_, form.drivers, targets,
+                                        std::clamp(kPlayedPairs / vertices, kMostPlayed, kMostPlayedOfSmall));
+    choice.played = errors_at(poses);
     choice.within = is_affordable(choice) && choice.played.worst <= tolerance_;
+    if (!choice.within) return choice;
+    const PoseList all = played_poses(weights_, form.drivers, targets,
+                                      std::clamp(kVerifiedPairs / vertices, 2 * kMostPlayed, kMostVerified));
+    if (all.size() <= poses.size()) return choice;
+    choice.played = errors_at(all);
+    choice.within = choice.played.worst <= tolerance_;
     return choice;
   }
 
@@ -269,6 +320,7 @@ class Choice {
   const BakeOptions& options_;
   RightNormals rights_;
   double tolerance_;
+  std::size_t tangent_bytes_;
   std::optional<ChosenForm> best_;
   BakeChoice of_best_;
   std::vector<BakeChoice> choices_;
@@ -297,6 +349,7 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
 
   ChosenForm result;
+  result.animations_only = options.animations_only;
   result.vertices_ = own.vertices;
   const std::vector<std::uint32_t>& vertices = result.vertices_;
   result.own_of_form_.push_back(own.deltas);
@@ -321,18 +374,8 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
     drivers.formulas.assign(shares.size(), ExtraWeight{0, 0, 0, 0});
     if (refits_own) result.own_of_form_.push_back(std::move(form.own));
     forms.push_back(by_vertex(columns_of(result.own_of_form_.back(), result.extras_), vertices));
-    for (std::size_t t = 0; t < weights.tracks.size() && !shares.empty(); ++t) {
-      const WeightTrack& track = weights.tracks[t];
-      if (track.interpolation != GltfInterpolation::kLinear) continue;
-      const CurveNodes nodes(track);
-      const ExtraCurves& curves = drivers.curves[weights.names[t]];
-      const auto extras_at = [&](std::size_t key, double part, std::span<const double>, std::span<double> of_extras) {
-        curves.at(nodes, key, part, of_extras);
-      };
-      drivers.pieces[weights.names[t]] =
-          pieces_of(rights, track, shares.size(), extras_at, vertices, forms.back(),
-                    kSmallestPartOfTracks * tolerance / kDegreesPerRadian, result.track_error);
-    }
+    cut_tracks(rights, weights, hosts, vertices, forms.back(), kSmallestPartOfTracks * tolerance / kDegreesPerRadian,
+               drivers, result.track_error);
   }
   const std::vector<bool> is_new = new_bases(source);
   const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
@@ -374,8 +417,9 @@ void look_at_rig(const DeltaSource& source, const MeshWeights& weights, const Ba
   if (chosen.form) choice.look_at(kQuadratics, std::move(*chosen.form));
 }
 
-ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
-  Choice choice(source, weights, options);
+// Looks at all forms but what is stored. looks_at_low_rank: whether extra targets of low rank are among them.
+void look_at_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                   bool looks_at_low_rank, Choice& choice) {
   // About how much of the time has gone by.
   const auto reach = [&options](std::size_t percent) {
     if (options.progress) options.progress(percent, 100);
@@ -383,17 +427,14 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   const FormLengths lengths = lengths_for(options.hosts);
   const std::size_t most = most_extras(options, source.shading.set.targets.size());
   const RightNormals& rights = choice.rights();
-  const bool has_new_base = !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
-  if (!has_new_base) choice.look_at("as it is", keep_stored(source));
-  if (choice.is_found_below(0)) return choice.take_best();
   reach(5);
   const OwnForm own = own_form(source, rights, options, lengths);
   reach(20);
-  const bool has_extras = source.plan.is_driven && source.plan.products_fit && most > 0;
+  const bool has_extras = looks_at_low_rank && source.plan.is_driven && source.plan.products_fit && most > 0;
   // All other forms with extra targets that nothing but animations drive have the deltas of all targets. Where no
   // choice between these and what is stored is near enough, they are looked at when nothing else is.
   const bool waits =
-      has_extras && !has_new_base && !options.plan && lengths == FormLengths::kFree && choice.is_far(own);
+      has_extras && !has_new_base(source) && !options.plan && lengths == FormLengths::kFree && choice.is_far(own);
   std::optional<std::size_t> of_deltas;
   const auto look_at_own = [&] {
     of_deltas = choice.look_at("own deltas", choose_low_rank(source, rights, weights, options, lengths, own, 0));
@@ -401,7 +442,8 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   if (!waits) look_at_own();
   bool have_products = false;
   choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
-    have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), is_enough, take);
+    have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), choice.most_bytes(),
+                                          is_enough, take);
   });
   reach(40);
   if (!of_deltas && choice.is_found()) look_at_own();
@@ -425,7 +467,38 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   // Where nothing is near enough, nothing may be farther off than harmless, but where that has too many products.
   if (!choice.is_found() && !options.animations_only && (have_products || !source.plan.is_driven))
     choice.look_at("harmless", choose_harmless(source, weights, options));
+}
+
+ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                           std::size_t tangent_bytes) {
+  Choice choice(source, weights, options, tangent_bytes);
+  if (!has_new_base(source)) choice.look_at("as it is", keep_stored(source));
+  if (choice.is_found_below(0)) return choice.take_best();
+  // Only hosts that add up deltas of any length gain by deltas that are fitted to animations. What targets alone allow
+  // may be smaller or nearer all the same, but for extra targets of low rank, which fitted deltas need fewer of.
+  if (options.animations_only && source.plan.is_driven && lengths_for(options.hosts) == FormLengths::kFree)
+    look_at_forms(source, weights, options, true, choice);
+  const bool has_fitted = options.animations_only && choice.is_within();
+  BakeOptions for_all = options;
+  for_all.animations_only = false;
+  look_at_forms(source, weights, for_all, !has_fitted || options.plan, choice);
   return choice.take_best();
+}
+
+BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+  const GltfShading& shading = source.shading;
+  MeshWeights played = weights;
+  if (!weights.is_driven) {
+    std::vector<std::size_t> own(shading.own_targets());
+    std::iota(own.begin(), own.end(), std::size_t{0});
+    const PoseList alone = alone_poses(own, shading.set.targets.size(), {}, kAloneSteps, 0);
+    played.poses.insert(played.poses.end(), alone.begin(), alone.end());
+    for (std::vector<double>& pose : played.poses) fill_extra_weights(shading, pose);
+    played.is_driven = true;  // so that no extra target is judged alone
+  }
+  Choice choice(source, played, options, 0);
+  choice.look_at("as it is", keep_stored(source));
+  return choice.take_best().choices.front();
 }
 
 }  // namespace chronormal::inline internal

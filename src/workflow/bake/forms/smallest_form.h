@@ -37,9 +37,13 @@ struct OwnForm {
                                          const OwnForm& own, std::size_t most_extras);
 
 /// Chooses the smallest of all forms that are within the tolerance; where there is none, the nearest one within the
-/// limits of options.
+/// limits of options. tangent_bytes are those that new tangents take beside any form.
 [[nodiscard]] ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights,
-                                         const BakeOptions& options);
+                                         const BakeOptions& options, std::size_t tangent_bytes);
+
+/// Judges what a mesh shows that an earlier bake wrote, by the tolerance and the limits of options; extra targets that
+/// nothing drives are given the weights that their formulas have.
+[[nodiscard]] BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options);
 
 }  // namespace chronormal::inline internal
 

@@ -22,6 +22,8 @@ constexpr double kSlack = 0.01;
 constexpr double kLeastLength = 1e-3;
 // Selections that a limit lets through and that may turn out to be worse than it in the tracks of a file.
 constexpr std::size_t kMostTaken = 24;
+// By which part of a limit of bytes less is tried where tracks turn out to take more than that leaves.
+constexpr std::size_t kPartOfRoom = 8;
 
 // Tangents, squared; below zero of obtuse angles, and infinite where there is no limit.
 float limit_of(double degrees) {
@@ -84,6 +86,17 @@ class Search {
     for (const Kind& kind : kinds_)
       for (const std::uint32_t n : numbers) result += static_cast<double>(kind.deltas.of(n).size());
     return result * static_cast<double>(poses_);
+  }
+
+  // The squares of all turns that a column makes, about.
+  [[nodiscard]] double energy_of(std::size_t column) const {
+    double weights = 0, deltas = 0;
+    for (std::size_t p = 0; p < poses_; ++p) {
+      const auto w = static_cast<double>(weight(p, column));
+      weights += w * w;
+    }
+    for (const Vec3f& delta : offered_.columns[column].deltas.vectors) deltas += static_cast<double>(dot(delta, delta));
+    return weights * deltas;
   }
 
   // The largest turn that a column makes, to order them by.
@@ -230,6 +243,31 @@ Selection spare(const Search& search, const Worthwhile& offered, std::span<const
   return selection;
 }
 
+// Takes the options with the least in them for their bytes out of a selection until it takes no more than the room.
+void leave_out(const Search& search, const Worthwhile& offered, std::size_t room, Selection& selection) {
+  const auto energy_of = [&](const Option& option) {
+    double energy = 0;
+    for (const std::size_t column : option.columns) energy += search.energy_of(column);
+    return energy;
+  };
+  for (std::size_t bytes = bytes_of(offered, selection); bytes > room; bytes = bytes_of(offered, selection)) {
+    double least = INFINITY;
+    std::size_t slot = 0, to = 0;
+    for (std::size_t s = 0; s < selection.size(); ++s) {
+      const Option& now = offered.slots[s][selection[s]];
+      for (std::size_t option = 0; option < selection[s]; ++option) {
+        const Option& other = offered.slots[s][option];
+        if (other.bytes >= now.bytes) continue;
+        const double lost = std::fmax(energy_of(now) - energy_of(other), 0);
+        const double of_byte = lost / static_cast<double>(now.bytes - other.bytes);
+        if (of_byte < least) least = of_byte, slot = s, to = option;
+      }
+    }
+    if (least == INFINITY) return;
+    selection[slot] = to;
+  }
+}
+
 }  // namespace
 
 VertexColumns kept_columns(const Host& host, const RightNormals& rights, std::span<const std::uint32_t> vertices,
@@ -253,19 +291,37 @@ VertexColumns kept_columns(const Host& host, const RightNormals& rights, std::sp
 void find_worthwhile(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                      std::span<const std::uint32_t> element_of_vertex, const Worthwhile& offered,
                      std::span<const AskedPose> poses, std::span<const Host> hosts, double tolerance,
-                     const std::function<bool(const Selection&)>& take) {
+                     std::size_t most_bytes, const std::function<std::optional<std::size_t>(const Selection&)>& take) {
   const Search search(rights, vertices, element_of_vertex, offered, poses, hosts, tolerance);
   double count = 1;
   for (const Slot& slot : offered.slots) count *= static_cast<double>(slot.size());
+  bool is_affordable = false;
+  const auto look_at = [&](const Selection& selection) {
+    const std::optional<std::size_t> bytes = take(selection);
+    is_affordable = is_affordable || (bytes && *bytes <= most_bytes);
+    return bytes.has_value();
+  };
+  Selection last;
   if (count <= kMostSelections && count * search.sums() <= kMostSums) {
     std::size_t taken = 0;
     for (const Selection& selection : all_selections(offered)) {
+      last = selection;
       if (!search.is_near(search.columns_of(selection))) continue;
-      if (take(selection) || ++taken == kMostTaken) return;
+      if (!look_at(selection)) return;
+      if (++taken == kMostTaken) break;
     }
-    return;
+  } else {
+    last = spare(search, offered, vertices);
+    if (!look_at(last)) return;
   }
-  (void)take(spare(search, offered, vertices));
+  for (std::size_t room = most_bytes; !is_affordable && room > 0;
+       room -= std::max<std::size_t>(1, room / kPartOfRoom)) {
+    Selection selection = last;
+    leave_out(search, offered, room, selection);
+    const std::size_t bytes = bytes_of(offered, selection);
+    if (bytes > room || !look_at(selection) || bytes == 0) return;
+    room = std::min(room, bytes);
+  }
 }
 
 }  // namespace chronormal::inline internal

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
+#include "workflow/bake/exact/shared_parts.h"
 #include "workflow/bake/forms/alone_deltas.h"
 #include "workflow/bake/forms/form_poses.h"
 #include "workflow/bake/forms/worthwhile_columns.h"
@@ -81,16 +83,19 @@ class WorthwhileForms {
         tolerance_(options.tolerance.value_or(kHarmlessTolerance)),
         stored_(stored_deltas(source.shading)),
         vertices_(judged_vertices(source, stored_)),
-        numbers_(numbers_of_targets(source, stored_, vertices_)) {
+        numbers_(numbers_of_targets(source, stored_, vertices_)),
+        parts_(source.shading) {
     offer();
   }
 
-  void find(const std::function<bool(std::size_t)>& is_enough, const std::function<bool(ChosenForm)>& take) const {
+  void find(std::size_t most_bytes, const std::function<bool(std::size_t)>& is_enough,
+            const std::function<std::size_t(ChosenForm)>& take) const {
     find_worthwhile(rights_, vertices_, source_.shading.element_of_vertex, offered_, asked_poses(), options_.hosts,
-                    tolerance_, [&](const Selection& selection) {
+                    tolerance_, most_bytes, [&](const Selection& selection) -> std::optional<std::size_t> {
                       std::size_t bytes = 0;
                       for (std::size_t s = 0; s < selection.size(); ++s) bytes += offered_.slots[s][selection[s]].bytes;
-                      return is_enough(bytes) || take(form_of(selection));
+                      if (is_enough(bytes)) return std::nullopt;
+                      return take(form_of(selection));
                     });
   }
 
@@ -100,16 +105,7 @@ class WorthwhileForms {
   [[nodiscard]] std::size_t targets() const { return source_.shading.set.targets.size(); }
 
   // What an array of these deltas takes, as it will be written.
-  [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const {
-    constexpr std::size_t kVector = 12, kSparse = 16;
-    std::size_t total = 0;
-    for (const GltfPart& part : source_.shading.parts) {
-      const auto first = std::lower_bound(deltas.vertices.begin(), deltas.vertices.end(), part.first_vertex);
-      const auto last = std::lower_bound(first, deltas.vertices.end(), part.first_vertex + part.vertex_count);
-      total += std::min(kVector * part.vertex_count, kSparse * static_cast<std::size_t>(last - first));
-    }
-    return total;
-  }
+  [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const { return parts_.bytes_of(deltas); }
 
   std::size_t add(Column column) {
     offered_.columns.push_back(std::move(column));
@@ -218,6 +214,7 @@ class WorthwhileForms {
 
   [[nodiscard]] ChosenForm form_of(const Selection& selection) const {
     ChosenForm result;
+    result.animations_only = options_.animations_only;
     result.vertices_ = vertices_;
     std::vector<VertexVectors>& own = result.own_of_form_.emplace_back();
     for (std::size_t s = 0; s < selection.size(); ++s) {
@@ -234,7 +231,8 @@ class WorthwhileForms {
     }
     const std::vector<VertexColumns> forms = {by_vertex(columns_of(stored_), vertices_),
                                               by_vertex(columns_of(own, result.extras_), vertices_)};
-    cut_tracks(forms[1], result);
+    cut_tracks(rights_, weights_, options_.hosts, vertices_, forms[1], kPartOfTracks * tolerance_ / kDegreesPerRadian,
+               result.drivers, result.track_error);
     const std::vector<bool> is_new = new_bases(source_);
     const HostJudge judge(rights_, vertices_, source_.shading.element_of_vertex, is_new, options_.hosts,
                           std::vector<bool>(options_.hosts.size(), true), tolerance_);
@@ -247,20 +245,6 @@ class WorthwhileForms {
     keep_chosen(result);
     result.kept = kept_elements(source_.shading, vertices_, result.choice_);
     return result;
-  }
-
-  void cut_tracks(const VertexColumns& form, ChosenForm& result) const {
-    ExtraDrivers& drivers = result.drivers;
-    const auto extras_at = [&](std::size_t, double, std::span<const double> own, std::span<double> of_extras) {
-      for (std::size_t k = 0; k < of_extras.size(); ++k)
-        of_extras[k] = drivers.formulas[k].at(own[drivers.formulas[k].i], own[drivers.formulas[k].j]);
-    };
-    for (std::size_t t = 0; t < weights_.tracks.size() && drivers.size() > 0; ++t) {
-      if (weights_.tracks[t].interpolation != GltfInterpolation::kLinear) continue;
-      drivers.pieces[weights_.names[t]] =
-          pieces_of(rights_, weights_.tracks[t], drivers.size(), extras_at, vertices_, form,
-                    kPartOfTracks * tolerance_ / kDegreesPerRadian, result.track_error);
-    }
   }
 
   // Vertices that keep what is stored take no part in extra targets.
@@ -291,16 +275,17 @@ class WorthwhileForms {
   std::vector<VertexVectors> stored_;
   std::vector<std::uint32_t> vertices_;
   std::vector<std::vector<std::uint32_t>> numbers_;
+  SharedParts parts_;
   Worthwhile offered_;
   bool have_extras_ = false;
 };
 
 bool find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                           FormLengths lengths, bool are_near_alone,
+                           FormLengths lengths, bool are_near_alone, std::size_t most_bytes,
                            const std::function<bool(std::size_t bytes)>& is_enough,
-                           const std::function<bool(ChosenForm)>& take) {
+                           const std::function<std::size_t(ChosenForm)>& take) {
   const WorthwhileForms forms(source, weights, options, lengths);
-  if (are_near_alone || forms.have_extras()) forms.find(is_enough, take);
+  if (are_near_alone || forms.have_extras()) forms.find(most_bytes, is_enough, take);
   return forms.have_extras();
 }
 

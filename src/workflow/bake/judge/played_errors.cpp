@@ -28,6 +28,7 @@ struct Found {
 // Some poses at once, and the right normals there.
 struct Batch {
   const RightNormals& rights;
+  const Host& host;
   std::span<const std::vector<double>> poses;
   std::vector<std::vector<Vec3d>> normals;  // of elements
 
@@ -36,7 +37,8 @@ struct Batch {
   void visit(std::uint32_t vertex, std::uint32_t element, std::span<const VertexColumns::Entry> entries,
              const Visit& visit) const {
     std::array<Vec3d, kPosesAtOnce> shown;
-    shown.fill(rights.stored(vertex));
+    const Vec3d base = rights.stored(vertex);
+    shown.fill(host.normals == NormalRule::kClamped ? to_double(kept_normal(host, to_float(base))) : base);
     for (const auto& [column, delta] : entries)
       for (std::size_t p = 0; p < poses.size(); ++p) shown[p] = shown[p] + poses[p][column] * to_double(delta);
     std::array<Vec3d, kPosesAtOnce> right;
@@ -50,10 +52,10 @@ struct Batch {
 
 // Calls body(batch) for all poses, one batch after the other.
 template <class Body>
-void for_batches(const RightNormals& rights, const PoseList& poses, const Body& body) {
+void for_batches(const RightNormals& rights, const Host& host, const PoseList& poses, const Body& body) {
   for (std::size_t first = 0; first < poses.size(); first += kPosesAtOnce) {
     const std::size_t count = std::min(kPosesAtOnce, poses.size() - first);
-    Batch batch{rights, std::span(poses).subspan(first, count), std::vector<std::vector<Vec3d>>(count)};
+    Batch batch{rights, host, std::span(poses).subspan(first, count), std::vector<std::vector<Vec3d>>(count)};
     parallel_for(count, [&](std::size_t p) {
       batch.normals[p] = rights.of_elements(std::span(batch.poses[p]).first(rights.targets()));
     });
@@ -65,15 +67,17 @@ void for_batches(const RightNormals& rights, const PoseList& poses, const Body& 
 
 PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets, std::size_t most) {
   PoseList poses;
+  std::vector<DrivingTrack> tracks;
   for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
-    const ExtendedTrack extended =
-        drivers.extended(weights.names[t], weights.tracks[t], std::numeric_limits<double>::infinity());
+    const WeightTrack& track = weights.tracks[t];
+    const ExtendedTrack extended = drivers.extended(weights.names[t], track, std::numeric_limits<double>::infinity());
     // As many instants of the file's own gaps, whatever they were cut into.
-    const WeightTrack written = as_track(weights.tracks[t], extended, drivers.size());
-    const std::size_t between =
-        std::max<std::size_t>(1, kBetweenKeys * weights.tracks[t].size() / std::max<std::size_t>(1, written.size()));
-    add_played_poses({written, weights.ranges[t]}, Host{}, between, kPhase, most / weights.tracks.size(), poses);
+    WeightTrack written = as_track(track, extended, drivers.size());
+    const double cuts =
+        static_cast<double>(written.size()) / static_cast<double>(std::max<std::size_t>(1, track.size()));
+    tracks.push_back({std::move(written), weights.ranges[t], cuts});
   }
+  add_played_poses(tracks, Host{}, kBetweenKeys, kPhase, most, poses);
   const PoseList standing = drivers.standing(weights.poses);
   poses.insert(poses.end(), standing.begin(),
                standing.begin() + static_cast<std::ptrdiff_t>(std::min(most, standing.size())));
@@ -93,7 +97,7 @@ PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, s
 
 ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                           std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
-                          const PoseList& poses) {
+                          const PoseList& poses, const Host& host) {
   const auto add = [](Found& to, const Found& each) {
     to.count += each.count;
     to.sum += each.sum;
@@ -101,7 +105,7 @@ ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint3
     for (std::size_t b = 0; b < kPlayedBins; ++b) to.bins[b] += each.bins[b];
   };
   Found all;
-  for_batches(rights, poses, [&](const Batch& batch) {
+  for_batches(rights, host, poses, [&](const Batch& batch) {
     const auto look = [&](std::size_t n, Found& found) {
       batch.visit(vertices[n], element_of_vertex[vertices[n]], form.of(n), [&](double error) {
         ++found.count;
@@ -124,7 +128,7 @@ double least_worst(const RightNormals& rights, std::span<const std::uint32_t> ve
                    std::span<const std::uint32_t> element_of_vertex, std::span<const VertexColumns> forms,
                    const PoseList& poses) {
   std::vector<double> worst(vertices.size() * forms.size(), 0.0);
-  for_batches(rights, poses, [&](const Batch& batch) {
+  for_batches(rights, Host{}, poses, [&](const Batch& batch) {
     parallel_each(vertices.size(), kPlayedBlock, [&](std::size_t n) {
       for (std::size_t f = 0; f < forms.size(); ++f) {
         double& most = worst[n * forms.size() + f];

@@ -16,16 +16,17 @@ namespace chronormal::inline internal {
 
 /// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
 /// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end
-/// too, where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind,
-/// evenly.
+/// too, where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind:
+/// of the tracks, those that tell most (telling_keys()), of the others evenly.
 [[nodiscard]] PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets,
                                     std::size_t most);
 
 /// The errors of vertices in a host that adds up what is stored, over pairs of a vertex and a pose in which its normal
-/// n(w) is longer than a thousandth of n(0). On all cores; the same bits on any number of them.
+/// n(w) is longer than a thousandth of n(0). form has the deltas as the host keeps them; the base normals become what it
+/// keeps. On all cores; the same bits on any number of them.
 [[nodiscard]] ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                         std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
-                                        const PoseList& poses);
+                                        const PoseList& poses, const Host& host = {});
 
 /// What no choice of one of these forms for each vertex can be below: the largest of the least errors at worst, over
 /// the same pairs.

@@ -1,15 +1,56 @@
 #include "workflow/bake/judge/played_poses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "workflow/bake/judge/random_numbers.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMostActive = 16;
+constexpr std::size_t kMostActive = 16, kMostProducts = 24;
+
+bool moves_after(const WeightTrack& track, std::size_t key) {
+  if (key + 1 >= track.size() || track.interpolation == GltfInterpolation::kStep) return false;
+  for (std::size_t i = 0; i < track.targets; ++i) {
+    const std::array<double, 4> piece = track.piece(key, i);
+    if (std::any_of(piece.begin(), piece.end(), [&](double b) { return b != piece[0]; })) return true;
+  }
+  return false;
+}
+
+// Whether a track that holds its weights between keys has others before a key.
+bool jumps_at(const WeightTrack& track, std::size_t key) {
+  if (key == 0 || track.interpolation != GltfInterpolation::kStep) return false;
+  for (std::size_t i = 0; i < track.targets; ++i)
+    if (track.value(key, i) != track.value(key - 1, i)) return true;
+  return false;
+}
+
+struct Peak {
+  double size = 0;
+  std::size_t number = 0;
+};
+
+// The targets that a track moves most after a key, with bounds of their weights there.
+std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
+  std::vector<Peak> result;
+  for (std::size_t i = 0; i < track.targets; ++i) {
+    double most = std::fabs(track.value(key, i));
+    if (key + 1 < track.size())
+      for (const double b : track.piece(key, i)) most = std::fmax(most, std::fabs(b));
+    if (most > 0) result.push_back({most, i});
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
+  if (result.size() > kMostProducts) result.resize(kMostProducts);
+  return result;
+}
 
 std::vector<double> mixed(const std::vector<double>& a, const std::vector<double>& b, double part) {
   std::vector<double> result(a.size());
@@ -19,25 +60,66 @@ std::vector<double> mixed(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
-void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t between_keys, double phase,
-                      std::size_t most, PoseList& poses) {
-  const WeightTrack& track = driving.track;
-  const PlayedTrack played(host, track.keys, track.interpolation, track.targets, driving.animation);
-  const bool holds = track.interpolation == GltfInterpolation::kStep || track.size() < 2;
-  const std::size_t in_piece = holds ? 1 : between_keys;
-  const std::size_t total = holds ? track.size() : in_piece * (track.size() - 1) + 1;
-  const std::size_t count = std::min(total, std::max<std::size_t>(most, 1));
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t index = count < 2 ? 0 : n * (total - 1) / (count - 1);
-    const std::size_t key = index / in_piece;
-    double time = track.keys.times[key];
-    if (!holds && key + 1 < track.size()) {
-      const double part = (static_cast<double>(index % in_piece) + phase) / static_cast<double>(in_piece);
-      time += part * (track.keys.times[key + 1] - time);
+std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most) {
+  std::vector<std::size_t> all;
+  bool moved = true;
+  for (std::size_t key = 0; key < track.size(); ++key) {
+    const bool moves = moves_after(track, key);
+    if (moves || moved || jumps_at(track, key)) all.push_back(key);
+    moved = moves;
+  }
+  if (all.size() <= most) return all;
+  // Where each weight, and each product of two, is largest.
+  std::map<std::pair<std::size_t, std::size_t>, Peak> peaks;
+  for (const std::size_t key : all) {
+    const std::vector<Peak> active = active_after(track, key);
+    for (std::size_t a = 0; a < active.size(); ++a) {
+      for (std::size_t b = a; b < active.size(); ++b) {
+        const auto [i, j] = std::minmax(active[a].number, active[b].number);
+        Peak& peak = peaks[{i, j}];
+        const double size = i == j ? active[a].size : active[a].size * active[b].size;
+        if (size > peak.size) peak = {size, key};
+      }
     }
-    std::vector<double> pose(track.targets);
-    played.at(time, false, pose);
-    if (poses.empty() || poses.back() != pose) poses.push_back(std::move(pose));
+  }
+  std::vector<Peak> order;
+  for (const auto& [pair, peak] : peaks) order.push_back(peak);
+  std::stable_sort(order.begin(), order.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
+  std::set<std::size_t> taken;
+  for (std::size_t n = 0; n < order.size() && taken.size() < most - most / 4; ++n) taken.insert(order[n].number);
+  const std::size_t more = most - taken.size();
+  for (std::size_t n = 0; n < more; ++n) taken.insert(all[more < 2 ? 0 : n * (all.size() - 1) / (more - 1)]);
+  return {taken.begin(), taken.end()};
+}
+
+void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
+                      std::size_t most, PoseList& poses) {
+  std::vector<std::size_t> counts;
+  std::size_t total = 0;
+  for (const DrivingTrack& driving : tracks) {
+    counts.push_back(telling_keys(driving.track, std::numeric_limits<std::size_t>::max()).size());
+    total += counts.back();
+  }
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const WeightTrack& track = tracks[t].track;
+    const PlayedTrack played(host, track.keys, track.interpolation, track.targets, tracks[t].animation);
+    const double share = static_cast<double>(most) * static_cast<double>(counts[t]) / static_cast<double>(total);
+    const std::size_t room = std::max<std::size_t>(1, static_cast<std::size_t>(share));
+    const std::vector<std::size_t> keys = telling_keys(track, room);
+    const auto in_gap = static_cast<std::size_t>(static_cast<double>(between_keys) / tracks[t].cuts);
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+      const bool moves = moves_after(track, keys[n]);
+      const std::size_t of_share = (n + 1) * room / keys.size() - n * room / keys.size();
+      const std::size_t count = moves ? std::clamp<std::size_t>(in_gap, 1, of_share) : 1;
+      for (std::size_t step = 0; step < count; ++step) {
+        const double from = track.keys.times[keys[n]];
+        const double part = (static_cast<double>(step) + phase) / static_cast<double>(count);
+        const double time = moves ? from + part * (track.keys.times[keys[n] + 1] - from) : from;
+        std::vector<double> pose(track.targets);
+        played.at(time, false, pose);
+        if (poses.empty() || poses.back() != pose) poses.push_back(std::move(pose));
+      }
+    }
   }
 }
 
@@ -77,8 +159,9 @@ PoseList cross_fades(std::span<const DrivingTrack> tracks, std::size_t count, un
   if (tracks.size() < 2) return poses;
   std::mt19937 random(seed);
   std::vector<PlayedTrack> played;
-  for (const auto& [track, animation] : tracks)
-    played.emplace_back(Host{}, track.keys, track.interpolation, track.targets, animation);
+  for (const DrivingTrack& driving : tracks)
+    played.emplace_back(Host{}, driving.track.keys, driving.track.interpolation, driving.track.targets,
+                        driving.animation);
   const auto at_random = [&](std::size_t t) {
     const double first = tracks[t].track.keys.times.front(), last = tracks[t].track.keys.times.back();
     std::vector<double> pose(tracks[t].track.targets);

@@ -23,11 +23,19 @@ namespace chronormal::inline internal {
 struct DrivingTrack {
   WeightTrack track;
   TimeRange animation;
+  double cuts = 1;  ///< into how many pieces a gap between two keys of the file was cut, on average: each piece gets so
+                    ///< many times fewer instants
 };
 
-/// Adds what a host plays of a track: at `phase` (in [0, 1)) and as many instants as asked for in all between two keys,
-/// evenly; no more than `most` in all, evenly too.
-void add_played_poses(const DrivingTrack& driving, const Host& host, std::size_t between_keys, double phase,
+/// The keys after which a track shows something new, because weights move, come to rest or jump there; ascending. Where
+/// there are more than `most`, those come first after which a weight is as large as nowhere else, or the product of two
+/// weights is, so that a wink in a long animation is among them; the others are taken evenly.
+[[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
+
+/// Adds what a host plays of some tracks: for each telling key, `phase` (in [0, 1)) and as many instants as asked for in
+/// all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then fewer keys.
+/// Each track gets a share by the number of its telling keys, and one pose at least.
+void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
                       std::size_t most, PoseList& poses);
 
 /// Each of these targets alone, at `steps` weights up to 1, the first of which is 1 / steps minus phase / steps.

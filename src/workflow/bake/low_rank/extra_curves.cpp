@@ -11,7 +11,41 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kPiecesOfSplines = 2;
+constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
+// How far a parabola may be from the square of a weight, and at how many places of a piece that is looked at.
+constexpr double kNearParabola = 0.002;
+constexpr int kPlacesOfPiece = 4;
+
+// How far the parabolas of so many pieces of a gap are from the square of a weight, at most.
+double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pieces) {
+  const auto square = [&weight](double t) {
+    const double w = evaluate(weight, t);
+    return w * w;
+  };
+  double most = 0;
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const auto at = [&](double part) { return (static_cast<double>(piece) + part) / static_cast<double>(pieces); };
+    const double a = square(at(0)), m = square(at(0.5)), b = square(at(1));
+    for (int place = 0; place < kPlacesOfPiece; ++place) {
+      const double t = (place + 0.5) / kPlacesOfPiece;
+      const double parabola = (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * m + t * (2 * t - 1) * b;
+      most = std::fmax(most, std::fabs(parabola - square(at(t))));
+    }
+  }
+  return most;
+}
+
+// Into how many pieces each gap of a cubic spline is cut.
+std::size_t pieces_of_spline(const WeightTrack& track) {
+  std::size_t pieces = kFewestPieces;
+  for (std::size_t key = 0; key + 1 < track.size(); ++key) {
+    for (std::size_t i = 0; i < track.targets; ++i) {
+      const std::array<double, 4> weight = track.piece(key, i);
+      while (pieces < kMostPieces && distance_of_parabolas(weight, pieces) > kNearParabola) pieces *= 2;
+    }
+  }
+  return pieces;
+}
 
 float to_file(double number) {
   constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
@@ -27,6 +61,7 @@ struct SplineKey {
 ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& curves, std::size_t most_keys) {
   const CurveNodes nodes(track);
   const std::size_t columns = track.targets + curves.extras, pieces = nodes.pieces();
+  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;
   ExtendedTrack result;
   result.interpolation = GltfInterpolation::kCubicSpline;
   result.keys = pieces * (track.size() - 1) + 1;
@@ -39,7 +74,7 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
   add_key(track.keys.times[0]);
   for (std::size_t i = 0; i < track.targets; ++i) {
     keys[0].value[i] = track.value(0, i);
-    keys[0].in[i] = track.tangent(0, false, i);
+    if (is_spline) keys[0].in[i] = track.tangent(0, false, i);
   }
   for (std::size_t k = 0; k < curves.extras; ++k) keys[0].value[track.targets + k] = curves.of(0)[k];
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
@@ -78,7 +113,8 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
       start = end;
     }
   }
-  for (std::size_t i = 0; i < track.targets; ++i) keys.back().out[i] = track.tangent(track.size() - 1, true, i);
+  for (std::size_t i = 0; i < track.targets && is_spline; ++i)
+    keys.back().out[i] = track.tangent(track.size() - 1, true, i);
   for (const SplineKey& key : keys) {
     result.times.push_back(static_cast<float>(key.time));
     for (const std::vector<double>* numbers : {&key.in, &key.value, &key.out})
@@ -93,7 +129,7 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
 
 CurveNodes::CurveNodes(const WeightTrack& track) : keys_(track.size()), pieces_(0) {
   if (track.size() < 2 || track.interpolation == GltfInterpolation::kStep) return;
-  pieces_ = track.interpolation == GltfInterpolation::kLinear ? 1 : kPiecesOfSplines;
+  pieces_ = track.interpolation == GltfInterpolation::kLinear ? 1 : pieces_of_spline(track);
 }
 
 std::vector<double> CurveNodes::pose(const WeightTrack& track, std::size_t node) const {
@@ -127,7 +163,7 @@ void ExtraCurves::at(const CurveNodes& nodes, std::size_t key, double part, std:
 ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                 std::span<const std::uint32_t> pieces, std::size_t most_keys) {
   const CurveNodes nodes(track);
-  if (track.interpolation == GltfInterpolation::kCubicSpline && track.size() > 1)
+  if (nodes.pieces() > 0 && (track.interpolation == GltfInterpolation::kCubicSpline || pieces.empty()))
     return spline_with_curves(track, curves, most_keys);
   if (nodes.pieces() > 0) {
     const auto extras_at = [&](std::size_t key, double part, std::span<const double>, std::span<double> weights) {
@@ -171,7 +207,7 @@ ExtendedTrack ExtraDrivers::extended(const TrackName& name, const WeightTrack& t
       cut == pieces.end() ? std::span<const std::uint32_t>() : std::span<const std::uint32_t>(cut->second);
   if (curve != curves.end()) return track_with_curves(track, curve->second, of_gaps, most_keys);
   if (cut != pieces.end()) return straight_track(track, formulas, of_gaps, most_keys);
-  return extended_track(track, formulas, tolerance, most_keys);
+  return extended_track(track, formulas, std::fmin(tolerance, spline_tolerance), most_keys);
 }
 
 std::vector<double> ExtraDrivers::with_extras(std::vector<double> own) const {

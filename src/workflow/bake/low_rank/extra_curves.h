@@ -5,7 +5,7 @@
 ///
 ///     STEP, or a single key    a node at each key; curves hold still as the track does
 ///     LINEAR                   a piece for each gap: n(w(t)), and with it all that is missing, is quadratic there
-///     CUBICSPLINE              two pieces for each gap
+///     CUBICSPLINE              two, four or eight pieces for each gap, until a parabola is near the product of two weights
 ///
 /// Threads    pure
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
@@ -64,9 +64,9 @@ struct ExtraCurves {
 using TrackCurves = std::map<TrackName, ExtraCurves>;
 
 /// Extends a track by curves. A LINEAR track stays one, in as many pieces of each gap as are asked for
-/// (straight_track); a cubic spline is cut at the ends of the curves' pieces, where it plays as before, and holds the
-/// curves exactly. Where that takes more than most_keys, the result has no values, but says how many keys it would
-/// have.
+/// (straight_track), or becomes a cubic spline where none are; a cubic spline is cut at the ends of the curves' pieces,
+/// where it plays as before, and holds the curves exactly. Where that takes more than most_keys, the result has no
+/// values, but says how many keys it would have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());
@@ -81,7 +81,9 @@ struct ExtraDrivers {
   std::vector<GltfExtraTarget> sums;  ///< one for each extra target, or none; tracks have curves beside them
   TrackCurves curves;                 ///< for each track; none where there are formulas
   PoseList rest;                      ///< of curves: the weights in the poses that stand still (MeshWeights::poses)
-  TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR
+  TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR; others become cubic splines
+  /// Radians: cubic splines get keys for formulas until no normal is off by more. Infinite: they get none.
+  double spline_tolerance = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }
   /// What the file says of extra target k, which is the target of this index.
@@ -91,7 +93,7 @@ struct ExtraDrivers {
   /// The poses that stand still, with the weights of extra targets behind them.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// A track with the weights of extra targets. Cubic splines get keys for formulas until no normal is off by more than
-  /// tolerance (radians). Where that takes more than most_keys, the result has no values.
+  /// tolerance (radians) or spline_tolerance. Where that takes more than most_keys, the result has no values.
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;
 };

@@ -14,6 +14,7 @@
 #include "core/cholesky.h"
 #include "core/portable_math.h"
 #include "workflow/bake/forms/unit_targets.h"
+#include "workflow/bake/judge/played_poses.h"
 #include "workflow/bake/low_rank/low_rank_fit.h"
 #include "workflow/bake/low_rank/missing_normals.h"
 
@@ -45,9 +46,9 @@ struct Rows {
   std::vector<PlaceOfRows> unseen;    // others, which nothing is fitted to
 };
 
-Rows choose_rows(const FileInstants& all, std::size_t most) {
-  std::size_t step = 1;
-  while (all.poses.size() / step > most) ++step;
+Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks, std::size_t most) {
+  const std::size_t standing = all.first.back();
+  const double share = std::fmin(1, static_cast<double>(most) / static_cast<double>(all.poses.size()));
   Rows rows;
   std::vector<std::optional<std::size_t>> row_of(all.poses.size());
   const auto take = [&](std::size_t instant) {
@@ -56,12 +57,21 @@ Rows choose_rows(const FileInstants& all, std::size_t most) {
     rows.instants.push_back(instant);
   };
   for (std::size_t t = 0; t < all.tracks.size(); ++t) {
-    const std::size_t nodes = all.tracks[t].size(), first = all.first[t];
-    if (all.tracks[t].pieces() == 0) {
-      for (std::size_t node = 0; node < nodes; node += step) take(first + node);
+    const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
+    // A piece between others that are left out takes three rows, and else two.
+    const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
+    std::vector<std::size_t> keys(tracks[t].size());
+    std::iota(keys.begin(), keys.end(), std::size_t{0});
+    if (share < 1) keys = telling_keys(tracks[t], std::max<std::size_t>(1, of_share));
+    if (pieces == 0) {
+      for (const std::size_t key : keys) take(first + key);
       continue;
     }
-    for (std::size_t node = 0; node + 2 < nodes; node += 2 * step) {
+    std::vector<std::size_t> of_pieces;  // the first node of each
+    for (const std::size_t key : keys)
+      for (std::size_t piece = 0; piece < pieces; ++piece) of_pieces.push_back(2 * (pieces * key + piece));
+    for (const std::size_t node : of_pieces) {
+      if (node + 2 >= nodes) continue;
       for (std::size_t n = 0; n < 3; ++n) take(first + node + n);
       const std::array<std::size_t, 3> of = {*row_of[first + node], *row_of[first + node + 1],
                                              *row_of[first + node + 2]};
@@ -71,7 +81,6 @@ Rows choose_rows(const FileInstants& all, std::size_t most) {
         rows.unseen.push_back({of, {(1 - part) * (1 - 2 * part), 4 * part * (1 - part), part * (2 * part - 1)}});
     }
   }
-  const std::size_t standing = all.first.back();
   for (std::size_t n = standing; n < all.poses.size() && n < standing + most; ++n) take(n);
   return rows;
 }
@@ -234,7 +243,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   if (limits.most_extras == 0 || points.empty() || weights.tracks.empty()) return form;
 
   const std::size_t room = kBytes / (6 * sizeof(float) * points.size());
-  const Rows rows = choose_rows(instants, std::clamp(room, kFewestRows, kMostRows));
+  const Rows rows = choose_rows(instants, weights.tracks, std::clamp(room, kFewestRows, kMostRows));
   const auto columns_of_points = [&](std::span<const PointVertices> of) {
     std::vector<std::uint32_t> first;
     for (const PointVertices& point : of) first.push_back(point.front());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <string_view>
@@ -20,6 +21,15 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMorphedAttributes = 8;
 // More extra targets than these make a file large.
 constexpr std::size_t kManyExtras = 64;
+
+std::string number_text(double number) {
+  std::array<char, 32> text{};
+  const auto end = to_chars(text.data(), text.data() + text.size(), number);
+  return {text.data(), end.ptr};
+}
+
+// To hundredths of a degree upwards, so that nothing is said to be within what it is beyond.
+double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
 
 std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
   return mesh.name.empty() ? std::string("mesh ").append(std::to_string(baked.mesh)) : mesh.name;
@@ -90,23 +100,46 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
 
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings) {
+  const std::string tolerance = number_text(options.tolerance.value_or(kHarmlessTolerance));
+  if (baked.left_tangents > 0) {
+    warnings.push_back(
+        {label_of(mesh, baked),
+         (baked.left_tangents == 1 ? std::string("the tangents of 1 target lean")
+                                   : "the tangents of " + std::to_string(baked.left_tangents) + " targets lean") +
+             " on the right normals and stay as they are, because --max-bytes has no room for new ones"});
+  }
   const auto chosen = std::find_if(baked.choices.begin(), baked.choices.end(), [](const auto& c) { return c.chosen; });
-  if (chosen == baked.choices.end() || chosen->within) return;
-  std::string remedies;
-  const auto add_remedy = [&](const char* remedy) { remedies.append(remedies.empty() ? "" : ", ").append(remedy); };
-  if (options.most_targets || options.most_delta_bytes) add_remedy("allow more by --max-targets and --max-bytes");
-  if (std::any_of(options.hosts.begin(), options.hosts.end(),
-                  [](const Host& h) { return h.normals != NormalRule::kSum; }))
-    add_remedy("name the hosts that count by --for");
-  add_remedy("or take a larger --tolerance");
-  std::array<char, 32> tolerance{};
-  const auto end =
-      to_chars(tolerance.data(), tolerance.data() + tolerance.size(), options.tolerance.value_or(kHarmlessTolerance));
-  warnings.push_back({label_of(mesh, baked), std::string("no form that does no harm is within ")
-                                                 .append(tolerance.data(), end.ptr)
-                                                 .append(" degrees throughout, and the nearest was taken (--plan lists "
-                                                         "them all); to come nearer, ")
-                                                 .append(remedies)});
+  if (chosen == baked.choices.end()) return;
+  if (chosen->within) {
+    if (!is_beyond_by_rounding(*chosen, options)) return;
+    std::string names;
+    for (const Host& host : options.hosts)
+      if (host.normals == NormalRule::kClamped)
+        names.append(names.empty() ? "" : ", ").append(host.title).append(" (" + std::to_string(host.bits) + " bits)");
+    warnings.push_back({label_of(mesh, baked), "its normals are within " + tolerance + " degrees, but up to " +
+                                                   number_text(rounded_up(chosen->rounded)) +
+                                                   " degrees off where compression rounds them: " + names});
+    return;
+  }
+  if (baked.already_baked) {
+    warnings.push_back({label_of(mesh, baked), "it was baked before, and its normals are up to " +
+                                                   number_text(rounded_up(chosen->played.worst)) +
+                                                   " degrees off along its animations, beyond the tolerance of " +
+                                                   tolerance + ": bake the original file with this tolerance"});
+    return;
+  }
+  std::vector<std::string> remedies;
+  if (options.most_targets || options.most_delta_bytes)
+    remedies.emplace_back("allow more by --max-targets and --max-bytes");
+  if (options.hosts.size() > 1 && std::any_of(options.hosts.begin(), options.hosts.end(),
+                                              [](const Host& h) { return h.normals != NormalRule::kSum; }))
+    remedies.emplace_back("name the hosts that count by --for");
+  remedies.emplace_back("take a larger --tolerance");
+  std::string text = "no form that does no harm is within " + tolerance +
+                     " degrees throughout, and the nearest was taken (--plan lists them all): ";
+  for (std::size_t n = 0; n < remedies.size(); ++n)
+    text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
+  warnings.push_back({label_of(mesh, baked), std::move(text)});
 }
 
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
@@ -114,7 +147,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
   const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
-  if (!plan.is_driven && is_harmless && baked.extras.empty()) {
+  if (!plan.is_driven && is_harmless && baked.extras.empty() && !baked.has_lone_weight) {
     warn(options.is_posed
              ? "no animation drives its targets, and no extra target that a program could drive brings its poses "
                "nearer: each is right at weight 1"
@@ -169,9 +202,10 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(std::to_string(baked.without_base) +
          " vertices have no area around them in the base: their normals are right but for weights near 0");
   }
-  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes) {
+  // None of the hosts that can be named has so little room, but other ones have.
+  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && options.hosts.size() == kHosts.size()) {
     warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
-         " morphed attributes; hosts that have room for 8 leave out those of the smallest weights");
+         " morphed attributes; other hosts that have room for 8 leave out those of the smallest weights");
   }
   if (shading.split_by_crease > 0) {
     warn(std::to_string(shading.split_by_crease) +

@@ -34,6 +34,7 @@ MeshWriter::MeshWriter(const GltfDocument& document, const GltfShading& shading,
       mesh_(document.meshes()[shading.mesh]),
       zeros_(zeros),
       edit_(edit),
+      parts_(shading),
       pointer_(std::string("/meshes/").append(std::to_string(shading.mesh))),
       part_(mesh_.primitives.size()),
       attributes_(mesh_.primitives.size()) {
@@ -59,6 +60,12 @@ std::string MeshWriter::pointer_of(std::size_t primitive) const {
 }
 
 std::size_t MeshWriter::zeros_of(std::size_t primitive) { return zeros_.of(mesh_.primitives[primitive].vertex_count); }
+
+std::optional<TargetDeltas> MeshWriter::joined(const std::optional<TargetDeltas>& deltas) const {
+  std::optional<TargetDeltas> result = deltas;
+  if (result) parts_.join(*result);
+  return result;
+}
 
 std::size_t MeshWriter::deltas_of(std::size_t primitive, const TargetDeltas& deltas) {
   const std::vector<float>& of_part = deltas.of_parts[*part_[primitive]];
@@ -87,8 +94,9 @@ void MeshWriter::add_tangents() {
     attributes_[p].tangents |= is_shaded(p) && mesh_.primitives[p].has_tangents;
 }
 
-void MeshWriter::write_target(std::size_t target, const std::optional<TargetDeltas>& deltas,
-                              const std::optional<TargetDeltas>& tangents) {
+void MeshWriter::write_target(std::size_t target, const std::optional<TargetDeltas>& of_normals,
+                              const std::optional<TargetDeltas>& of_tangents) {
+  const std::optional<TargetDeltas> deltas = joined(of_normals), tangents = joined(of_tangents);
   for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
@@ -105,7 +113,8 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
   }
 }
 
-void MeshWriter::append_target(const TargetDeltas& deltas) {
+void MeshWriter::append_target(const TargetDeltas& of_normals) {
+  const TargetDeltas deltas = *joined(of_normals);
   for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
     JsonObject target;
     if (attributes_[p].positions) target.add("POSITION", zeros_of(p));
@@ -127,6 +136,13 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const P
       append(std::string("/nodes/").append(std::to_string(n)).append("/weights"), node.weights, ++pose);
   }
   if (mesh_.target_names.empty()) return;
+  // Older versions of UniVRM name targets in each primitive, and not in the mesh.
+  std::vector<std::string> names;
+  if (edit_.has(pointer_ + "/extras/targetNames")) names.push_back(pointer_ + "/extras/targetNames");
+  for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
+    const std::string of_primitive = pointer_of(p) + "/extras/targetNames";
+    if (edit_.has(of_primitive) && edit_.text(of_primitive).starts_with("[")) names.push_back(of_primitive);
+  }
   // Each name once: PlayCanvas finds targets by it.
   std::set<std::string> taken(mesh_.target_names.begin(), mesh_.target_names.end());
   for (const GltfExtraTarget& extra : extras) {
@@ -134,7 +150,7 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const P
     std::string name = of_extra;
     for (std::size_t n = 2; !taken.insert(name).second; ++n)
       name = std::string(of_extra).append(" (").append(std::to_string(n)).append(")");
-    edit_.append(pointer_ + "/extras/targetNames", quote_json(name));
+    for (const std::string& list : names) edit_.append(list, quote_json(name));
   }
 }
 

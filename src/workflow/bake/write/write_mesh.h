@@ -12,6 +12,7 @@
 
 #include "chronormal/io/gltf_edit.h"
 #include "workflow/bake/exact/deltas.h"
+#include "workflow/bake/exact/shared_parts.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {
@@ -47,10 +48,10 @@ class MeshWriter {
   void add_tangents();
   /// Writes the deltas of a target of the mesh, of normals and of tangents; without them it only gets the attributes
   /// that it lacks.
-  void write_target(std::size_t target, const std::optional<TargetDeltas>& deltas,
-                    const std::optional<TargetDeltas>& tangents = {});
+  void write_target(std::size_t target, const std::optional<TargetDeltas>& of_normals,
+                    const std::optional<TargetDeltas>& of_tangents = {});
   /// Adds a target that moves no vertex.
-  void append_target(const TargetDeltas& deltas);
+  void append_target(const TargetDeltas& of_normals);
   /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,
   /// as MeshWeights has these, where no formula gives them.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
@@ -66,6 +67,7 @@ class MeshWriter {
   };
 
   [[nodiscard]] std::string pointer_of(std::size_t primitive) const;
+  [[nodiscard]] std::optional<TargetDeltas> joined(const std::optional<TargetDeltas>& deltas) const;
   [[nodiscard]] std::size_t deltas_of(std::size_t primitive, const TargetDeltas& deltas);
   [[nodiscard]] std::size_t zeros_of(std::size_t primitive);
 
@@ -74,6 +76,7 @@ class MeshWriter {
   const GltfMesh& mesh_;
   ZeroVectors& zeros_;
   GltfEdit& edit_;
+  SharedParts parts_;
   std::string pointer_;                           // of the mesh
   std::vector<std::optional<std::size_t>> part_;  // of each primitive that is shaded
   std::vector<Attributes> attributes_;            // of each primitive

@@ -121,6 +121,7 @@ class TrackWriter {
   TrackWriter(const GltfDocument& document, std::span<const GrownMesh> meshes, double tolerance, GltfEdit& edit)
       : document_(document), meshes_(meshes), tolerance_(tolerance), edit_(edit) {
     written_.errors.resize(meshes.size());
+    written_.bytes.resize(meshes.size());
     for (std::size_t n = 0; n < meshes.size(); ++n) place_of_mesh_[meshes[n].mesh] = n;
   }
 
@@ -195,6 +196,9 @@ class TrackWriter {
             .check(edit_.added_bytes() + bytes_per_key * extended.keys, item(document_.name() + ", /animations", a))
             .error();
       written_.errors[place] = std::fmax(written_.errors[place], extended.error);
+      const std::size_t before =
+          (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1) * weights.targets * weights.size();
+      written_.bytes[place] += sizeof(float) * (extended.values.size() + extended.times.size() - before);
       Sampler& result = found->second;
       result.interpolation = extended.interpolation;
       result.is_converted = extended.interpolation != track.interpolation;

@@ -28,8 +28,9 @@ struct GrownMesh {
                                                           const GltfEdit& edit);
 
 struct WrittenTracks {
-  std::vector<double> errors;  ///< of each mesh: a bound of what inserted keys leave, in radians
-  std::size_t converted = 0;   ///< tracks that are cubic splines now
+  std::vector<double> errors;      ///< of each mesh: a bound of what inserted keys leave, in radians
+  std::vector<std::size_t> bytes;  ///< of each mesh: those by which its tracks grow
+  std::size_t converted = 0;       ///< tracks that are cubic splines now
 };
 
 /// Extends the tracks of all animations that drive these meshes; cubic splines get keys until no normal is off by more
