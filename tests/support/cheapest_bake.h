@@ -7,7 +7,8 @@
 ///     of each pair      nothing | a delta driven by w_i w_j
 ///
 /// Bytes are those of deltas other than the stored ones, 12 for each vertex, or 13 for each that has one where that is
-/// less by what more JSON takes; and those by which the track grows. A LINEAR track is cut into equal pieces for each gap, as many as keep what
+/// less by what more JSON takes; and those by which the track grows. A LINEAR track is cut into equal pieces for each
+/// gap, as many as keep what
 /// straight lines turn in its middle within a quarter of the tolerance.
 ///
 /// A combination does no harm where no normal is off by more than it was, or than the tolerance, along the track and

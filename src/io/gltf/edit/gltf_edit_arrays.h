@@ -17,8 +17,8 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// How many bytes an array of floats takes, as the shorter of a dense and a sparse one: of `count` items `used` are other
-/// than zero, the last of them at `last_used`. Zeros alone take none.
+/// How many bytes an array of floats takes, as the shorter of a dense and a sparse one: of `count` items `used` are
+/// other than zero, the last of them at `last_used`. Zeros alone take none.
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 

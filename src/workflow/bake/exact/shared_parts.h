@@ -1,8 +1,8 @@
 /// Primitives of a mesh that have the same vertices, of which each shows some: exporters cut a mesh into one for each
 /// material, with arrays that all of them share. What a bake writes for them is one array too. Private to workflow.
 ///
-///     part 0 shows the vertices 0, 1, 2 of arrays A, part 1 shows 2, 3, 4 of the same arrays: deltas of both together are
-///     one array, of the vertices 0 to 4
+///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same ones: the deltas of both
+///     are one array, of the vertices 0 to 4
 ///
 /// Threads    pure
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_

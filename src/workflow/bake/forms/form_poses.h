@@ -74,10 +74,10 @@ inline constexpr double kPartOfTracks = 0.25;
 /// Decides how the tracks of a file carry the weights of extra targets, so that they turn no normal by more than the
 /// tolerance (radians):
 ///
-///     LINEAR         straight pieces of each gap, as far as a limit of their number allows; `left` becomes no less than
-///                    what they turn. Where all hosts play cubic splines and a spline takes fewer numbers, or pieces are
-///                    too few, it becomes one, which is exact
-///     CUBICSPLINE    more keys where all hosts play them as the specification says, for formulas
+///     LINEAR        straight pieces of each gap, as far as a limit of their number allows; `left` becomes no less than
+///                   what they turn. Where all hosts play cubic splines and a spline takes fewer numbers, or pieces
+///                   leave too much, the track becomes one, which is exact
+///     CUBICSPLINE   more keys where all hosts play them as the specification says, for formulas
 ///
 /// drivers must have its formulas or curves, and columns be the form that they drive.
 void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Host> hosts,

@@ -33,8 +33,9 @@ constexpr std::size_t kMostVerified = 100000, kVerifiedPairs = 100000000;
 // How often the limit of bytes is tried.
 // Pairs of the targets of a rig that are worth a look.
 constexpr std::size_t kMostSmallestPairs = 48;
-constexpr int kTries = 4;
-constexpr double kPartOfBytes = 0.95;
+constexpr int kTries = 6;
+// Numbers of extra targets that are tried where bytes are limited.
+constexpr std::array<std::size_t, 8> kFewExtras = {1, 2, 3, 4, 6, 8, 16, 32};
 // Means that differ by no more of themselves are alike.
 constexpr double kAlike = 1e-3;
 
@@ -441,10 +442,21 @@ void look_at_forms(const DeltaSource& source, const MeshWeights& weights, const 
   };
   if (!waits) look_at_own();
   bool have_products = false;
-  choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
-    have_products = find_worthwhile_forms(source, weights, options, lengths, choice.is_within(), choice.most_bytes(),
-                                          is_enough, take);
-  });
+  const auto look_at_products = [&](const BakeOptions& limits) {
+    choice.look_at_best("pruned", [&](const auto& is_enough, const auto& take) {
+      have_products |= find_worthwhile_forms(source, weights, limits, lengths, choice.is_within(), choice.most_bytes(),
+                                             is_enough, take);
+    });
+  };
+  look_at_products(options);
+  // Under a limit of bytes a few of the largest corrections may be nearer than what is left of all of them.
+  const bool is_limited = options.most_delta_bytes.has_value();
+  for (const std::size_t extras : kFewExtras) {
+    if (!is_limited || choice.is_within() || !have_products || extras >= most) break;
+    BakeOptions few = options;
+    few.most_targets = source.shading.set.targets.size() + extras;
+    look_at_products(few);
+  }
   reach(40);
   if (!of_deltas && choice.is_found()) look_at_own();
   if (weights.rig && !choice.is_found() && source.plan.products_fit && most > 0)
@@ -459,7 +471,7 @@ void look_at_forms(const DeltaSource& source, const MeshWeights& weights, const 
       const std::size_t bytes = choice.look_at("low rank", std::move(form));
       if (bytes <= choice.most_bytes() || count == 0) break;
       const double part = static_cast<double>(choice.most_bytes()) / static_cast<double>(bytes);
-      extras = static_cast<std::size_t>(kPartOfBytes * part * static_cast<double>(count));
+      extras = std::min(count - 1, static_cast<std::size_t>(std::ceil(part * static_cast<double>(count))));
     }
   }
   reach(90);

@@ -63,10 +63,10 @@ struct Worthwhile {
 };
 
 /// Finds cheap selections that are near enough, the fullest one at last, and calls take(selection) for one after the
-/// other, by their bytes, until that returns nothing; it returns the bytes of what came of a selection. A vertex that is
-/// off by more than the tolerance with all columns need not be nearer without some of them. Where nothing took most_bytes
-/// or fewer, options with the least in them for their bytes are left out until something does. Cost: for each selection
-/// the sums of all columns at all poses
+/// other, by their bytes, until that returns nothing; it returns the bytes of what came of a selection. A vertex that
+/// is off by more than the tolerance with all columns need not be nearer without some of them. Where nothing took
+/// most_bytes or fewer, options with the least in them for their bytes are left out until something does. Cost: for
+/// each selection the sums of all columns at all poses
 void find_worthwhile(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                      std::span<const std::uint32_t> element_of_vertex, const Worthwhile& offered,
                      std::span<const AskedPose> poses, std::span<const Host> hosts, double tolerance,

@@ -19,9 +19,9 @@ namespace chronormal::inline internal {
 /// Calls take(form), which returns the bytes of the form, for forms that should be within the tolerance in all hosts,
 /// from the cheapest one on, until is_enough(bytes) returns true, where no form that is left takes fewer bytes than
 /// these; the last may be off by more, where none is within. Where none of them takes most_bytes or fewer, those come
-/// last that leave out the least for that. Extra targets are left out where nothing drives them, and where there are so many
-/// products that it takes too long to look at them; forms that have none are not looked at where deltas alone are known
-/// to be not near enough. Returns whether there are extra targets among what was looked at.
+/// last that leave out the least for that. Extra targets are left out where nothing drives them, and where there are so
+/// many products that it takes too long to look at them; forms that have none are not looked at where deltas alone are
+/// known to be not near enough. Returns whether there are extra targets among what was looked at.
 bool find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                            FormLengths lengths, bool are_near_alone, std::size_t most_bytes,
                            const std::function<bool(std::size_t bytes)>& is_enough,

@@ -22,8 +22,8 @@ namespace chronormal::inline internal {
                                     std::size_t most);
 
 /// The errors of vertices in a host that adds up what is stored, over pairs of a vertex and a pose in which its normal
-/// n(w) is longer than a thousandth of n(0). form has the deltas as the host keeps them; the base normals become what it
-/// keeps. On all cores; the same bits on any number of them.
+/// n(w) is longer than a thousandth of n(0). form has the deltas as the host keeps them; the base normals become what
+/// it keeps. On all cores; the same bits on any number of them.
 [[nodiscard]] ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                         std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
                                         const PoseList& poses, const Host& host = {});

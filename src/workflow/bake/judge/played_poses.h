@@ -32,8 +32,8 @@ struct DrivingTrack {
 /// weights is, so that a wink in a long animation is among them; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// Adds what a host plays of some tracks: for each telling key, `phase` (in [0, 1)) and as many instants as asked for in
-/// all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then fewer keys.
+/// Adds what a host plays of some tracks: for each telling key, `phase` (in [0, 1)) and as many instants as asked for
+/// in all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then fewer keys.
 /// Each track gets a share by the number of its telling keys, and one pose at least.
 void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
                       std::size_t most, PoseList& poses);

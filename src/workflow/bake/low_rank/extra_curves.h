@@ -5,7 +5,7 @@
 ///
 ///     STEP, or a single key    a node at each key; curves hold still as the track does
 ///     LINEAR                   a piece for each gap: n(w(t)), and with it all that is missing, is quadratic there
-///     CUBICSPLINE              two, four or eight pieces for each gap, until a parabola is near the product of two weights
+///     CUBICSPLINE              two, four or eight pieces for each gap, so that parabolas are near squares of weights
 ///
 /// Threads    pure
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
