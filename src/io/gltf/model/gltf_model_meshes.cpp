@@ -293,10 +293,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
     target.complain("there is no " + pointer);
     return {};
   }
-  if (node) {
-    driven.nodes = {*node};
-    return driven;
-  }
+  if (node) return {{*node}, driven.target};
   std::vector<std::size_t> all;
   for (std::size_t n = 0; mesh && n < model_.nodes.size(); ++n) {
     if (model_.nodes[n].mesh != mesh) continue;
@@ -323,10 +320,8 @@ void Parser::parse_animation(const JsonView& item) {
     const std::optional<JsonView> target = channel.object("target");
     if (!target) return channel.complain("target", "a channel has a target");
     const std::string path = target->required_text("path");
-    Driven driven;
-    if (path == "pointer") {
-      driven = pointed_to(*target);
-    } else if (path == "weights" && target->has("node")) {
+    Driven driven = path == "pointer" ? pointed_to(*target) : Driven{};
+    if (path == "weights" && target->has("node")) {
       if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) driven.nodes.push_back(*node);
     }
     if (driven.nodes.empty()) continue;
