@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "workflow/bake/forms/alone_deltas.h"
+#include "workflow/bake/forms/errors_in_hosts.h"
 #include "workflow/bake/forms/form_poses.h"
 #include "workflow/bake/forms/opposite_targets.h"
 #include "workflow/bake/forms/unit_targets.h"
@@ -132,41 +133,6 @@ void drop_unused(std::span<const std::uint32_t> vertices, std::span<const std::u
   drivers.formulas.assign(kept.size(), ExtraWeight{0, 0, 0, 0});
   if (!kept.empty()) return;
   drivers = ExtraDrivers();
-}
-
-// What a form is off by along the animations: the largest mean, 99.9 % and worst of the named hosts.
-ShownErrors errors_in_hosts(const RightNormals& rights, const GltfShading& shading, std::span<const Host> hosts,
-                            std::span<const std::uint32_t> vertices, const VertexColumns& form, const PoseList& poses) {
-  std::vector<Host> kinds;
-  for (const Host& host : hosts) {
-    const Host kind = judged_as(host);
-    if (std::none_of(kinds.begin(), kinds.end(), [&](const Host& known) { return shows_alike(known, kind); }))
-      kinds.push_back(kind);
-  }
-  ShownErrors most;
-  std::vector<VertexColumns> looked_at;
-  for (const Host& kind : kinds) {
-    VertexColumns kept = kept_columns(kind, rights, vertices, form);
-    const auto is_known = [&](const VertexColumns& known) { return known.entries == kept.entries; };
-    if (std::any_of(looked_at.begin(), looked_at.end(), is_known)) continue;
-    const ShownErrors errors = played_errors(rights, vertices, shading.element_of_vertex, kept, poses);
-    most = {errors.judged, std::fmax(most.mean, errors.mean), std::fmax(most.most, errors.most),
-            std::fmax(most.worst, errors.worst)};
-    looked_at.push_back(std::move(kept));
-  }
-  return most;
-}
-
-// The worst along the animations where compressors among the hosts round what they keep.
-double rounded_worst(const RightNormals& rights, const GltfShading& shading, std::span<const Host> hosts,
-                     std::span<const std::uint32_t> vertices, const VertexColumns& form, const PoseList& poses) {
-  double worst = 0;
-  for (const Host& host : hosts) {
-    if (shows_alike(host, judged_as(host)) || host.normals != NormalRule::kClamped) continue;
-    const VertexColumns kept = kept_columns(host, rights, vertices, form);
-    worst = std::fmax(worst, played_errors(rights, vertices, shading.element_of_vertex, kept, poses, host).worst);
-  }
-  return worst;
 }
 
 // By how many bytes the tracks grow that drive extra targets.
