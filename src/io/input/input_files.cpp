@@ -149,7 +149,7 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
 Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.ends_of_whole || !options.chooses_frames()) return Success{};
-  // Of all keyframes those count that the same step chooses of the whole sequence.
+  // Only the keyframes count that the same step chooses from the whole sequence.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// What is worked on at once by all threads while terms are made, unless one alone takes more.
+// Bounds the memory on which all threads work at once while terms are made, unless one term alone takes more.
 constexpr std::size_t kWorkTogether = std::size_t{2} << 20;
 
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // of an element

@@ -173,7 +173,7 @@ class Build {
   static constexpr std::size_t kWorst = bytes_of(BlockKind::kQuadratic32);
   static constexpr std::size_t kNotKnown = ~std::size_t{0};
 
-  // What one thread knows of the parts that all threads make, to find where its own belong.
+  // Keeps what one thread knows of the parts that all threads make, to find where its own belong.
   class Placer {
    public:
     Placer(std::vector<CurvePart>& parts, std::vector<std::atomic<std::size_t>>& sizes, std::byte* blocks)

@@ -139,7 +139,7 @@ void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   }
 }
 
-// What the rounding of positions to float32 may change in the normal of an element.
+// The most that rounding positions to float32 may change in the normal of an element.
 double rounding_at(const Segment& segment, double t, const Block& block, std::size_t e) {
   double sum = 0;
   for (std::uint32_t i = e == 0 ? 0 : block.face_ends[e - 1]; i < block.face_ends[e]; ++i) {

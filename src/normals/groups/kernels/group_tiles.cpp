@@ -34,7 +34,7 @@ namespace chronormal::inline internal {
 // The rounding error of a sum of up to as many products is below half of this share of its magnitude.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// What a kernel reads.
+// Everything that a kernel reads.
 struct RingInput {
   const Segment& segment;
   const NormalGroups& groups;

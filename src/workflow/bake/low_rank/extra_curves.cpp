@@ -35,7 +35,7 @@ double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pi
   return most;
 }
 
-// Into how many pieces each gap of a cubic spline is cut.
+// The number of pieces into which each gap of a cubic spline is cut.
 std::size_t pieces_of_spline(const WeightTrack& track) {
   std::size_t pieces = kFewestPieces;
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
