@@ -374,10 +374,10 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
 }
 
-TEST_F(HostileCli, a_file_of_the_kernel_without_size_or_end_is_empty) {
-  // Only root may open the log of the kernel, which never ends.
-  const std::string file = ::access("/proc/kmsg", R_OK) == 0 ? "/proc/kmsg" : "/proc/self/mounts";
-  expect(run("inspect " + file, "timeout 20 "), 3, {file.substr(file.rfind('/') + 1)});
+TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
+  expect(run("inspect /proc/self/mounts", "timeout 20 "), 3, {"mounts"});
+  // Only root may open the log of the kernel.
+  if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "no end"});
 }
 
 // Results that are larger than a stack of 256 kB stay on the heap.

@@ -17,8 +17,11 @@
 namespace chronormal {
 namespace {
 
+// What to do where there is nothing to read yet.
+enum class OnWait { kWait, kFail };
+
 // Reads to the end, or until there are more than `most` bytes. False, with errno, on failure.
-bool read_all(int descriptor, std::size_t most, std::string& bytes) {
+bool read_all(int descriptor, OnWait on_wait, std::size_t most, std::string& bytes) {
   constexpr std::size_t kFirstBlock = std::size_t{1} << 16;
   std::size_t size = 0;
   while (size <= most) {
@@ -27,7 +30,7 @@ bool read_all(int descriptor, std::size_t most, std::string& bytes) {
     if (count == 0) break;
     if (count > 0) {
       size += static_cast<std::size_t>(count);
-    } else if (!may_go_on(descriptor, POLLIN)) {
+    } else if ((on_wait == OnWait::kFail && errno == EAGAIN) || !may_go_on(descriptor, POLLIN)) {
       return false;
     }
   }
@@ -57,9 +60,9 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
     return Error{ErrorCode::kFailed, place, "this is a device, not a file, and may have no end"};
 
   FileBytes file;
-  // Some files of the kernel have no size, and /proc/kmsg no end either: there is nothing in such a file.
-  if (S_ISREG(status.st_mode) && status.st_size == 0) return file;
-  if (!is_stdin && S_ISREG(status.st_mode)) {
+  // Files of the kernel have no size. Most have an end, but /proc/kmsg waits for more.
+  if (!is_stdin && S_ISREG(status.st_mode) && status.st_size == 0) (void)::fcntl(descriptor, F_SETFL, O_NONBLOCK);
+  if (!is_stdin && S_ISREG(status.st_mode) && status.st_size > 0) {
     const auto size = static_cast<std::size_t>(status.st_size);
     void* const mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapping != MAP_FAILED) {
@@ -69,7 +72,12 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
       return file;
     }
   }
-  if (!read_all(descriptor, most_of_stream, file.owned_)) return failure(place, errno);
+  const bool has_no_size = !is_stdin && S_ISREG(status.st_mode) && status.st_size == 0;
+  if (!read_all(descriptor, has_no_size ? OnWait::kFail : OnWait::kWait, most_of_stream, file.owned_)) {
+    if (has_no_size && errno == EAGAIN)
+      return Error{ErrorCode::kFailed, place, "this file has no size, and waits for more to read: it may have no end"};
+    return failure(place, errno);
+  }
   if (file.owned_.size() > most_of_stream)
     return Error{ErrorCode::kFailed, place,
                  "there is no end within " + std::to_string(most_of_stream) +

@@ -14,8 +14,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Bounds the memory on which all threads work at once while terms are made, unless one term alone takes more.
-constexpr std::size_t kWorkTogether = std::size_t{2} << 20;
+// The share of all terms that threads work on at once while they are made, unless one term alone takes more.
+constexpr std::size_t kShareOfWork = 8;
 
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // of an element
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
@@ -144,7 +144,7 @@ void BlendStorage::choose(std::vector<Candidate> candidates) {
 }
 
 // Terms of few elements do not occupy several threads, so that many of them are made side by side, as many as work on no
-// more memory together than kWorkTogether.
+// more memory together than work_together_.
 void BlendStorage::fill() {
   std::vector<ListedTerm> terms;
   terms.reserve(cost_.stored_targets + cost_.stored_pairs);
@@ -155,7 +155,7 @@ void BlendStorage::fill() {
   }
   for (std::size_t first = 0; first < terms.size();) {
     std::size_t end = first, work = 0;
-    while (end < terms.size() && (end == first || work + terms[end].work <= kWorkTogether)) work += terms[end++].work;
+    while (end < terms.size() && (end == first || work + terms[end].work <= work_together_)) work += terms[end++].work;
     parallel_for(end - first, [&](std::size_t k) {
       const ListedTerm& term = terms[first + k];
       if (term.pair == nullptr)
@@ -261,8 +261,8 @@ void BlendStorage::update_cost() {
   cost_.bytes = cost_.least_bytes + terms;
   const std::size_t counting =
       terms_.counting_bytes(cost_.overlapping_pairs) + (cost_.overlapping_pairs + targets_.size()) * sizeof(Candidate);
-  const std::size_t work = std::max(largest_work, std::min(all_work, kWorkTogether)) +
-                           (cost_.stored_targets + cost_.stored_pairs) * sizeof(ListedTerm);
+  work_together_ = std::max(largest_work, std::min(all_work, terms / kShareOfWork));
+  const std::size_t work = work_together_ + (cost_.stored_targets + cost_.stored_pairs) * sizeof(ListedTerm);
   cost_.peak_bytes = std::max(cost_.bytes + work, cost_.least_bytes + std::max(terms_.base_bytes(), counting));
 }
 

@@ -83,6 +83,7 @@ class BlendStorage {
   std::vector<std::uint32_t> large_faces_;
   std::vector<StoredTarget> targets_;
   BlendCost cost_;
+  std::size_t work_together_ = 0;  // bytes
 };
 
 }  // namespace chronormal::inline internal

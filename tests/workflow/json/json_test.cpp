@@ -39,6 +39,7 @@ TEST(ResultJson, is_the_text_that_the_program_prints) {
 TEST(ResultJson, passes_only_within_the_tolerance) {
   Audit found;
   found.error.worst = 2;
+  found.error.judged = 1;
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 2))["passed"], true);
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 1))["passed"], false);
   EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, std::nullopt))["passed"].is_null());

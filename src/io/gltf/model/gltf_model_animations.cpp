@@ -1,0 +1,209 @@
+// Reads the animations of weights: channels by node or by KHR_animation_pointer, and those of single weights, which become
+// one track.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "core/charconv.h"
+#include "io/gltf/model/gltf_model_parser.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+// Where KHR_animation_pointer points to; empty where it does not.
+std::string pointer_of(const JsonView& target) {
+  const std::optional<JsonView> extensions = target.object("extensions");
+  const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
+  return extension ? extension->required_text("pointer") : std::string();
+}
+
+std::string node_weights(std::size_t node) { return "/nodes/" + std::to_string(node) + "/weights"; }
+
+}  // namespace
+
+Parser::Driven Parser::pointed_to(const JsonView& target) {
+  const std::string pointer = pointer_of(target);
+  Driven driven;
+  bool is_unknown = false;
+  // Takes "/nodes/3/weights" and "/nodes/3/weights/1" apart.
+  const auto index_in = [&](std::string_view list) -> std::optional<std::size_t> {
+    std::size_t index = 0, weight = 0;
+    if (!pointer.starts_with(list)) return std::nullopt;
+    const char* const end = pointer.data() + pointer.size();
+    const auto [stop, code] = from_chars(pointer.data() + list.size(), end, index);
+    const std::string_view rest(stop, static_cast<std::size_t>(end - stop));
+    constexpr std::string_view kWeights = "/weights";
+    if (code != std::errc() || !rest.starts_with(kWeights)) return std::nullopt;
+    if (rest == kWeights) return index;
+    if (rest[kWeights.size()] != '/') return std::nullopt;
+    const auto [last, weight_code] = from_chars(stop + kWeights.size() + 1, end, weight);
+    is_unknown = weight_code != std::errc() || last != end;
+    driven.target = weight;
+    return index;
+  };
+  const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
+  if (is_unknown || (node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {
+    target.complain("there is no " + pointer);
+    return {};
+  }
+  if (node) return {{*node}, driven.target};
+  std::vector<std::size_t> all;
+  for (std::size_t n = 0; mesh && n < model_.nodes.size(); ++n) {
+    if (model_.nodes[n].mesh != mesh) continue;
+    all.push_back(n);
+    if (model_.nodes[n].weights.empty()) driven.nodes.push_back(n);
+  }
+  // Where all nodes have their own weights, nobody shows those of the mesh.
+  if (driven.nodes.empty() && !all.empty()) driven.nodes.push_back(all.front());
+  return driven;
+}
+
+void Parser::parse_animation(const JsonView& item) {
+  GltfAnimation animation;
+  std::vector<TrackSource> sources;
+  std::set<std::string> known;
+  std::map<std::size_t, std::vector<LoneWeight>> lone;  // of each node
+  animation.name = item.text("name");
+  const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
+  if (!channels || !samplers) return item.complain("an animation has channels and samplers");
+  animation.channel_count = channels->size();
+  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) {
+    const JsonView channel = channels->item(c);
+    if (!channel.is_object()) return;
+    const std::optional<JsonView> target = channel.object("target");
+    if (!target) return channel.complain("target", "a channel has a target");
+    const std::string path = target->required_text("path");
+    Driven driven = path == "pointer" ? pointed_to(*target) : Driven{};
+    if (path == "weights" && target->has("node")) {
+      if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) driven.nodes.push_back(*node);
+    }
+    if (driven.nodes.empty()) continue;
+    for (const std::size_t node : driven.nodes) {
+      if (driven.target)
+        lone[node].push_back({c, *driven.target});
+      else
+        parse_track(item, c, node, animation, sources);
+    }
+    const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
+    if (!known.insert(weights).second) target->complain("the animation has two channels for these weights");
+  }
+  for (auto& [node, weights] : lone) {
+    if (complaint_.first()) return;
+    std::stable_sort(weights.begin(), weights.end(),
+                     [](const LoneWeight& a, const LoneWeight& b) { return a.target < b.target; });
+    assemble_track(item, node, weights, animation, sources);
+  }
+  // The same numbers mean the same weights only by the same interpolation, for as many targets.
+  std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
+  for (std::size_t t = 0; t < sources.size(); ++t) {
+    GltfTrack& track = animation.tracks[t];
+    if (track.is_assembled) {
+      const auto same = std::find_if(sources.begin(), sources.end(), [&](const TrackSource& source) {
+        return source.elements == sources[t].elements && source.rest == sources[t].rest;
+      });
+      track.same_keys_as = static_cast<std::size_t>(same - sources.begin());
+      continue;
+    }
+    const std::size_t target_count = model_.meshes[*model_.nodes[track.node].mesh].target_count;
+    const std::tuple curve(sources[t].input, sources[t].output, track.interpolation, target_count);
+    track.same_keys_as = first_track.try_emplace(curve, t).first->second;
+  }
+  model_.animations.push_back(std::move(animation));
+  model_.track_sources.push_back(std::move(sources));
+}
+
+void Parser::parse_track(const JsonView& animation, std::size_t channel_index, std::size_t node, GltfAnimation& result,
+                         std::vector<TrackSource>& sources) {
+  GltfTrack track;
+  TrackSource source;
+  track.node = node;
+  track.channel = channel_index;
+  const JsonView channel = animation.array("channels")->item(channel_index);
+  if (!channel.required_index("sampler", animation.array("samplers")->size(), "samplers")) return;
+  const std::optional<std::uint32_t> mesh = model_.nodes[node].mesh;
+  const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
+  if (target_count == 0)
+    return channel.object("target")->complain("node", "the node has no mesh with morph targets to give weights to");
+  if (!parse_sampler(animation, channel_index, target_count, track, source)) return;
+  result.tracks.push_back(track);
+  sources.push_back(std::move(source));
+}
+
+void Parser::assemble_track(const JsonView& animation, std::size_t node, const std::vector<LoneWeight>& weights,
+                            GltfAnimation& result, std::vector<TrackSource>& sources) {
+  GltfTrack track;
+  TrackSource source;
+  track.node = node;
+  track.is_assembled = true;
+  const std::optional<std::uint32_t> mesh = model_.nodes[node].mesh;
+  const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
+  for (const LoneWeight& weight : weights) {
+    const JsonView channel = animation.array("channels")->item(weight.channel), target = *channel.object("target");
+    const bool is_known = std::any_of(result.tracks.begin(), result.tracks.end(),
+                                      [&](const GltfTrack& other) { return other.node == node; });
+    if (weight.target >= target_count) return target.complain("there is no " + pointer_of(target));
+    if (is_known || (!source.elements.empty() && source.elements.back().target == weight.target))
+      return target.complain("the animation has two channels for these weights");
+    GltfTrack of_weight;
+    TrackSource read;
+    if (!parse_sampler(animation, weight.channel, 1, of_weight, read)) return;
+    if (source.elements.empty()) {
+      track.channel = weight.channel;
+      track.interpolation = of_weight.interpolation;
+      track.key_count = of_weight.key_count;
+      source = read;
+    }
+    if (of_weight.interpolation != track.interpolation || of_weight.key_count != track.key_count)
+      return target.complain("the channels of single weights of node " + std::to_string(node) +
+                             " have different keys or interpolations, and are read only where they have the same");
+    source.elements.push_back({weight.target, read.input, read.output});
+  }
+  source.rest = model_.nodes[node].weights.empty() ? model_.meshes[*mesh].weights : model_.nodes[node].weights;
+  result.tracks.push_back(track);
+  sources.push_back(std::move(source));
+}
+
+bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index, std::size_t weights_per_key,
+                           GltfTrack& track, TrackSource& source) {
+  const JsonView channel = animation.array("channels")->item(channel_index), samplers = *animation.array("samplers");
+  const std::optional<std::size_t> sampler_index = channel.required_index("sampler", samplers.size(), "samplers");
+  if (!sampler_index) return false;
+  source.sampler = *sampler_index;
+  const JsonView sampler = samplers.item(source.sampler);
+  if (!sampler.is_object()) return false;
+  const std::string interpolation = sampler.text("interpolation");
+  if (interpolation == "STEP")
+    track.interpolation = GltfInterpolation::kStep;
+  else if (interpolation == "CUBICSPLINE")
+    track.interpolation = GltfInterpolation::kCubicSpline;
+  else if (!interpolation.empty() && interpolation != "LINEAR")
+    sampler.complain("interpolation", "the interpolation is none of LINEAR, STEP, CUBICSPLINE");
+  for (const char* key : {"input", "output"}) {
+    if (!sampler.has(key)) sampler.complain(std::string("there is no ").append(key));
+  }
+  const std::optional<std::size_t> input = parse_use(sampler, "input", Use::kTimes);
+  const std::optional<std::size_t> output = parse_use(sampler, "output", Use::kWeights);
+  if (!input || !output) return false;
+
+  track.key_count = model_.accessors[*input].count;
+  const std::size_t per_key = weights_per_key * (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1);
+  const std::size_t given = model_.accessors[*output].count;
+  if (given % per_key != 0 || given / per_key != track.key_count) {
+    sampler.complain("output", "there are " + std::to_string(given) + " weights for " +
+                                   std::to_string(track.key_count) + " keys of " + std::to_string(per_key));
+    return false;
+  }
+  if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {
+    sampler.complain("input", "a cubic spline has two keys or more");
+    return false;
+  }
+  source.input = *input;
+  source.output = *output;
+  return true;
+}
+
+}  // namespace chronormal::inline internal::gltf
