@@ -192,7 +192,7 @@ class Faults : public testing::TestWithParam<Command> {
     ::_exit(98);
   }
 
-  // What one run leaves for the next is of use with its journal alone, which is named last.
+  // A run leaves files for the next one, which are of use with its journal alone; the journal is named last.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();

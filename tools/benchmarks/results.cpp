@@ -211,7 +211,7 @@ const std::string& Results::machine_value(const std::string& key) const {
 
 namespace {
 
-// What `parse` makes of a file; what it throws gets the path.
+// Returns what `parse` makes of a file; an exception of it gets the path.
 template <class Parse>
 auto read(const std::filesystem::path& path, const Parse& parse) {
   try {

@@ -17,7 +17,7 @@
 namespace chronormal {
 namespace {
 
-// What to do where there is nothing to read yet.
+// Says what to do where there is nothing to read yet.
 enum class OnWait { kWait, kFail };
 
 // Reads to the end, or until there are more than `most` bytes. False, with errno, on failure.

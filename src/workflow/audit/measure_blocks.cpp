@@ -151,7 +151,7 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// What a host shows of an element between what it keeps at the ends.
+// Everything that a host shows of an element between what it keeps at the ends.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));

@@ -30,7 +30,7 @@ GltfBuilder document() {
   return builder;
 }
 
-// What is the matter with a document, or with the keys of its first track.
+// Returns the complaint about a document, or the keys of its first track.
 std::string error_of(const GltfBuilder& builder) {
   const GltfFixture file(builder);
   if (!file.ok()) return file.error();

@@ -135,7 +135,7 @@ TEST(BakeCurved, a_part_of_a_sequence_moves_as_the_whole_does) {
   Motion part = whole;
   part.keyframes = {whole.keyframes.begin() + 4, whole.keyframes.begin() + 9};
   part.connect_as_sequence();
-  // What these parabolas have at the ends of the part, times being even.
+  // The velocities of these parabolas at the ends of the part, where times are even.
   for (const std::size_t k : {4U, 8U}) {
     std::vector<float>& velocities = part.keyframes[k - 4].end_velocities;
     for (std::size_t c = 0; c < whole.keyframes[k].positions.size(); ++c)

@@ -202,7 +202,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(std::to_string(baked.without_base) +
          " vertices have no area around them in the base: their normals are right but for weights near 0");
   }
-  // None of the hosts that can be named has so little room, but other ones have.
+  // No host that can be named has so little room, but others have.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && options.hosts.size() == kHosts.size()) {
     warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
          " morphed attributes; other hosts that have room for 8 leave out those of the smallest weights");
