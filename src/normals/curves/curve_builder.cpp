@@ -67,14 +67,8 @@ class EndsSideBySide {
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
-      : limits_(PrecisionLimits::for_tolerance(options.tolerance)),
-        part_(part_size(size)),
-        keeps_near_(reuse != nullptr) {
-    if (reuse != nullptr) {
-      CurveData before = std::exchange(*reuse, {});
-      curves_.blocks = std::move(before.blocks);
-      curves_.near = std::move(before.near);
-    }
+      : limits_(PrecisionLimits::for_tolerance(options.tolerance)), part_(part_size(size)) {
+    if (reuse != nullptr) curves_.blocks = std::exchange(*reuse, {}).blocks;
     curves_.blocks.resize(0);
     curves_.size = size;
     curves_.keeps_lengths = !(options.tolerance > kExactTolerance);
@@ -105,38 +99,37 @@ class Build {
   }
 
   // Makes all parts, each thread from a source of its own and into memory near it. The place of a part is known when
-  // all parts before it are made; then the thread that made the part copies it there. Meanwhile it makes another one, so
-  // that it hardly ever waits.
+  // all parts before it are made; then the thread that made the part copies it there.
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
-    std::vector<std::atomic<std::size_t>> sizes(parts_.size());
-    for (auto& size : sizes) size = kNotKnown;
+    constexpr std::size_t kNotKnown = ~std::size_t{0};
+    std::vector<std::atomic<std::size_t>> ends(parts_.size());
+    for (auto& end : ends) end = kNotKnown;
     std::atomic<std::size_t> next = 0;
-    const std::size_t threads = std::min(thread_count(), parts_.size());
-    if (curves_.near.size() < threads) curves_.near.resize(threads);
-    parallel_for(threads, [&](std::size_t thread) {
+    parallel_for(std::min(thread_count(), parts_.size()), [&](std::size_t) {
       auto source = make_source();
-      Placer placer(parts_, sizes, curves_.blocks.data());
-      auto& near = curves_.near[thread];
-      std::size_t made = 0;  // the number of parts that are in near memory, or were
-      std::optional<std::size_t> waiting;
+      AlignedBytes near(part_ * kWorst);
       for (std::size_t p = next++; p < parts_.size(); p = next++) {
-        AlignedBytes& memory = near[made++ % near.size()];
+        const auto end_at = [&end = ends[p]](std::size_t bytes) {
+          end = bytes;
+          end.notify_all();
+        };
         try {
-          if (memory.size() < part_ * kWorst) memory = AlignedBytes(part_ * kWorst);
-          parts_[p].begin = memory.data();
+          parts_[p].begin = near.data();
           PartBuilder builder(parts_[p], limits_, curves_.keeps_lengths);
           while (builder.make_chunk(source)) {
           }
         } catch (...) {
-          placer.publish(p, 0);  // so that no thread waits for a part that will not come
+          end_at(0);  // so that no thread waits for a part that will not come
           throw;
         }
-        placer.publish(p, parts_[p].bytes);
-        if (waiting) placer.place(*std::exchange(waiting, std::nullopt));
-        if (!placer.try_to_place(p)) waiting = p;
+        // Every earlier part has been begun by some thread.
+        if (p > 0) ends[p - 1].wait(kNotKnown);
+        std::byte* const to = curves_.blocks.data() + (p > 0 ? ends[p - 1].load() : 0);
+        end_at(static_cast<std::size_t>(to - curves_.blocks.data()) + parts_[p].bytes);
+        std::memcpy(to, near.data(), parts_[p].bytes);
+        parts_[p].begin = to;
       }
-      if (waiting) placer.place(*waiting);
     });
   }
 
@@ -165,47 +158,11 @@ class Build {
       }
     }
     curves_.blocks.resize(bytes);
-    if (!keeps_near_) curves_.near = decltype(curves_.near)();
     return std::move(curves_);
   }
 
  private:
   static constexpr std::size_t kWorst = bytes_of(BlockKind::kQuadratic32);
-  static constexpr std::size_t kNotKnown = ~std::size_t{0};
-
-  // Keeps what one thread knows of the parts that all threads make, to find where its own belong.
-  class Placer {
-   public:
-    Placer(std::vector<CurvePart>& parts, std::vector<std::atomic<std::size_t>>& sizes, std::byte* blocks)
-        : parts_(parts), sizes_(sizes), blocks_(blocks) {}
-
-    void publish(std::size_t part, std::size_t bytes) {
-      sizes_[part] = bytes;
-      sizes_[part].notify_all();
-    }
-    // Copies a part to its place, if all parts before it are made.
-    bool try_to_place(std::size_t part) {
-      for (; known_ < part; ++known_) {
-        const std::size_t size = sizes_[known_];
-        if (size == kNotKnown) return false;
-        bytes_ += size;
-      }
-      std::byte* const to = blocks_ + bytes_;
-      std::memcpy(to, parts_[part].begin, parts_[part].bytes);
-      parts_[part].begin = to;
-      return true;
-    }
-    // The same, once they are made: every part before has been begun by some thread.
-    void place(std::size_t part) {
-      while (!try_to_place(part)) sizes_[known_].wait(kNotKnown);
-    }
-
-   private:
-    std::vector<CurvePart>& parts_;
-    std::vector<std::atomic<std::size_t>>& sizes_;
-    std::byte* blocks_;
-    std::size_t known_ = 0, bytes_ = 0;  // parts whose sizes are known, all together
-  };
 
   template <class T>
   static void append(std::vector<T>& to, const std::vector<T>& more) {
@@ -217,7 +174,6 @@ class Build {
   CurveData curves_;
   PrecisionLimits limits_;
   std::size_t part_;  // elements
-  bool keeps_near_;
   std::vector<CurvePart> parts_;
   // For parts that are made one after the other: the next part, its builder, and the bytes of the parts before.
   std::size_t next_ = 0, bytes_ = 0;

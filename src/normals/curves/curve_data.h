@@ -51,8 +51,6 @@ struct CurveData {
   std::vector<ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
-  /// Two parts of each thread that prepares, likewise.
-  std::vector<std::array<AlignedBytes, 2>> near;
 };
 
 /// Writes the unit normals of the flagged elements at t, and returns how many have no direction.
