@@ -1,5 +1,5 @@
+// Lists the terms that a set of targets has, decides which of them are worth their memory, and makes these.
 #include "normals/blend/blend_storage.h"
-#include "chronormal/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
