@@ -85,7 +85,9 @@ inline constexpr double kModelledNearCache = 2 << 20;  // of a core
 inline constexpr double kModelledSharedCache = 32 << 20;
 
 struct StrategyCosts {
-  double prepare = 0;      ///< of curves, once; nanoseconds for each element, on one thread
+  /// Of curves, once; nanoseconds for each element, on one thread. The paths that the first curves for some groups make
+  /// are not counted (NormalCurves::of_groups).
+  double prepare = 0;
   double evaluate = 0;     ///< of curves, each time; likewise
   double recompute = 0;    ///< within 1e-6 rad, each time; likewise
   double in_float32 = 0;   ///< by a FloatRecompute, each time; likewise

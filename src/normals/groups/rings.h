@@ -47,8 +47,8 @@ class Rings {
   Rings() = default;
   /// Makes the paths of all faces, of up to so many points; a face with more gets one that adds nothing. O(corners).
   [[nodiscard]] static Rings of_faces(const Topology& topology, std::size_t most_points = kUnlimited);
-  /// Makes those of the elements of groups, which must be groups of the topology. O(points of all paths), and more by up
-  /// to 64 times where faces around an element do not follow each other.
+  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners. O(points of
+  /// all paths), and more by up to 64 times where faces around an element do not follow each other.
   [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups,
                                        std::size_t most_points = kUnlimited);
 

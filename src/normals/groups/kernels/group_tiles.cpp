@@ -31,7 +31,7 @@
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 namespace chronormal::inline internal {
 
-// The rounding error of a sum of up to as many products is below half of this share of its magnitude.
+// The rounding error of a sum over a path of up to kMostPathPoints is below half of this share of its magnitude.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
 // Everything that a kernel reads.
