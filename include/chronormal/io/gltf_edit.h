@@ -70,7 +70,7 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
   /// From now on leaves out what the changes leave unused: the bytes of arrays that the source refers to and its result
-  /// does not, where buffer 0 of the source and of the result is the BIN chunk. What follows them moves towards the
+  /// does not, in buffers that the result holds itself (BIN chunk, data URIs). What follows them moves towards the
   /// front; all indices stay. Files with extensions that may refer to arrays in ways of their own keep all their bytes.
   void leave_out_unused();
 

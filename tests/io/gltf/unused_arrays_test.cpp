@@ -1,5 +1,5 @@
-// Bytes that an edit leaves without a use are left out of a GLB, and every other array keeps its numbers: a reader of
-// accessors of the test's own compares them.
+// Bytes that an edit leaves without a use are left out of every buffer that the result holds, and every other array keeps
+// its numbers: a reader of accessors of the test's own compares them.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "chronormal/io/gltf_edit.h"
 #include "tests/support/glb_parts.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chronormal::unused_arrays_test {
 namespace {
@@ -172,6 +173,74 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   EXPECT_EQ(after.bin.size(), before.bin.size() + 48 - left_out);
   for (const std::size_t array : {1U, 3U}) EXPECT_EQ(after.elements(array), before.elements(array));
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
+}
+
+// A file in three buffers: one that only its base needs, one of base and old deltas, and one of nothing but old deltas.
+GltfBuilder in_three_buffers(const std::vector<std::string>& uris) {
+  GltfBuilder builder;
+  const std::string one = bytes_of(kBase),
+                    two = bytes_of(kBase) + one + bytes_of<float>({1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4});
+  builder.json["buffers"] = Json::array();
+  for (const auto& [uri, size] : {std::pair(uris[0], one.size()), {uris[1], two.size()}, {uris[2], one.size()}})
+    builder.json["buffers"].push_back({{"byteLength", size}, {"uri", uri}});
+  const auto add = [&](std::size_t buffer, std::size_t offset) {
+    builder.add("bufferViews", {{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", 48}});
+    return builder.add_accessor_over(builder.json["bufferViews"].size() - 1, "VEC3", 5126, 4);
+  };
+  const std::size_t base = add(0, 0), lift = add(1, 0), turn = add(1, 48), last = add(1, 96), other = add(2, 0);
+  add_mesh(builder, base, {{{"POSITION", lift}, {"NORMAL", turn}}, {{"POSITION", last}, {"NORMAL", other}}});
+  return builder;
+}
+
+TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_these_go) {
+  const test::TemporaryFolder folder, elsewhere;
+  const std::string one = bytes_of(kBase), two = one + one + bytes_of<float>({1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4});
+  folder.write("one.bin", one);
+  folder.write("two.bin", two);
+  folder.write("old.bin", one);
+  const auto as_data = [](const std::string& bytes) {
+    return "data:application/octet-stream;base64," + test::base64(bytes);
+  };
+  struct Case {
+    const char* name;
+    std::vector<std::string> uris;
+    std::size_t beside, moved;  // bytes left out of a .gltf beside the source, and of one elsewhere
+  };
+  // All of the 48 bytes in the middle, and of the last buffer all but four, which its views need.
+  for (const Case& of : {Case{"files.gltf", {"one.bin", "two.bin", "old.bin"}, 0, 92},
+                         Case{"mixed.gltf", {"one.bin", as_data(two), "old.bin"}, 48, 92},
+                         Case{"data.gltf", {as_data(one), as_data(two), as_data(one)}, 92, 92}}) {
+    const Result<GltfDocument> document =
+        GltfDocument::open(folder.write(of.name, in_three_buffers(of.uris).json.dump()));
+    ASSERT_TRUE(document.ok()) << document.error().text();
+    for (const auto& [path, left_out] : {std::pair(folder / "out.gltf", of.beside),
+                                         {elsewhere / "out.gltf", of.moved},
+                                         {folder / "out.glb", of.moved},
+                                         {elsewhere / "out.glb", of.moved}}) {
+      SCOPED_TRACE(std::string(of.name) + " to " + path);
+      GltfEdit edit(document.value());
+      for (const char* const k : {"0", "1"})
+        edit.set(std::string("/meshes/0/primitives/0/targets/").append(k).append("/NORMAL"),
+                 std::to_string(edit.add_vectors(std::vector<float>(12, 0.5F))));
+      EXPECT_EQ(edit.unused_bytes(path).value(), 0U) << "unless it is asked for";
+      const std::size_t before = edit.bytes(path).value().size();
+      edit.leave_out_unused();
+      EXPECT_EQ(edit.unused_bytes(path).value(), left_out);
+      ASSERT_TRUE(edit.write(path, true).ok());
+      const Result<GltfDocument> written = GltfDocument::open(path);
+      ASSERT_TRUE(written.ok()) << written.error().text();
+      const auto geometry = written.value().geometry(0, 0, {.shading = true});
+      ASSERT_TRUE(geometry.ok()) << geometry.error().text();
+      EXPECT_EQ(geometry.value().positions, kBase);
+      EXPECT_EQ(geometry.value().targets[0].positions, kBase);
+      EXPECT_EQ(geometry.value().targets[1].positions, (std::vector<float>{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}));
+      EXPECT_EQ(geometry.value().targets[1].normals, std::vector<float>(12, 0.5F));
+      if (left_out > 0) {
+        EXPECT_LT(edit.bytes(path).value().size(), before);
+      }
+    }
+  }
+  EXPECT_EQ(test::read_whole(folder / "two.bin"), two) << "files beside a source stay as they are";
 }
 
 // Random documents: views of one array and of many, strided ones, sparse arrays, and arrays that share bytes.

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/gltf/edit/unused_arrays.h"
 #include "io/gltf/model/gltf_uri.h"
 #include "io/json/json_writer.h"
 
@@ -165,18 +164,19 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// The BIN chunk, which is buffer 0, without the arrays that the changes leave unused.
-Status EditLayout::leave_out_unused() {
-  const std::string_view bin = *document_.chunks.bin;
-  const UnusedArrays unused =
-      find_unused_arrays(document_.model, bin.size(), document_.chunks.json, join(json_.pieces()));
-  unused_bytes_ = unused.bytes();
-  if (unused_bytes_ == 0 || unused_bytes_ == bin.size()) return Success{};
-  for (const auto& [pointer, value] : unused.changes) {
+// Finds the arrays that the changes leave unused in buffers that the result holds itself: holds(buffer) says which.
+template <class Holds>
+Status EditLayout::leave_out_unused(const Holds& holds) {
+  if (!document_.without_unused) return Success{};
+  std::vector<std::optional<std::size_t>> sizes;
+  for (std::size_t i = 0; i < document_.model.buffers.size(); ++i) {
+    const std::size_t size = is_bin(i) ? document_.chunks.bin->size() : document_.model.buffers[i].byte_length;
+    sizes.push_back(holds(i) ? std::optional(size) : std::nullopt);
+  }
+  unused_ = find_unused_arrays(document_.model, sizes, document_.chunks.json, join(json_.pieces()));
+  for (const auto& [pointer, value] : unused_.changes) {
     if (Status status = set(pointer, value); !status) return status;
   }
-  bin_ = unused.kept(bin);
-  bin_size_ -= unused_bytes_;
   return Success{};
 }
 
@@ -197,15 +197,17 @@ Status EditLayout::lay_out_glb() {
   // where that gets more bytes.
   const bool must_move =
       !buffers.empty() && (!document_.is_glb || (target_.stands_alone && any_file) || (grows && !is_bin(0)));
+  const auto is_held = [&](std::size_t i) { return is_bin(i) || (must_move && buffers[i].uri); };
+  if (Status status = leave_out_unused(is_held); !status) return status;
+  if (!buffers.empty() && unused_.bytes_of(0) > 0 && is_bin(0)) {
+    bin_ = unused_.kept(0, *document_.chunks.bin);
+    bin_size_ -= unused_.bytes_of(0);
+  }
   if (must_move) {
     if (Status status = move_buffers(); !status) return status;
   } else if (grows && !buffers.empty()) {
     const Result<std::string_view> bytes = declared_bytes(0);
     if (!bytes) return bytes.error();
-  }
-
-  if (document_.without_unused && !must_move && !buffers.empty() && is_bin(0)) {
-    if (Status status = leave_out_unused(); !status) return status;
   }
   std::size_t arrays_at = 0;
   if (array_bytes > 0) {
@@ -232,7 +234,7 @@ Status EditLayout::lay_out_glb() {
     add_other_members(first_buffer_, {"uri", "byteLength"}, buffer);
     return set("/buffers", std::string("[").append(buffer.text()).append(other_buffers_).append("]"));
   }
-  if (!grows && unused_bytes_ == 0) return Success{};
+  if (!grows && !unused_.any()) return Success{};
   if (!buffers.empty()) return set("/buffers/0/byteLength", std::to_string(bin_size_));
   return append("/buffers", buffer.text());
 }
@@ -252,24 +254,28 @@ Status EditLayout::move_buffers() {
     }
     const Result<std::string_view> bytes = declared_bytes(i);
     if (!bytes) return bytes.error();
-    moved.push_back({0, is_bin(i) ? 0 : add_to_bin(bytes.value(), kViewAlignment)});
+    moved.push_back({0, is_bin(i) ? 0 : add_to_bin("", kViewAlignment)});
+    if (!is_bin(i))
+      for (const std::string_view piece : unused_.kept(i, bytes.value())) (void)add_to_bin(piece, 1);
     if (i == 0) first_buffer_ = document_.source.members(pointer);
   }
   for (std::size_t i = 0; i < document_.model.views.size(); ++i) {
     const std::string pointer = item_pointer("bufferViews", i);
-    if (Status status = move_view(pointer, moved); !status) return status;
+    const auto offset = unused_.any() ? std::optional(unused_.view_offsets[i]) : std::nullopt;
+    if (Status status = move_view(pointer, moved, offset); !status) return status;
     // EXT_meshopt_compression and its successors name the buffer of the compressed bytes.
     for (const JsonMember& extension : document_.source.members(pointer + "/extensions")) {
       if (!extension.value.starts_with('{')) continue;
       const std::string of_extension = with_json_token(pointer + "/extensions", extension.name);
-      if (Status status = move_view(of_extension, moved); !status) return status;
+      if (Status status = move_view(of_extension, moved, std::nullopt); !status) return status;
     }
   }
   return Success{};
 }
 
-// A buffer view, or the extension of one.
-Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved>& moved) {
+// A buffer view, or the extension of one. offset: where it begins in its buffer; nothing: where the source says.
+Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved>& moved,
+                             std::optional<std::size_t> offset) {
   const std::vector<JsonMember> members = document_.source.members(pointer);
   const std::optional<std::size_t> buffer = to_count(find_last(members, "buffer"));
   if (!buffer || *buffer >= moved.size()) return Success{};
@@ -278,19 +284,26 @@ Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved
     if (Status status = set(pointer + "/buffer", std::to_string(to)); !status) return status;
   }
   if (by == 0) return Success{};
-  const std::size_t offset = to_count(find_last(members, "byteOffset")).value_or(0);
-  return set(pointer + "/byteOffset", std::to_string(offset + by));
+  const std::size_t begin = offset ? *offset : to_count(find_last(members, "byteOffset")).value_or(0);
+  return set(pointer + "/byteOffset", std::to_string(begin + by));
 }
 
 Status EditLayout::lay_out_gltf() {
   const std::vector<Buffer>& buffers = document_.model.buffers;
   constexpr const char* kBytes = "application/octet-stream";
+  const auto is_taken_in = [&](std::size_t i) { return is_bin(i) || (target_.stands_alone && refers_to_file(i)); };
+  const auto is_held = [&](std::size_t i) { return is_taken_in(i) || (buffers[i].uri && !refers_to_file(i)); };
+  if (Status status = leave_out_unused(is_held); !status) return status;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    if (!is_bin(i) && !(target_.stands_alone && refers_to_file(i))) continue;
+    const std::size_t left_out = unused_.bytes_of(i);
+    if (!is_taken_in(i) && left_out == 0) continue;
     const Result<std::string_view> bytes = declared_bytes(i);
     if (!bytes) return bytes.error();
-    if (Status status = set(item_pointer("buffers", i) + "/uri", data_uri(kBytes, {bytes.value()})); !status)
-      return status;
+    const std::string pointer = item_pointer("buffers", i);
+    if (Status status = set(pointer + "/uri", data_uri(kBytes, unused_.kept(i, bytes.value()))); !status) return status;
+    if (left_out == 0) continue;
+    const std::size_t size = bytes.value().size() - left_out;
+    if (Status status = set(pointer + "/byteLength", std::to_string(size)); !status) return status;
   }
   if (target_.stands_alone) {
     if (Status status = find_images(); !status) return status;

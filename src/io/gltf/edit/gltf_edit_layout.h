@@ -14,6 +14,7 @@
 #include "io/bytes/file.h"
 #include "io/gltf/decode/gltf_bytes.h"
 #include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/edit/unused_arrays.h"
 #include "io/gltf/glb/glb.h"
 #include "io/gltf/model/gltf_model.h"
 #include "io/json/json_text.h"
@@ -52,7 +53,7 @@ class EditLayout {
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// How many bytes of the source are left out.
-  [[nodiscard]] std::size_t unused_bytes() const noexcept { return unused_bytes_; }
+  [[nodiscard]] std::size_t unused_bytes() const noexcept { return unused_.bytes(); }
   /// The file, in pieces that live as long as this.
   [[nodiscard]] Result<GlbPieces> file() const;
 
@@ -73,10 +74,12 @@ class EditLayout {
   [[nodiscard]] std::size_t add_to_bin(std::string_view bytes, std::size_t alignment);
   [[nodiscard]] Status find_images();
   [[nodiscard]] Status add_arrays(std::size_t buffer, std::size_t offset);
-  [[nodiscard]] Status leave_out_unused();
+  template <class Holds>
+  [[nodiscard]] Status leave_out_unused(const Holds& holds);
   [[nodiscard]] Status lay_out_glb();
   [[nodiscard]] Status move_buffers();
-  [[nodiscard]] Status move_view(const std::string& pointer, const std::vector<Moved>& moved);
+  [[nodiscard]] Status move_view(const std::string& pointer, const std::vector<Moved>& moved,
+                                 std::optional<std::size_t> offset);
   [[nodiscard]] Status lay_out_gltf();
   [[nodiscard]] Status set(const std::string& pointer, std::string json);
   [[nodiscard]] Status append(const std::string& pointer, std::string json);
@@ -86,7 +89,8 @@ class EditLayout {
   LayoutTarget target_;
   JsonText json_;
   std::optional<std::vector<std::string_view>> bin_;
-  std::size_t bin_size_ = 0, unused_bytes_ = 0;
+  std::size_t bin_size_ = 0;
+  UnusedArrays unused_;                   // after leave_out_unused()
   std::vector<JsonMember> first_buffer_;  // after move_buffers(): what buffer 0 was
   std::string other_buffers_;             // after move_buffers(): each with a comma before it
   std::vector<Image> images_;

@@ -182,25 +182,34 @@ class Moved {
 
 }  // namespace
 
-std::size_t UnusedArrays::bytes() const noexcept {
+std::size_t UnusedArrays::bytes_of(std::size_t buffer) const noexcept {
   std::size_t sum = 0;
-  for (const Range& range : ranges) sum += range.end - range.begin;
+  if (any())
+    for (const Range& range : ranges[buffer]) sum += range.end - range.begin;
   return sum;
 }
 
-std::vector<std::string_view> UnusedArrays::kept(std::string_view bin) const {
+std::size_t UnusedArrays::bytes() const noexcept {
+  std::size_t sum = 0;
+  for (std::size_t buffer = 0; buffer < ranges.size(); ++buffer) sum += bytes_of(buffer);
+  return sum;
+}
+
+std::vector<std::string_view> UnusedArrays::kept(std::size_t buffer, std::string_view bytes) const {
   std::vector<std::string_view> result;
   std::size_t begin = 0;
-  for (const Range& range : ranges) {
-    result.push_back(bin.substr(begin, range.begin - begin));
-    begin = range.end;
+  if (any()) {
+    for (const Range& range : ranges[buffer]) {
+      result.push_back(bytes.substr(begin, range.begin - begin));
+      begin = range.end;
+    }
   }
-  result.push_back(bin.substr(begin));
+  result.push_back(bytes.substr(begin));
   return result;
 }
 
-UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::string_view before,
-                                std::string_view after) {
+UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optional<std::size_t>> sizes,
+                                std::string_view before, std::string_view after) {
   const auto parse = [](std::string_view text) {
     return parse_json(text, "", 0, {"", [](std::size_t, const Json&) {}});
   };
@@ -218,7 +227,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
   }
   std::vector<bool> is_whole = is_used;
   std::vector<std::vector<Part>> parts(count);
-  std::vector<Range> used, unused;
+  std::vector<std::vector<Range>> used(sizes.size()), unused(sizes.size());
   std::vector<std::size_t> unused_accessors;
   for (std::size_t a = 0; a < count; ++a) {
     std::optional<std::vector<Part>> found = parts_of(model, model.accessors[a]);
@@ -232,45 +241,54 @@ UnusedArrays find_unused_arrays(const Model& model, std::size_t bin_size, std::s
     for (const Part& part : parts[a]) {
       const BufferView& view = model.views[part.view];
       (is_dead ? is_unused : is_used)[part.view] = true;
-      if (view.buffer == 0) {
-        const std::size_t begin = view.offset + part.offset;
-        (is_dead ? unused : used).push_back({begin, begin + part.length});
-      }
+      const std::size_t begin = view.offset + part.offset;
+      (is_dead ? unused : used)[view.buffer].push_back({begin, begin + part.length});
     }
   }
   for (std::size_t v = 0; v < model.views.size(); ++v) {
     const BufferView& view = model.views[v];
-    if (view.buffer != 0) continue;
-    if (view.offset > bin_size || view.length > bin_size - view.offset) return {};
+    const std::optional<std::size_t>& size = sizes[view.buffer];
+    if (size && (view.offset > *size || view.length > *size - view.offset)) return {};
     const Range whole{view.offset, view.offset + view.length};
     if (is_unused[v] && !is_used[v])
-      unused.push_back(whole);
+      unused[view.buffer].push_back(whole);
     else if (is_whole[v] || !is_used[v])
-      used.push_back(whole);
+      used[view.buffer].push_back(whole);
   }
 
   UnusedArrays result;
-  result.ranges = aligned_difference(joined(std::move(unused)), joined(std::move(used)));
-  if (result.ranges.empty()) return {};
-  const Moved moved(result.ranges);
+  std::vector<Moved> moved;
+  result.ranges.resize(sizes.size());
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    std::vector<Range>& ranges = result.ranges[b];
+    if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
+    if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
+      ranges.front().begin = kRangeAlignment;  // it is one range then
+      if (ranges.front().begin == ranges.front().end) ranges.clear();
+    }
+    moved.emplace_back(ranges);
+  }
+  if (result.bytes() == 0) return {};
   const auto set = [&](const std::string& pointer, std::size_t offset, std::size_t now) {
     if (now != offset) result.changes.emplace_back(pointer, std::to_string(now));
   };
   for (std::size_t v = 0; v < model.views.size(); ++v) {
     const BufferView& view = model.views[v];
-    if (view.buffer != 0) continue;
     const std::string pointer = "/bufferViews/" + std::to_string(v);
-    if (is_unused[v] && !is_used[v]) {
-      result.changes.emplace_back(pointer, R"({"buffer":0,"byteLength":1})");
+    if (is_unused[v] && !is_used[v] && !result.ranges[view.buffer].empty()) {
+      result.view_offsets.push_back(0);
+      result.changes.emplace_back(pointer, R"({"buffer":)" + std::to_string(view.buffer) + R"(,"byteLength":1})");
       continue;
     }
-    const std::size_t begin = moved(view.offset);
+    const std::size_t begin = moved[view.buffer](view.offset);
+    result.view_offsets.push_back(begin);
     set(pointer + "/byteOffset", view.offset, begin);
-    set(pointer + "/byteLength", view.length, moved(view.offset + view.length) - begin);
+    set(pointer + "/byteLength", view.length, moved[view.buffer](view.offset + view.length) - begin);
   }
   const auto set_part = [&](const std::string& pointer, const Part& part) {
     const BufferView& view = model.views[part.view];
-    if (view.buffer == 0) set(pointer, part.offset, moved(view.offset + part.offset) - moved(view.offset));
+    const Moved& in_buffer = moved[view.buffer];
+    set(pointer, part.offset, in_buffer(view.offset + part.offset) - in_buffer(view.offset));
   };
   auto next = unused_accessors.begin();
   for (std::size_t a = 0; a < count; ++a) {
