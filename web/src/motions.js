@@ -44,7 +44,7 @@ export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (valu
 
 /** A sample for people: "jawOpen at 0.55", "talk at 1.25 s". */
 export function momentOf(motion, sample) {
-  const name = motion.name || (motion.kind === 'target' ? `target ${motion.target}` : '');
+  const name = motion.name || (motion.kind === 'target' ? `target ${motion.target}` : motion.kind === 'expression' ? `expression ${motion.expression}` : '');
   return `${name ? `${name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
 }
 
@@ -52,5 +52,6 @@ export function momentOf(motion, sample) {
 export function nameOf(motion) {
   if (motion.kind === 'target') return motion.name || `target ${motion.target}`;
   if (motion.kind === 'track') return `animation ${motion.name || motion.animation}`;
+  if (motion.kind === 'expression') return motion.name || `expression ${motion.expression}`;
   return motion.name || 'sequence';
 }

@@ -17,10 +17,10 @@ using Kind = AuditFinding::Kind;
 // Findings of one cause in one mesh.
 struct Group {
   const AuditFinding* worst = nullptr;
-  std::size_t targets = 0, animations = 0;
+  std::size_t targets = 0, animations = 0, expressions = 0;
   std::size_t count = 0;  // of all of them together
 
-  [[nodiscard]] std::size_t size() const noexcept { return targets + animations; }
+  [[nodiscard]] std::size_t size() const noexcept { return targets + animations + expressions; }
 };
 
 // The groups of faults, the worst first, or of notes, in the order of the file.
@@ -35,7 +35,8 @@ std::vector<Group> groups_of(const Audit& audit, bool faults) {
     if (group == groups.end()) group = groups.insert(groups.end(), Group{&finding});
     if (finding.degrees > group->worst->degrees) group->worst = &finding;
     group->targets += finding.target ? 1U : 0U;
-    group->animations += finding.target ? 0U : 1U;
+    group->expressions += finding.expression ? 1U : 0U;
+    group->animations += finding.target || finding.expression ? 0U : 1U;
     group->count += finding.count;
   }
   if (faults)
@@ -51,6 +52,7 @@ std::string of_mesh(const Audited& input, const AuditFinding& finding) {
 std::string one_subject(const Audited& input, const AuditFinding& found) {
   const std::string mesh = of_mesh(input, found);
   if (found.target) return target_words(input, found.mesh, *found.target) + (found.mesh ? " of " + mesh : "");
+  if (found.expression) return expression_words(input, *found.mesh, *found.expression) + " of " + mesh;
   if (found.animation) return animation_words(input, *found.animation) + ", " + node_words(input, *found.node);
   return found.mesh ? mesh : "sequence";
 }
@@ -60,6 +62,8 @@ std::string subject_of(const Audited& input, const Group& group) {
   if (group.size() == 1) return one_subject(input, *group.worst);
   std::string text;
   if (group.targets > 0) text = counted(group.targets, "target", "targets");
+  if (group.expressions > 0)
+    text += (text.empty() ? "" : " and ") + counted(group.expressions, "expression", "expressions");
   if (group.animations > 0)
     text += (text.empty() ? "" : " and ") + counted(group.animations, "animation", "animations");
   return text + (group.worst->mesh ? " of " + of_mesh(input, *group.worst) : "");

@@ -52,22 +52,29 @@ std::string animation_words(const Audited& input, std::size_t animation) {
   return named(formatted("animation {}", animation), input.document()->animations()[animation].name);
 }
 
+std::string expression_words(const Audited& input, std::size_t mesh, std::size_t expression) {
+  return named(formatted("expression {}", expression), input.document()->meshes()[mesh].expressions[expression].name);
+}
+
 std::string subject_words(const Audited& input, const AuditSubject& subject) {
   if (subject.kind == AuditSubject::Kind::kSequence) return "sequence";
   if (subject.kind == AuditSubject::Kind::kTrack)
     return animation_words(input, *subject.animation) + ", " + node_words(input, *subject.node);
+  if (subject.kind == AuditSubject::Kind::kExpression)
+    return expression_words(input, *subject.mesh, *subject.expression) + " of " +
+           mesh_label(*input.document(), *subject.mesh);
   const std::string target = target_words(input, subject.mesh, *subject.target);
   return subject.mesh ? target + " of " + mesh_label(*input.document(), *subject.mesh) : target;
 }
 
 std::string moment_words(const AuditSubject& subject, double at) {
-  return subject.kind == AuditSubject::Kind::kTarget ? formatted("weight {:.4g}", at) : formatted("{:.6g} s", at);
+  return subject.is_weighed() ? formatted("weight {:.4g}", at) : formatted("{:.6g} s", at);
 }
 
 std::string place_words(const Audited& input, const AuditSubject& subject, const AuditPlace& place) {
-  const std::string motion = subject.kind == AuditSubject::Kind::kTarget && subject.mesh
-                                 ? target_words(input, subject.mesh, *subject.target)
-                                 : subject_words(input, subject);
+  std::string motion = subject_words(input, subject);
+  if (subject.target && subject.mesh) motion = target_words(input, subject.mesh, *subject.target);
+  if (subject.expression) motion = expression_words(input, *subject.mesh, *subject.expression);
   return formatted("{}, {} at {}", vertex_words(input, place), motion, moment_words(subject, place.at));
 }
 

@@ -27,8 +27,9 @@ inline constexpr std::size_t kMostAuditRows = 16;
 [[nodiscard]] std::string node_words(const Audited& input, std::size_t node);
 [[nodiscard]] std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target);
 [[nodiscard]] std::string animation_words(const Audited& input, std::size_t animation);
+[[nodiscard]] std::string expression_words(const Audited& input, std::size_t mesh, std::size_t expression);
 
-/// "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence".
+/// "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence", "expression 0 (happy) of Head".
 [[nodiscard]] std::string subject_words(const Audited& input, const AuditSubject& subject);
 
 /// "weight 0.55", "1.25 s".

@@ -57,16 +57,22 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
+/// What an expression of a VRM avatar, versions 0 and 1, makes of a mesh at its full strength.
+struct GltfExpression {
+  std::string name;             ///< as the file has it; may be empty
+  std::vector<double> weights;  ///< target_count of them
+  friend bool operator==(const GltfExpression&, const GltfExpression&) = default;
+};
+
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
-  std::size_t target_count = 0;           ///< the same in all primitives
-  std::vector<std::string> target_names;  ///< extras.targetNames, where it has target_count names; else empty
-  std::vector<double> weights;            ///< the default ones; target_count of them, 0 where the file has none
-  /// The weights that each expression of a VRM avatar gives it, versions 0 and 1; target_count of them each.
-  std::vector<std::vector<double>> expressions;
-  std::optional<GltfBakeMark> mark;  ///< where a bake left one that can be understood
-  std::optional<Error> mark_fault;   ///< why there is a mark that cannot: for those who have to understand it
+  std::size_t target_count = 0;             ///< the same in all primitives
+  std::vector<std::string> target_names;    ///< extras.targetNames, where it has target_count names; else empty
+  std::vector<double> weights;              ///< the default ones; target_count of them, 0 where the file has none
+  std::vector<GltfExpression> expressions;  ///< of a VRM avatar: those that have a bind to this mesh
+  std::optional<GltfBakeMark> mark;         ///< where a bake left one that can be understood
+  std::optional<Error> mark_fault;          ///< why there is a mark that cannot: for those who have to understand it
 };
 
 struct GltfNode {

@@ -12,7 +12,8 @@
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
-///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says.
+///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says. Expressions
+///            of an avatar are poses, as a bake counts them: one sample each, at full strength.
 /// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
 /// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a pair is off by 180 degrees, the most
 ///            that there is, and is counted.
@@ -100,20 +101,24 @@ struct AuditOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One motion: a target from weight 0 to 1, the weight track of a node, or a sequence.
+/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, or an expression of an avatar.
 struct AuditSubject {
-  enum class Kind { kTarget, kTrack, kSequence };
+  enum class Kind { kTarget, kTrack, kSequence, kExpression };
 
   Kind kind = Kind::kTarget;
-  std::string name;                                   ///< of the target or the animation; may be empty
+  std::string name;                                   ///< of the target, animation or expression; may be empty
   std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
   std::optional<std::size_t> animation, track, node;  ///< of a track
+  std::optional<std::size_t> expression;              ///< among those of the mesh
   Weighting weighting = Weighting::kArea;             ///< of its right normals
   std::vector<std::size_t> driven;                    ///< the targets that a track gives other weights than 0
   std::size_t segments = 0, samples = 0;              ///< samples of each segment
   std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
   MotionError error;
   MotionError at_keys;  ///< of the same, those at both ends of each segment
+
+  /// Whether it is found by a weight, and not by a time.
+  [[nodiscard]] bool is_weighed() const noexcept { return kind == Kind::kTarget || kind == Kind::kExpression; }
 };
 
 /// How far stored base normals are from the geometry.
@@ -138,7 +143,7 @@ struct AuditFinding {
     kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
     kWrongBetween,    ///< right there, and off on the way
-    kWrongTogether,   ///< off where an animation has several targets at once, by more than each of them alone
+    kWrongTogether,   ///< off where an animation or expression has several targets, by more than each of them alone
     kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
     kSkinned,         ///< a note: skins turn the shown and the right normal alike
@@ -148,7 +153,7 @@ struct AuditFinding {
     kBeyondHost        ///< a note: a mesh has more targets than a host takes
   };
   Kind kind;
-  std::optional<std::size_t> mesh, target, node, animation;
+  std::optional<std::size_t> mesh, target, node, animation, expression;
   std::size_t count = 0;               ///< pairs, primitives, targets or nodes, as the kind has it
   double degrees = 0;                  ///< the worst
   std::optional<AuditPlace> worst_at;  ///< where there is one
@@ -184,8 +189,9 @@ struct Audit {
   double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
   std::array<double, 2> span = {};    ///< of a sequence: the times of its first and its last keyframe
   std::vector<AuditSubject> subjects;
-  std::size_t still = 0;  ///< targets and tracks that move nothing, or nothing that can be judged: no subjects
-  MotionError error;      ///< of all subjects
+  /// Targets, tracks and expressions that move nothing, or nothing that can be judged: no subjects.
+  std::size_t still = 0;
+  MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
   std::vector<HostAudit> hosts;      ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
@@ -215,9 +221,9 @@ struct Audit {
 /// worst or mean error that grew by more than what the rounding of float32 may turn.
 [[nodiscard]] bool is_worse(const MotionError& after, const MotionError& before) noexcept;
 
-/// Audits the targets of all meshes, each alone, and all weight tracks. Extra targets of a bake are no subjects: with
-/// each target alone they get the weights that follow (docs/extras.md), and a track gives them what the file says. A
-/// file in which nothing moves has no subjects.
+/// Audits the targets of all meshes, each alone, the expressions of an avatar, and all weight tracks. Extra targets of a
+/// bake are no subjects: with each target alone, and in expressions, they get the weights that follow (docs/extras.md),
+/// and a track gives them what the file says. A file in which nothing moves has no subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
 /// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to
 /// keep that take more than kMostErrorBytes.

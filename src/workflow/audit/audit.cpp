@@ -213,6 +213,7 @@ std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject) {
   finding.target = subject.target;
   finding.node = subject.node;
   finding.animation = subject.animation;
+  finding.expression = subject.expression;
   finding.degrees = error.worst;
   finding.worst_at = error.worst_at;
   if (subject.error.unlit > 0) finding.worst_at = subject.error.unlit_at;

@@ -1,5 +1,5 @@
 // Audits of glTF files. Of each mesh: how far the author's normals are from the geometry, what there is to note, every
-// target from weight 0 to 1, and every track of weights.
+// target from weight 0 to 1, every track of weights, and every expression of an avatar.
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -235,11 +235,47 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
   return Success{};
 }
 
+// Audits an expression of an avatar at its full strength, with the weights of extra targets that follow.
+void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_target, Audit& result) {
+  const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
+  std::vector<double> full = expression.weights;
+  fill_extra_weights(mesh.shading, full);
+  std::vector<bool> involved(full.size());
+  for (std::size_t k = 0; k < full.size(); ++k) involved[k] = full[k] != 0;
+  AuditSubject subject;
+  subject.kind = AuditSubject::Kind::kExpression;
+  subject.name = expression.name;
+  subject.mesh = mesh.shading.mesh;
+  subject.weighting = mesh.weighting;
+  subject.expression = index;
+  subject.segments = subject.samples = 1;
+  // The segment goes from full strength, where it is judged, to the base: how short a normal is follows from both.
+  const auto moment = [](std::size_t, double t) { return 1 - t; };
+  SubjectWeights weights;
+  weights.specified = [&](std::size_t, double t, std::span<double> of_targets) {
+    for (std::size_t k = 0; k < full.size(); ++k) of_targets[k] = (1 - t) * full[k];
+  };
+  for (const Host& host : mesh.options.hosts) {
+    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
+      weights.specified(segment, t, of_targets);
+      drop_weights(host, of_targets);
+    });
+  }
+  std::optional<Measured> measured = measure_part(mesh, part_of(mesh, involved), involved, weights, moment,
+                                                  std::move(subject), result.subjects.size());
+  if (!measured) {
+    ++result.still;
+    return;
+  }
+  if (const auto fault = fault_of_track(measured->subject, true, worst_target)) result.findings.push_back(*fault);
+  add_subject(std::move(*measured), result);
+}
+
 // The segments of all subjects.
 std::size_t count_segments(const GltfDocument& document, std::optional<std::size_t> only) {
   std::size_t total = 0;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
-    total += only ? 0 : document.meshes()[m].target_count;
+    total += only ? 0 : document.meshes()[m].target_count + document.meshes()[m].expressions.size();
     for (const auto& [a, t] : tracks_of(document, m, only))
       total += std::max<std::size_t>(1, document.animations()[a].tracks[t].key_count - 1);
   }
@@ -249,7 +285,9 @@ std::size_t count_segments(const GltfDocument& document, std::optional<std::size
 // The samples of all subjects of a mesh, at most.
 std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
                        const AuditOptions& options) {
-  std::size_t rows = only_tracks ? 0 : document.meshes()[mesh].target_count * samples_per_segment(options, 1);
+  const GltfMesh& of_mesh = document.meshes()[mesh];
+  std::size_t rows =
+      only_tracks ? 0 : of_mesh.target_count * samples_per_segment(options, 1) + of_mesh.expressions.size();
   for (const auto& [a, t] : tracks) {
     const std::size_t keys = document.animations()[a].tracks[t].key_count,
                       segments = std::max<std::size_t>(keys, 2) - 1;
@@ -334,6 +372,8 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     double worst_target = 0;
     for (std::size_t s = first; s < result.subjects.size(); ++s)
       worst_target = std::max(worst_target, result.subjects[s].error.worst);
+    for (std::size_t k = 0; k < document.meshes()[m].expressions.size() && are_targets_judged; ++k)
+      audit_expression(mesh, k, worst_target, result);
     if (Status status = audit_tracks(mesh, tracks, are_targets_judged, worst_target, result); !status)
       return status.error();
     if (table.rows() > 0) result.errors.push_back(std::move(table));

@@ -301,8 +301,7 @@ template <class Source, class EachSample>
         error = error_at(source, placed, is_flat, largest, s, t, shown, each);
       }
       if (kept.table != nullptr)
-        keep_sample(kept, part.outputs(), each, subject.kind == AuditSubject::Kind::kTarget,
-                    source.at(s, t, part.outputs().front()).at);
+        keep_sample(kept, part.outputs(), each, subject.is_weighed(), source.at(s, t, part.outputs().front()).at);
       found.error.add(error);
       if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});

@@ -6,7 +6,7 @@
 namespace chronormal::inline internal {
 Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
   const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
-  MeshWeights weights{{}, {}, {}, {}, WeightUse(targets), false, {}};
+  MeshWeights weights{{}, {}, {}, {}, 0, WeightUse(targets), false, {}};
   for (std::size_t a = 0; a < document.animations().size(); ++a) {
     std::set<std::size_t> seen;
     const std::vector<GltfTrack>& tracks = document.animations()[a].tracks;
@@ -27,8 +27,9 @@ Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading
   weights.poses.push_back(document.meshes()[mesh].weights);
   for (const GltfNode& node : document.nodes())
     if (node.mesh == mesh && !node.weights.empty()) weights.poses.push_back(node.weights);
-  const auto& expressions = document.meshes()[mesh].expressions;
-  weights.poses.insert(weights.poses.end(), expressions.begin(), expressions.end());
+  weights.stored_poses = weights.poses.size();
+  for (const GltfExpression& expression : document.meshes()[mesh].expressions)
+    weights.poses.push_back(expression.weights);
   for (const std::vector<double>& pose : weights.poses) weights.use.add_pose(pose);
   return weights;
 }

@@ -25,6 +25,7 @@ struct MeshWeights {
   std::vector<TrackName> names;     ///< of each track
   std::vector<TimeRange> ranges;    ///< of the animation of each track
   PoseList poses;                   ///< that stand still: of the mesh, its nodes, and the expressions of an avatar
+  std::size_t stored_poses = 0;     ///< of these, the first: the file has weights of extra targets for them
   WeightUse use;
   bool is_driven = false;       ///< an animation gives some moving target a weight
   std::optional<RigPoses> rig;  ///< where nothing drives it and a bake looks for extra targets: what it is made for

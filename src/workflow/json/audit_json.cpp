@@ -22,9 +22,7 @@ Json place_json(const AuditPlace& place, const char* moment) {
   return json;
 }
 
-const char* moment_of(const AuditSubject& subject) {
-  return subject.kind == AuditSubject::Kind::kTarget ? "weight" : "time";
-}
+const char* moment_of(const AuditSubject& subject) { return subject.is_weighed() ? "weight" : "time"; }
 
 void add_error(const MotionError& error, Json& json) {
   json["worst_degrees"] = error.worst;
@@ -49,13 +47,14 @@ Json histogram_json(const MotionError& error) {
 }
 
 Json subject_json(const AuditSubject& subject) {
-  constexpr const char* kSubjects[] = {"target", "track", "sequence"};
+  constexpr const char* kSubjects[] = {"target", "track", "sequence", "expression"};
   Json json = {{"kind", kSubjects[static_cast<std::size_t>(subject.kind)]},
                {"name", subject.name},
                {"mesh", or_null(subject.mesh)},
                {"target", or_null(subject.target)},
                {"animation", or_null(subject.animation)},
                {"node", or_null(subject.node)},
+               {"expression", or_null(subject.expression)},
                {"weighting", weighting_name(subject.weighting)},
                {"segments", subject.segments},
                {"samples", subject.samples},
@@ -90,10 +89,13 @@ Json finding_json(const AuditFinding& finding) {
           {"target", or_null(finding.target)},
           {"animation", or_null(finding.animation)},
           {"node", or_null(finding.node)},
+          {"expression", or_null(finding.expression)},
           {"count", finding.count},
           {"host", finding.host ? Json(finding.host->name) : Json()},
           {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
-          {"worst_at", finding.worst_at ? place_json(*finding.worst_at, finding.target ? "weight" : "time") : Json()}};
+          {"worst_at", finding.worst_at
+                           ? place_json(*finding.worst_at, finding.target || finding.expression ? "weight" : "time")
+                           : Json()}};
 }
 
 Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAudit& found) {

@@ -55,7 +55,7 @@ class Arrays {
 };
 
 const char* kind_of(const AuditSubject& subject) {
-  constexpr const char* kKinds[] = {"target", "track", "sequence"};
+  constexpr const char* kKinds[] = {"target", "track", "sequence", "expression"};
   return kKinds[static_cast<std::size_t>(subject.kind)];
 }
 
@@ -66,7 +66,8 @@ Json motion_json(const ModelMotion& motion, Arrays& arrays) {
                {"animation", or_null(subject.animation)},
                {"node", or_null(subject.node)},
                {"target", or_null(subject.target)},
-               {"seconds", subject.kind != AuditSubject::Kind::kTarget},
+               {"expression", or_null(subject.expression)},
+               {"seconds", !subject.is_weighed()},
                {"subject", motion.subject_index},
                {"at", arrays.add(motion.at)}};
   if (motion.weights.empty()) {

@@ -37,7 +37,8 @@ std::string moment_of(const ModelMotion& motion, std::size_t sample) {
   std::string name = motion.subject.name;
   if (name.empty() && motion.subject.target) name = "target " + std::to_string(*motion.subject.target);
   if (name.empty() && motion.subject.animation) name = "animation " + std::to_string(*motion.subject.animation);
-  const bool is_weight = motion.subject.kind == AuditSubject::Kind::kTarget;
+  if (name.empty() && motion.subject.expression) name = "expression " + std::to_string(*motion.subject.expression);
+  const bool is_weight = motion.subject.is_weighed();
   return (name.empty() ? "" : name + " at ") + with_digits(motion.at[sample], 6) + (is_weight ? "" : " s");
 }
 

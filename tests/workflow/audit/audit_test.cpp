@@ -95,6 +95,62 @@ TEST(Audit, halfway_is_where_the_drawing_has_it) {
   EXPECT_NEAR(result.error.mean(), (45 + 45 + 90 + 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi) / 9, 1e-12);
 }
 
+// The weights that an expression of an avatar gives to the only target of a file.
+GltfBuilder with_expression(GltfBuilder builder, double weight, bool is_first_version) {
+  if (is_first_version) {
+    const Json binds = {{{"mesh", 0}, {"index", 0}, {"weight", 100 * weight}}};
+    builder.json["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"] = {{{"name", "Joy"}, {"binds", binds}}};
+  } else {
+    const Json binds = {{{"node", 0}, {"index", 0}, {"weight", weight}}};
+    builder.json["extensions"]["VRMC_vrm"]["expressions"]["custom"]["Joy"] = {{"morphTargetBinds", binds}};
+  }
+  return builder;
+}
+
+TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_strength) {
+  for (const bool is_first_version : {true, false}) {
+    const Audit result = audit_of(with_expression(hinge().file(), 0.5, is_first_version), {.samples = 2});
+    ASSERT_EQ(result.subjects.size(), 2U);
+    const AuditSubject& subject = result.subjects[1];
+    EXPECT_EQ(subject.kind, AuditSubject::Kind::kExpression);
+    EXPECT_EQ(subject.name, "Joy");
+    EXPECT_EQ(subject.expression, 0U);
+    EXPECT_EQ(subject.mesh, 0U);
+    EXPECT_EQ(subject.samples, 1U);
+    EXPECT_EQ(subject.vertices, 3U);
+    // Half-way, as the drawing has it: the vertex of the face that folds is off by 45 degrees, the edge by less.
+    EXPECT_EQ(subject.error.judged, 3U);
+    EXPECT_NEAR(subject.error.worst, 45, 1e-12);
+    EXPECT_NEAR(subject.error.sum, 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi, 1e-12);
+    EXPECT_EQ(subject.error.worst_at.vertex, 3U);
+    EXPECT_EQ(subject.error.worst_at.at, 1) << "the strength of the expression, whatever the weights that it gives";
+    EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals})) << "the target alone is farther off";
+  }
+}
+
+TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
+  // The target goes to weight 1, and the expression beyond.
+  const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
+  ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
+  EXPECT_EQ(result.findings[1].expression, 0U);
+  EXPECT_FALSE(result.findings[1].target || result.findings[1].animation);
+  // The corner is (1 - 3, 0, 3) then: the face has turned by pi - atan(3 / 2).
+  EXPECT_NEAR(result.findings[1].degrees, 180 - std::atan(1.5) * 180 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(result.worst, 1U);
+}
+
+TEST(Audit, an_expression_that_moves_nothing_is_no_subject_and_one_animation_alone_has_none) {
+  EXPECT_EQ(audit_of(with_expression(hinge().file(), 0, true)).subjects.size(), 1U);
+  EXPECT_EQ(audit_of(with_expression(hinge().file(), 0, true)).still, 1U);
+  GltfBuilder builder = with_expression(hinge().file(), 0.5, true);
+  builder.add_animation("fold");
+  builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
+  EXPECT_EQ(audit_of(builder).subjects.size(), 3U);
+  const Audit of_one = audit_of(builder, {.animation = "fold"});
+  ASSERT_EQ(of_one.subjects.size(), 1U);
+  EXPECT_EQ(of_one.subjects[0].kind, AuditSubject::Kind::kTrack);
+}
+
 TEST(Audit, flat_rule_shows_faces) {
   // At weight 1 the edge vertices show a face at 45 degrees from their sum, on both sides; the others are right.
   const Audit result = audit_of(hinge().file(), {.rule = AuditRule::kFlat, .samples = 2});

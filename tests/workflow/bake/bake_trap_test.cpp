@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/hosts.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/gltf_compressed.h"
 
@@ -552,9 +556,64 @@ TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
     ASSERT_EQ(with.error, "");
     EXPECT_EQ(without, 0U);
     EXPECT_EQ(with.report.added_targets, 3U) << "the pair, and what each has too much at a half";
-    EXPECT_EQ((**with.source).meshes()[0].expressions, (std::vector<std::vector<double>>{{0.5, 0.5}}));
+    EXPECT_EQ((**with.source).meshes()[0].expressions,
+              (std::vector<GltfExpression>{{is_first_version ? "Joy" : "happy", {0.5, 0.5}}}));
     EXPECT_EQ(with.json()["extensions"], builder.json["extensions"]);
   }
+}
+
+// Hills with a track that gives every target a weight, and an expression of three of them.
+GltfBuilder avatar_of_hills(unsigned seed, double strength) {
+  constexpr std::size_t kTargets = 7;
+  GltfBuilder builder = test::with_misleading_normals(test::hills_document(kTargets, seed));
+  test::Hills random(seed + 100);
+  const std::vector<float> times = {0, 0.5, 1, 2, 2.5, 3};
+  std::vector<float> weights;
+  for (std::size_t n = 0; n < kTargets * times.size(); ++n) weights.push_back(random.uniform(0, 0.4));
+  builder.add_track(0, 0, times, weights);
+  Json binds;
+  for (const int target : {0, 1, 2}) binds.push_back({{"node", 0}, {"index", target}, {"weight", strength}});
+  builder.json["extensions"]["VRMC_vrm"]["expressions"]["preset"]["happy"] = {{"morphTargetBinds", binds}};
+  return builder;
+}
+
+// The worst error of the expressions, or of the tracks, of a file.
+double worst_of(const GltfDocument& document, AuditSubject::Kind kind) {
+  const Result<Audit> audited = audit(document, {.hosts = {}});
+  EXPECT_TRUE(audited.ok());
+  double worst = 0;
+  for (const AuditSubject& subject : audited.value().subjects)
+    if (subject.kind == kind) worst = std::max(worst, subject.error.worst);
+  return worst;
+}
+
+TEST(BakeTraps, what_a_bake_says_of_expressions_is_what_an_audit_finds_in_the_file) {
+  std::set<std::string_view> forms;
+  std::size_t compared = 0;
+  for (const double tolerance : {0.5, 3.0}) {
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+      BakeOptions options = {.tolerance = tolerance};
+      options.hosts = find_hosts("three").value();
+      const Baked baked = test::bake_document(avatar_of_hills(seed, 0.1 * seed), options);
+      ASSERT_EQ(baked.error, "");
+      const test::GltfFixture after(baked.bytes);
+      ASSERT_TRUE(after.ok()) << after.error();
+      for (const BakeChoice& choice : baked.report.meshes[0].choices) {
+        if (!choice.chosen) continue;
+        forms.insert(choice.form);
+        const double expression = worst_of(*after, AuditSubject::Kind::kExpression),
+                     track = worst_of(*after, AuditSubject::Kind::kTrack);
+        // Both look at other instants of the track, and at the same pose of the expression.
+        EXPECT_GE(choice.played.worst, expression - 1e-3) << choice.form;
+        if (expression > 1.2 * track) {
+          EXPECT_NEAR(choice.played.worst, expression, 1e-3) << choice.form;
+          ++compared;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 0U);
+  EXPECT_TRUE(forms.contains("low rank")) << "its curves give extra targets no weight in an expression";
 }
 
 }  // namespace

@@ -267,15 +267,19 @@ void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   using Pointer = nlohmann::json::json_pointer;
   const Pointer of_0("/extensions/VRM/blendShapeMaster/blendShapeGroups");
   if (root.contains(of_0) && root[of_0].is_array()) {
-    for (const nlohmann::json& group : root[of_0])
-      if (group.is_object() && group.contains("binds")) visit(group["binds"]);
+    for (const nlohmann::json& group : root[of_0]) {
+      if (!group.is_object() || !group.contains("binds")) continue;
+      const bool is_named = group.contains("name") && group["name"].is_string();
+      visit(is_named ? group["name"].get<std::string>() : std::string(), group["binds"]);
+    }
   }
   for (const char* const list :
        {"/extensions/VRMC_vrm/expressions/preset", "/extensions/VRMC_vrm/expressions/custom"}) {
     const Pointer of_1(list);
     if (!root.contains(of_1) || !root[of_1].is_object()) continue;
-    for (const nlohmann::json& expression : root[of_1])
-      if (expression.is_object() && expression.contains("morphTargetBinds")) visit(expression["morphTargetBinds"]);
+    for (const auto& [name, expression] : root[of_1].items())
+      if (expression.is_object() && expression.contains("morphTargetBinds"))
+        visit(name, expression["morphTargetBinds"]);
   }
 }
 
@@ -291,7 +295,7 @@ std::optional<std::size_t> whole_below(const nlohmann::json& object, const char*
 }  // namespace
 
 void Parser::parse_expressions(const nlohmann::json& root) {
-  for_each_expression(root, [&](const nlohmann::json& binds) {
+  for_each_expression(root, [&](const std::string& name, const nlohmann::json& binds) {
     std::map<std::size_t, std::vector<double>> of_meshes;
     if (!binds.is_array()) return;
     for (const nlohmann::json& bind : binds) {
@@ -307,7 +311,7 @@ void Parser::parse_expressions(const nlohmann::json& root) {
       weights.resize(model_.meshes[*mesh].target_count);
       weights[*target] = weight;
     }
-    for (auto& [mesh, weights] : of_meshes) model_.meshes[mesh].expressions.push_back(std::move(weights));
+    for (auto& [mesh, weights] : of_meshes) model_.meshes[mesh].expressions.push_back({name, std::move(weights)});
   });
 }
 

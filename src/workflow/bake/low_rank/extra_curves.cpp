@@ -193,7 +193,7 @@ PoseList ExtraDrivers::standing(const PoseList& poses) const {
   PoseList result;
   for (std::size_t n = 0; n < poses.size(); ++n) {
     result.push_back(with_extras(poses[n]));
-    if (!rest.empty())
+    if (n < rest.size())
       std::copy(rest[n].begin(), rest[n].end(), result.back().end() - static_cast<std::ptrdiff_t>(size()));
   }
   return result;

@@ -80,7 +80,7 @@ struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each extra target; all zero where there are sums or curves
   std::vector<GltfExtraTarget> sums;  ///< one for each extra target, or none; tracks have curves beside them
   TrackCurves curves;                 ///< for each track; none where there are formulas
-  PoseList rest;                      ///< of curves: the weights in the poses that stand still (MeshWeights::poses)
+  PoseList rest;                      ///< of curves: the weights in the poses that the file stores (MeshWeights)
   TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR; others become cubic splines
   /// Radians: cubic splines get keys for formulas until no normal is off by more. Infinite: they get none.
   double spline_tolerance = std::numeric_limits<double>::infinity();
@@ -90,7 +90,8 @@ struct ExtraDrivers {
   [[nodiscard]] GltfExtraTarget as_target(std::size_t k, std::size_t index) const;
   /// The same pose with the weights of extra targets behind it, by formulas and sums.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
-  /// The poses that stand still, with the weights of extra targets behind them.
+  /// The poses that stand still, with the weights of extra targets behind them. Nothing gives these a weight by curves in
+  /// the expressions of an avatar, which are the poses behind those of `rest`.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// A track with the weights of extra targets. Cubic splines get keys for formulas until no normal is off by more than
   /// tolerance (radians) or spline_tolerance. Where that takes more than most_keys, the result has no values.

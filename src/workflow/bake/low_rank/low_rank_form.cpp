@@ -354,7 +354,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
       of_track.values.insert(of_track.values.end(), values.begin(), values.end());
     }
   }
-  for (std::size_t n = 0; n < weights.poses.size(); ++n) form.rest.push_back(weights_of(instants.first.back() + n));
+  for (std::size_t n = 0; n < weights.stored_poses; ++n) form.rest.push_back(weights_of(instants.first.back() + n));
   return form;
 }
 

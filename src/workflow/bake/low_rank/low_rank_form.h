@@ -27,7 +27,7 @@ struct LowRankForm {
   std::vector<VertexVectors> own;     ///< of each target of the mesh
   std::vector<VertexVectors> extras;  ///< of any length, for weights from -1 to 1
   TrackCurves curves;                 ///< of the extra targets, for each track
-  PoseList rest;                      ///< their weights in the poses that stand still
+  PoseList rest;                      ///< their weights in the poses that the file stores
   double worst = 0;                   ///< degrees: of all points at the instants that were fitted to
 };
 

@@ -52,7 +52,8 @@ FileInstants::FileInstants(const MeshWeights& weights) {
     for (std::size_t node = 0; node < nodes.size(); ++node) poses.push_back(nodes.pose(track, node));
   }
   first.push_back(poses.size());
-  poses.insert(poses.end(), weights.poses.begin(), weights.poses.end());
+  const auto stored = weights.poses.begin() + static_cast<std::ptrdiff_t>(weights.stored_poses);
+  poses.insert(poses.end(), weights.poses.begin(), stored);
 }
 
 MissingNormals::MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,

@@ -27,12 +27,12 @@ using PointVertices = std::vector<std::uint32_t>;
 [[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                                    std::span<const std::uint32_t> element_of_vertex);
 
-/// All instants of a file that a curve has a value at: the nodes of each track, and then the poses that stand still.
+/// All instants of a file that a curve has a value at: the nodes of each track, and then the poses that the file stores.
 struct FileInstants {
   explicit FileInstants(const MeshWeights& weights);
 
   std::vector<CurveNodes> tracks;
-  std::vector<std::size_t> first;  ///< of each track, and of the poses that stand still
+  std::vector<std::size_t> first;  ///< of each track, and of the poses that the file stores
   PoseList poses;
 };
 
