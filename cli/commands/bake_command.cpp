@@ -128,8 +128,8 @@ void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) say("bake", warning, Tone::kWarning);
 }
 
-void warn_if_worse(const BakeReport& report) {
-  if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit)});
+void warn_if_worse(const BakeReport& report, bool of_animations) {
+  if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
 // Audits the input, by audit_before, and the file that was written. A track that got keys is looked at more often than
@@ -217,7 +217,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
     if (!audited) return audited.error();
     told.audit = std::move(audited).value();
   }
-  warn_if_worse(told);
+  warn_if_worse(told, any_of_animations(baked.value()));
   const Result<int> reported = report(options, bake_text(baked.value(), told), bake_json(baked.value(), told));
   if (!reported) return reported.error();
   return is_lit(options, told) ? code : kExitBeyond;
@@ -296,7 +296,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
     if (!audited) return audited.error();
     told.audit = std::move(audited).value();
   }
-  warn_if_worse(told);
+  warn_if_worse(told, false);
   const BakeEncoding encoding = how.encoding.value_or(BakeEncoding::kExact);
   const Result<int> reported =
       report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));

@@ -86,9 +86,22 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.worst = std::max(all.worst, of_mesh.worst);
 }
 
-// Prints a row for each named host: the errors that it shows before and after, over all meshes, in the animations of
-// the file and for each target alone.
-std::string hosts_text(const GltfBake& bake) {
+// The form that an optimiser chose for a mesh has deltas that are fitted to the animations.
+bool is_of_animations(const BakedMesh& mesh) {
+  return std::any_of(mesh.choices.begin(), mesh.choices.end(),
+                     [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
+}
+
+// Says what the errors in a table of hosts are those of.
+std::string poses_words(bool of_animations) {
+  return of_animations
+             ? "in the animations of the file (targets alone, which --animations-only gives up, are not in it)"
+             : "in the animations of the file, and for each target alone";
+}
+
+// Prints a row for each named host: the errors that it shows before and after, over all meshes whose deltas are fitted
+// to the animations, or over all others.
+std::string hosts_table(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("host", "", Table::Align::kLeft);
   table.add_column("mean", "degrees", Table::Align::kRight);
@@ -102,7 +115,7 @@ std::string hosts_text(const GltfBake& bake) {
     HostChange::Errors all;
     for (const BakedMesh& mesh : bake.meshes) {
       for (const HostChange& change : mesh.hosts) {
-        if (change.host != host.name) continue;
+        if (change.host != host.name || is_of_animations(mesh) != of_animations) continue;
         add_errors(change.poses[0].before, all.before);
         add_errors(change.poses[0].after, all.after);
       }
@@ -113,8 +126,10 @@ std::string hosts_text(const GltfBake& bake) {
                    four_decimals(all.before.most), four_decimals(all.after.most), four_decimals(all.before.worst),
                    four_decimals(all.after.worst)});
   }
-  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() + "\n" : "";
+  return any ? formatted("\n{}:\n\n{}\n", poses_words(of_animations), table.text()) : "";
 }
+
+std::string hosts_text(const GltfBake& bake) { return hosts_table(bake, false) + hosts_table(bake, true); }
 
 // Says how many normals keep their old deltas and how many corrections bake left out, and why.
 std::string left_text(const GltfBake& bake) {
@@ -148,8 +163,8 @@ std::string title_of_host(const std::string& name) {
   return name;
 }
 
-// Prints a row for each form and host: the errors in the animations of the file and for each target alone.
-std::string plan_of_hosts(const GltfBake& bake) {
+// Prints a row for each host and form whose deltas are fitted to the animations, or each other form.
+std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
   table.add_column("form", "", Table::Align::kLeft);
@@ -160,6 +175,7 @@ std::string plan_of_hosts(const GltfBake& bake) {
   bool any = false;
   for (const BakedMesh& mesh : bake.meshes) {
     for (const BakeChoice& choice : mesh.choices) {
+      if (choice.animations_only != of_animations) continue;
       for (const HostChange& host : choice.hosts) {
         const ShownErrors& errors = host.poses[0].after;
         table.add_row({mesh_name(mesh), std::string(choice.form), title_of_host(host.host), four_decimals(errors.mean),
@@ -168,7 +184,24 @@ std::string plan_of_hosts(const GltfBake& bake) {
       }
     }
   }
-  return any ? "\nin the animations of the file, and for each target alone:\n\n" + table.text() : "";
+  return any ? formatted("\n{}:\n\n{}", poses_words(of_animations), table.text()) : "";
+}
+
+// "on average (normals are off by 0.6400 degrees, before by 3.3200)": the respects, each with its figures.
+std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
+  const MotionError &before = audit.before.error, &after = audit.after.error;
+  std::string text;
+  const auto add = [&](const std::string& words) { text.append(text.empty() ? "" : ", and ").append(words); };
+  if (respects.mean)
+    add(formatted("on average (normals are off by {} degrees, before by {})", four_decimals(after.mean()),
+                  four_decimals(before.mean())));
+  if (respects.worst)
+    add(formatted("where a normal is farthest off (by {} degrees, before by {})", four_decimals(after.worst),
+                  four_decimals(before.worst)));
+  if (respects.unlit)
+    add(formatted("in how many cannot be lit ({}, before {})", counted(after.unlit, "pair", "pairs"),
+                  grouped(before.unlit)));
+  return text;
 }
 
 std::string lines_after(const BakeReport& report) {
@@ -181,8 +214,18 @@ std::string lines_after(const BakeReport& report) {
 
 }  // namespace
 
-std::string worse_text(const BeforeAndAfter& audit) {
-  return "the result is worse than the input: by audit " + change_words(audit);
+std::string worse_text(const BeforeAndAfter& audit, bool of_animations) {
+  const MotionError &before = audit.before.error, &after = audit.after.error;
+  const WorseRespects worse = find_worse(after, before), better = find_worse(before, after);
+  std::string text = "by audit the result is ";
+  if (better.any()) text += "better than the input " + respects_text(better, audit) + ", but ";
+  text += (better.any() ? "worse " : "worse than the input ") + respects_text(worse, audit);
+  if (of_animations) text += "; this counts targets alone as well, which --animations-only gives up";
+  return text;
+}
+
+bool any_of_animations(const GltfBake& bake) {
+  return std::any_of(bake.meshes.begin(), bake.meshes.end(), is_of_animations);
 }
 
 std::string bake_text(const GltfBake& bake, const BakeReport& report) {
@@ -259,7 +302,8 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                      four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
     }
   }
-  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake);
+  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake, false) +
+         plan_of_hosts(bake, true);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

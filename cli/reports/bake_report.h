@@ -8,8 +8,11 @@
 
 namespace chronormal::cli {
 
-/// That the result is worse than the input, and by how much.
-[[nodiscard]] std::string worse_text(const BeforeAndAfter& audit);
+/// Says in what respects the result is worse than the input, and in what it is better, with figures.
+/// of_animations: some deltas are fitted to the animations, and mean nothing for a target alone
+[[nodiscard]] std::string worse_text(const BeforeAndAfter& audit, bool of_animations);
+/// Whether some deltas of a result are fitted to the animations.
+[[nodiscard]] bool any_of_animations(const GltfBake& bake);
 
 /// Says what the bake added: the table has a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);

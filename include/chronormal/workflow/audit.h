@@ -217,10 +217,6 @@ struct Audit {
 /// The errors of the subjects of one mesh, added up; none where it has no subject.
 [[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
 
-/// Whether what an audit found after a change is worse than what it found before: more pairs that cannot be lit, or a
-/// worst or mean error that grew by more than what the rounding of float32 may turn.
-[[nodiscard]] bool is_worse(const MotionError& after, const MotionError& before) noexcept;
-
 /// Audits the targets of all meshes, each alone, the expressions of an avatar, and all weight tracks. Extra targets of a
 /// bake are no subjects: with each target alone, and in expressions, they get the weights that follow (docs/extras.md),
 /// and a track gives them what the file says. A file in which nothing moves has no subjects.

@@ -80,6 +80,20 @@ struct MotionError {
   void add(const MotionError& other) noexcept;
 };
 
+/// In which respects what an audit found after a change is worse than what it found before: more pairs that cannot be
+/// lit, or a worst or mean error that grew by more than what the rounding of float32 may turn. With the two exchanged, in
+/// which respects it is better.
+struct WorseRespects {
+  bool unlit = false, mean = false, worst = false;
+
+  [[nodiscard]] bool any() const noexcept { return unlit || mean || worst; }
+};
+[[nodiscard]] WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept;
+/// Whether it is worse in any respect.
+[[nodiscard]] inline bool is_worse(const MotionError& after, const MotionError& before) noexcept {
+  return find_worse(after, before).any();
+}
+
 /// The errors in one segment, and those at its ends alone.
 struct SegmentErrors {
   std::size_t segment = 0;

@@ -82,13 +82,13 @@ MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
   return error;
 }
 
-bool is_worse(const MotionError& after, const MotionError& before) noexcept {
+WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept {
   // Degrees: a sum in float32 is off by 1e-7, and a normal may be a hundredth as long as what it is the sum of.
   constexpr double kWorst = 0.05, kMean = 0.001;
   // A mean may also grow because fewer pairs are judged, after deltas that were nothing but rounding are gone.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  return after.unlit > before.unlit || after.worst > before.worst + kWorst || is_farther;
+  return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst};
 }
 
 void MotionError::add(double degrees, const AuditPlace& place) noexcept {
