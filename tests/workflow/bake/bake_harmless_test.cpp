@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "chronormal/analysis/quality.h"
 #include "tests/support/bake_fixture.h"
+#include "workflow/bake/forms/harmless_form.h"
 
 namespace chronormal::bake_harmless_test {
 namespace {
@@ -371,6 +373,38 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
     ASSERT_EQ(result.report.added_targets, 1U);
     EXPECT_LT(change(result, {{{1}, {1, 0}}, {{0}, {0, 0}}}, Rule::kSum).worst, 1e-3);
     EXPECT_GT(change(result, {{{0.5}, {0.5, 0}}}, Rule::kSum).worst, 0.5) << "and between them it needs these";
+  }
+}
+
+// Corrections of a target alone are made where they belong: half-way, where they weigh most.
+TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
+  for (const FormLengths lengths : {FormLengths::kUnit, FormLengths::kFree}) {
+    const test::GltfFixture file(test::still_hills_document(1, 5));
+    const GltfShading shading = read_gltf_shading(*file, 0).value();
+    const NormalTerms terms(shading, Weighting::kArea);
+    const std::vector<double> largest(shading.groups.size(), 1.0);
+    const RightNormals rights(shading, terms, shading.normals, largest);
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) vertices.push_back(v);
+    const std::vector<float> worst(vertices.size(), 90.0F);
+    HarmlessForm form = end_point_form(shading, terms, rights, lengths);
+    add_corrections(shading, terms, rights, {{0.3}, {1}}, vertices, worst, {lengths, 100, 1e-6}, form);
+    ASSERT_GT(form.extras.size(), 0U);
+    const auto worst_at = [&](double w, bool with_extras) {
+      double most = 0;
+      const std::vector<Vec3d> normals = rights.of_elements(std::vector<double>{w});
+      for (const std::uint32_t v : vertices) {
+        Vec3d shown = rights.stored(v) + w * to_double(form.own[0].at(v));
+        for (std::size_t k = 0; k < form.extras.size() && with_extras; ++k)
+          shown = shown + form.weights[k].at(w, w) * to_double(form.extras[k].at(v));
+        const Vec3d right = rights.of_vertex(v, normals[shading.element_of_vertex[v]]);
+        most = std::max(most, angle_between(shown, right) * kDegreesPerRadian);
+      }
+      return most;
+    };
+    EXPECT_LT(worst_at(1, true), 1e-3);
+    EXPECT_LT(worst_at(0.5, true), 1e-3) << "lengths " << static_cast<int>(lengths);
+    EXPECT_GT(worst_at(0.5, false), 1) << "else there is nothing to correct";
   }
 }
 

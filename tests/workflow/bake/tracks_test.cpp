@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
+
+#include "tests/support/bake_fixture.h"
+#include "workflow/bake/forms/form_poses.h"
 
 namespace chronormal::tracks_test {
 namespace {
@@ -38,6 +43,44 @@ TEST(Tracks, pieces_that_are_cut_stay_within_the_tolerance) {
   EXPECT_GT(cut.keys, 2U);
   EXPECT_GT(cut.error, 0);
   EXPECT_LE(cut.error, 1e-4);
+}
+
+// A weight of 4 w (1 - w) is 0 at both keys and 1 half-way: a straight line leaves all of it out there.
+TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_a_gap) {
+  const test::GltfFixture file(test::still_hills_document(1, 3));
+  const GltfShading shading = read_gltf_shading(*file, 0).value();
+  const NormalTerms terms(shading, Weighting::kArea);
+  const std::vector<double> largest(shading.groups.size(), 1.0);
+  const RightNormals rights(shading, terms, shading.normals, largest);
+  std::vector<VertexVectors> columns(2);  // the target, and its extra one
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
+    vertices.push_back(v);
+    const auto part = static_cast<float>(v);
+    columns[0].vectors.push_back({0.3F * std::sin(part), 0.2F, 0.1F});
+    columns[1].vectors.push_back({0.01F * part, 0.2F * std::cos(part), -0.1F});
+  }
+  columns[0].vertices = columns[1].vertices = vertices;
+  double expected = 0;
+  for (const std::uint32_t v : vertices) {
+    const Vec3d half = rights.stored(v) + 0.5 * to_double(columns[0].vectors[v]);
+    expected = std::max(expected, angle_between(half, half + to_double(columns[1].vectors[v])));
+  }
+  ASSERT_GT(expected, 0.1);
+
+  MeshWeights weights{
+      {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
+  const VertexColumns form = by_vertex(columns_of(columns), vertices);
+  for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
+    // As many pieces as this tolerance takes: each leaves the square of its share.
+    const auto count = static_cast<double>(pieces);
+    ExtraDrivers drivers;
+    drivers.formulas = {{0, 0, 4, -4}};
+    double left = 0;
+    cut_tracks(rights, weights, kHosts, vertices, form, 1.01 * expected / (count * count), drivers, left);
+    EXPECT_EQ(drivers.pieces.at({0, 0}), std::vector<std::uint32_t>{static_cast<std::uint32_t>(pieces)});
+    EXPECT_NEAR(left, expected / (count * count), 1e-6) << pieces;
+  }
 }
 
 }  // namespace
