@@ -73,8 +73,9 @@ void limit_corrections(std::size_t most, const WeightUse& use, Corrections& corr
 // Makes forms of what is offered.
 class WorthwhileForms {
  public:
+  // needs_extras: without extra targets there is nothing to offer.
   WorthwhileForms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                  FormLengths lengths)
+                  FormLengths lengths, bool needs_extras)
       : source_(source),
         weights_(weights),
         options_(options),
@@ -85,7 +86,9 @@ class WorthwhileForms {
         vertices_(judged_vertices(source, stored_)),
         numbers_(numbers_of_targets(source, stored_, vertices_)),
         parts_(source.shading) {
-    offer();
+    Corrections all = corrections();
+    have_extras_ = !all.empty();
+    if (have_extras_ || !needs_extras) offer(std::move(all));
   }
 
   void find(std::size_t most_bytes, const std::function<bool(std::size_t)>& is_enough,
@@ -112,7 +115,12 @@ class WorthwhileForms {
     return offered_.columns.size() - 1;
   }
 
-  [[nodiscard]] Corrections corrections(const std::vector<VertexVectors>& ends) const {
+  // The deltas to the ends of targets, where lengths are not free.
+  [[nodiscard]] std::vector<VertexVectors> ends_that_fit() const {
+    return end_point_form(source_.shading, source_.terms, rights_, lengths_).own;
+  }
+
+  [[nodiscard]] Corrections corrections() const {
     Corrections result;
     if (!source_.plan.is_driven || !source_.plan.products_fit || options_.animations_only) return result;
     const auto products = products_of(source_, weights_);
@@ -126,8 +134,8 @@ class WorthwhileForms {
       }
     } else {
       HarmlessForm form;
-      form.own = ends;
-      const std::vector<VertexColumns> forms = {by_vertex(columns_of(ends), vertices_)};
+      form.own = ends_that_fit();
+      const std::vector<VertexColumns> forms = {by_vertex(columns_of(form.own), vertices_)};
       const PoseList samples = weights_.use.samples_with_keys(enough_poses(source_.shading, forms));
       const std::vector<bool> is_new = new_bases(source_);
       const HostJudge judge(rights_, vertices_, source_.shading.element_of_vertex, is_new, options_.hosts,
@@ -141,7 +149,8 @@ class WorthwhileForms {
     return result;
   }
 
-  void offer() {
+  // Offers each target in all ways, with these corrections. Cost: a search for the best delta of each vertex and target.
+  void offer(Corrections all) {
     MeshPlan plan = source_.plan;
     plan.lines = FittedLines();
     const DeltaSource alone{source_.shading, source_.terms, plan, source_.base_normals};
@@ -152,12 +161,10 @@ class WorthwhileForms {
       plan.is_line.assign(plan.is_line.size(), false);
       ends = endpoint_deltas(alone, error);
     } else {
-      ends = end_point_form(source_.shading, source_.terms, rights_, lengths_).own;
+      ends = ends_that_fit();
       single = ends;
     }
     make_harmless_alone(source_, stored_, lengths_, tolerance_, single);
-    Corrections all = corrections(ends);
-    have_extras_ = !all.empty();
     std::size_t keys = 0;
     for (const WeightTrack& track : weights_.tracks)
       keys += (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1) * track.size();
@@ -284,7 +291,7 @@ bool find_worthwhile_forms(const DeltaSource& source, const MeshWeights& weights
                            FormLengths lengths, bool are_near_alone, std::size_t most_bytes,
                            const std::function<bool(std::size_t bytes)>& is_enough,
                            const std::function<std::size_t(ChosenForm)>& take) {
-  const WorthwhileForms forms(source, weights, options, lengths);
+  const WorthwhileForms forms(source, weights, options, lengths, !are_near_alone);
   if (are_near_alone || forms.have_extras()) forms.find(most_bytes, is_enough, take);
   return forms.have_extras();
 }
