@@ -1,4 +1,5 @@
-/// Proofs by Bernstein coefficients that n(t) stays long enough for float32, or for double (docs/theory.md, section 5).
+/// Proofs by Bernstein coefficients that n(t) stays long enough for float32, or for double (docs/theory.md, section 5):
+/// of one element. kernels/certify.h has those of sixteen, with the same operations.
 #ifndef CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 #define CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 
@@ -6,10 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "chronormal/core/polynomial.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/control_normals.h"
+#include "normals/curves/kernels/curve_blocks.h"
+#include "normals/curves/kernels/pack.h"
 
 namespace chronormal::inline internal {
 
@@ -36,12 +40,43 @@ template <std::size_t M>
   return certainly_not_negative(slack);
 }
 
+/// The length of a vector that has been scaled, so that its square counts where the vector does.
+[[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+/// Below this, the scale itself would leave the range of double.
+inline constexpr double kSmallestMesh = 0x1p-900;
+/// What is added to lengths where control normals have exponents of their own, which end there.
+inline constexpr double kSmallestScale = 0x1p-30;
+
+/// The fewest bits that keep this element within the tolerance at every t; nothing where double is needed.
+[[nodiscard]] inline std::optional<Precision> precision_for(const ControlNormals& normals,
+                                                            const PrecisionLimits& limits) {
+  const double largest = largest_component(normals);
+  if (!(largest >= kSmallestMesh)) return std::nullopt;
+  const double scale = 1 / largest;
+  const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
+  const Bernstein<double, 2> one = {1, 1, 1}, lengths = {scaled_length(n[0]), scaled_length(n[1]), scaled_length(n[2])};
+  if (limits.largest_ratio16 > 0 && stays_above(n, limits.largest_ratio16, one))
+    return stays_above(n, limits.largest_ratio11, one) ? Precision::k11 : Precision::k16;
+  if (limits.sum_ratio_scaled16 > 0) {
+    const Bernstein<double, 2> scales = {lengths[0] + kSmallestScale, lengths[1] + kSmallestScale,
+                                         lengths[2] + kSmallestScale};
+    if (stays_above(n, limits.sum_ratio_scaled16, scales)) return Precision::kScaled16;
+  }
+  if (stays_above(n, limits.sum_ratio32, lengths)) return Precision::k32;
+  return std::nullopt;
+}
+
 /// Control normals in double whose components are off by at most this share of each are good enough for float32.
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// n(t) in double has a direction where its largest component is above this share of sum w_k max_abs(c_k): what the
 /// control normals are off by, and ten roundings of 2^-53, turn it by less than 6e-7 rad then.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
+
+inline constexpr double kDeterminantRounding = 0x1p-44;
+inline constexpr double kSmallestLength = 0x1p-400;      ///< so that squares stay in range
+inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< whose square is far above the rounding of the proof
 
 /// Whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant knows: n(t) never
 /// leaves the plane of the three control normals, nor gets nearer to zero than that plane is.
@@ -50,17 +85,14 @@ inline constexpr double kLargestShare = 0x1p-30;
   if (largest == 0) return true;
   const double scale = 1 / largest, share = 4 * certain;  // 2 between norms, and 2 to be safe
   const Bernstein<Vec3d, 2> n = {scale * c.n0, scale * c.m, scale * c.n1};
-  constexpr double kRounding = 0x1p-44;  // of the determinant
-  if (std::fabs(dot(n[0], cross(n[1], n[2]))) >= share * length(cross(n[1] - n[0], n[2] - n[0])) + kRounding)
-    return true;
+  const double height = std::fabs(dot(n[0], cross(n[1], n[2])));
+  if (height >= share * scaled_length(cross(n[1] - n[0], n[2] - n[0])) + kDeterminantRounding) return true;
 
-  constexpr double kSmallest = 0x1p-400;      // so that squares stay in range
-  constexpr double kSmallestShare = 0x1p-20;  // whose square is far above the rounding of the proof
   Bernstein<double, 2> limit;
   for (std::size_t k = 0; k < limit.size(); ++k) {
-    const double size = length(n[k]);
-    if (0 < size && size < kSmallest) return false;
-    limit[k] = std::max(share, kSmallestShare) * size;
+    const double size = scaled_length(n[k]);
+    if (max_abs(n[k]) > 0 && size < kSmallestLength) return false;
+    limit[k] = std::max(share, kSmallestProvenShare) * size;
   }
   return stays_above(n, 1, limit);
 }

@@ -135,7 +135,11 @@ class Build {
 
   // Puts the results of the parts one after the other.
   CurveData finish() {
-    std::size_t bytes = 0;
+    std::size_t bytes = 0, flagged = 0;
+    for (const CurvePart& made : parts_) flagged += made.flagged.size();
+    curves_.flagged.reserve(flagged);
+    curves_.flagged_tiles.resize(block_count(flagged, kTile));
+    flagged = 0;
     for (const CurvePart& made : parts_) {
       for (const CurveData::Run& run : made.runs) {
         if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
@@ -146,7 +150,10 @@ class Build {
       }
       bytes += made.bytes;
       append(curves_.flagged, made.flagged);
-      append(curves_.flagged_normals, made.flagged_normals);
+      for (const FlaggedNormals& normals : made.flagged_normals) {
+        curves_.flagged_tiles[flagged / kTile].set(flagged % kTile, normals);
+        ++flagged;
+      }
       for (const auto& [element, digits] : made.exact)
         curves_.exact.push_back({element, curves_.exact_digits.size() + digits});
       append(curves_.exact_digits, made.exact_digits);

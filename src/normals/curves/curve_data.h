@@ -39,9 +39,9 @@ struct CurveData {
   AlignedBytes blocks;
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
-  /// Elements that are evaluated in double, ascending, and what from.
+  /// Elements that are evaluated in double, ascending, and what from: sixteen of them side by side.
   std::vector<std::size_t> flagged;
-  std::vector<FlaggedNormals> flagged_normals;
+  std::vector<FlaggedTile> flagged_tiles;
   /// The flagged elements for which double does not suffice at every t, in ascending order. `digits` is the place in
   /// exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
@@ -51,6 +51,11 @@ struct CurveData {
   std::vector<ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
+
+  /// Of the element flagged[index].
+  [[nodiscard]] ControlNormals flagged_normals(std::size_t index) const noexcept {
+    return element_of(flagged_tiles[index / kTile].normals, index % kTile);
+  }
 };
 
 /// Writes the unit normals of the flagged elements at t, and returns how many have no direction.

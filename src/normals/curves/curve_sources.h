@@ -1,6 +1,7 @@
 /// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in float32
+///     in_double(elements, tile)   up to sixteen, and how far off those may be; returns which it leaves to the next, as bits
 ///     in_double(i)             one element, and how far off that may be
 ///     exact(i)                 the same without any rounding, where there are positions to make it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
@@ -39,6 +40,11 @@ class GivenNormals {
     }
   }
   // They are the truth, whatever they were made from.
+  [[nodiscard]] std::uint32_t in_double(IndexRange elements, BoundedTile& tile) const {
+    for (std::size_t lane = 0; lane < kTile; ++lane)
+      put(tile, lane, {normals_[elements.first + std::min(lane, elements.count - 1)], {}});
+    return 0;
+  }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:
@@ -51,6 +57,15 @@ class FaceNormals {
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
 
   void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
+  [[nodiscard]] std::uint32_t in_double(IndexRange faces, BoundedTile& tile) const {
+    if (segment_.topology->all_triangles()) {
+      bounded_triangle_tile(segment_, faces, tile);
+    } else {
+      for (std::size_t lane = 0; lane < kTile; ++lane)
+        put(tile, lane, in_double(faces.first + std::min(lane, faces.count - 1)));
+    }
+    return 0;
+  }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
     return polygon_control_normals(segment_, segment_.topology->face(i));
   }
@@ -69,6 +84,9 @@ class GroupNormals {
       : segment_(segment), groups_(groups), tiles_(segment, groups, fetch) {}
 
   void write(IndexRange elements, std::span<ControlTile> tiles) const { tiles_.write(elements, tiles); }
+  [[nodiscard]] std::uint32_t in_double(IndexRange elements, BoundedTile& tile) const {
+    return tiles_.write_bounded(elements, tile);
+  }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
   [[nodiscard]] ExactCurve exact(std::size_t i) const { return ExactCurve::of_faces(segment_, groups_.faces(i)); }
 

@@ -51,19 +51,29 @@ const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
 // settle(index, element) for the others; `index` is that among the flagged.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, double t, const Write& write, const Settle& settle) {
-  constexpr std::size_t kBatch = 64;
-  Vec3f batch[kBatch];
-  std::uint32_t doubtful[kBatch];
   const auto index_of = [&flagged = curves.flagged](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
-  const std::size_t end = index_of(range.end());
-  for (std::size_t i = index_of(range.first); i < end; i += kBatch) {
-    const std::size_t count = std::min(kBatch, end - i);
-    const std::size_t doubtful_count =
-        flagged_unit_normals(std::span(curves.flagged_normals).subspan(i, count), t, std::span(batch, count), doubtful);
-    for (std::size_t k = 0; k < count; ++k) write(curves.flagged[i + k], batch[k]);
-    for (std::size_t k = 0; k < doubtful_count; ++k) settle(i + doubtful[k], curves.flagged[i + doubtful[k]]);
+  constexpr std::size_t kBatch = 4;  // tiles
+  const std::size_t begin = index_of(range.first), end = index_of(range.end());
+  FlaggedUnits batch[kBatch];
+  for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {
+    const std::size_t count = std::min(kBatch, curves.flagged_tiles.size() - tile);
+    flagged_unit_normals(std::span(curves.flagged_tiles).subspan(tile, count), t, batch);
+    const auto for_lanes = [&](std::size_t i, const auto& body) {
+      const std::size_t first = (tile + i) * kTile;
+      for (std::size_t k = std::max(first, begin); k < std::min(first + kTile, end); ++k) body(k, k - first);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const FlaggedUnits& units = batch[i];
+      for_lanes(i, [&](std::size_t k, std::size_t lane) {
+        write(curves.flagged[k], Vec3f{units.x[lane], units.y[lane], units.z[lane]});
+      });
+      if (units.uncertain == 0) continue;
+      for_lanes(i, [&](std::size_t k, std::size_t lane) {
+        if ((units.uncertain >> lane & 1) != 0) settle(k, curves.flagged[k]);
+      });
+    }
   }
 }
 
@@ -76,7 +86,7 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, doubl
       [&](std::size_t index, std::size_t element) {
         const std::int32_t* const digits = digits_of(curves, element);
         const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
-                                               : unit_normal_at(curves.flagged_normals[index].normals, t);
+                                               : unit_normal_at(curves.flagged_normals(index), t);
         output.set(element, to_float(u.vector));
         if (u.direction == Direction::kNone) ++without_direction;
       });
@@ -268,7 +278,7 @@ std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   for_flagged(
       curves, {0, curves.size}, t, [](std::size_t, const Vec3f&) {},
       [&](std::size_t index, std::size_t element) {
-        const bool is_zero = largest_component(curves.flagged_normals[index].normals) == 0;
+        const bool is_zero = largest_component(curves.flagged_normals(index)) == 0;
         if (!is_zero && digits_of(curves, element) == nullptr) ++count;
       });
   return count;
@@ -308,9 +318,8 @@ void NormalCurves::normals(double time, VectorView<float> result) const noexcept
   }
   for (std::size_t k = 0; k < curves.flagged.size(); ++k) {
     const std::int32_t* const digits = digits_of(curves, curves.flagged[k]);
-    result.set(curves.flagged[k],
-               clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
-                                                  : normal_at(curves.flagged_normals[k].normals, t)));
+    result.set(curves.flagged[k], clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
+                                                                     : normal_at(curves.flagged_normals(k), t)));
   }
 }
 

@@ -20,6 +20,7 @@
 #include "normals/curves/certificate.h"
 #include "normals/curves/curve_data.h"
 #include "normals/curves/curve_sources.h"
+#include "normals/curves/kernels/certify.h"
 #include "normals/curves/kernels/curve_blocks.h"
 #include "normals/curves/kernels/pack.h"
 
@@ -31,35 +32,9 @@ inline constexpr std::size_t kWrittenTiles = 4;  // that one call of a source wr
 
 inline constexpr std::size_t kShortestRun = 4;  // blocks
 
-// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2, at worst
-// that of 2^-53 / 64, stays in the range of float32.
-inline constexpr int kLargestExponent = 50;
-inline constexpr double kLargestComponent = 0x1p50;
-inline constexpr double kSmallestEnd = 0x1p-52;
 inline constexpr double kSmallestShare = kSmallestEnd / kLargestComponent;
-// Below this, the scale itself would leave the range of double.
-inline constexpr double kSmallestMesh = 0x1p-900;
 
 inline double smaller_end(const ControlNormals& c) { return std::min(max_abs(c.n0), max_abs(c.n1)); }
-
-// The fewest bits that keep this element within the tolerance at every t; nothing where double is needed.
-inline std::optional<Precision> precision_for(const ControlNormals& normals, const PrecisionLimits& limits) {
-  const double largest = largest_component(normals);
-  if (!(largest >= kSmallestMesh)) return std::nullopt;
-  const double scale = 1 / largest;
-  const Bernstein<Vec3d, 2> n = {scale * normals.n0, scale * normals.m, scale * normals.n1};
-  const Bernstein<double, 2> one = {1, 1, 1}, lengths = {length(n[0]), length(n[1]), length(n[2])};
-  if (limits.largest_ratio16 > 0 && stays_above(n, limits.largest_ratio16, one))
-    return stays_above(n, limits.largest_ratio11, one) ? Precision::k11 : Precision::k16;
-  if (limits.sum_ratio_scaled16 > 0) {
-    constexpr double kSmallestScale = 0x1p-30;  // exponents end there
-    const Bernstein<double, 2> scales = {lengths[0] + kSmallestScale, lengths[1] + kSmallestScale,
-                                         lengths[2] + kSmallestScale};
-    if (stays_above(n, limits.sum_ratio_scaled16, scales)) return Precision::kScaled16;
-  }
-  if (stays_above(n, limits.sum_ratio32, lengths)) return Precision::k32;
-  return std::nullopt;
-}
 
 inline ControlNormals scaled(double scale, const ControlNormals& c) {
   return {scale * c.n0, scale * c.m, scale * c.n1};
@@ -178,6 +153,9 @@ class PartBuilder {
   }
 
  private:
+  // The first lanes of a tile, as bits.
+  static constexpr std::uint32_t lanes_of(std::size_t count) { return (std::uint32_t{1} << count) - 1; }
+
   template <class Source>
   void add_chunk(Source& source, IndexRange elements) {
     const std::size_t tile_count = (elements.count + kTile - 1) / kTile;
@@ -194,7 +172,7 @@ class PartBuilder {
     for (std::size_t k = 0; k < tile_count; ++k) {
       const IndexRange range{elements.first + k * kTile, std::min(kTile, elements.count - k * kTile)};
       needs[k].precision = summaries[k].precision;
-      const std::uint32_t all = range.count == kTile ? 0xFFFF : (1u << range.count) - 1;
+      const std::uint32_t all = lanes_of(range.count);
       std::uint32_t counted = all;
       if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], tiles[k], needs[k]);
       const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
@@ -231,21 +209,26 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of a tile that the quick test did not settle. Returns the flagged ones as bits.
+  // Examines in double the elements of a tile that the quick test did not settle: sixteen at a time, and one by one what
+  // that leaves. Returns the flagged ones as bits.
   template <class Source>
-  std::uint32_t examine(Source& source, IndexRange elements, TileSummary& summary, ControlTile& tile, Need& need) {
-    std::uint32_t flagged = 0, needs_exact = 0;
+  std::uint32_t examine(Source& source, IndexRange elements, const TileSummary& summary, ControlTile& tile,
+                        Need& need) {
+    constexpr int kFewest = 3;  // for which sixteen at a time pay
+    const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
+    BoundedTile bounded;
+    TileCertificates known;
+    if (std::popcount(uncertain) >= kFewest) {
+      const std::uint32_t asked = uncertain & ~source.in_double(elements, bounded);
+      certify_tile(bounded, limits_, asked, known);
+      need.precision = std::max(need.precision, known.precision);
+    }
+    std::uint32_t flagged = known.flagged, needs_exact = known.needs_exact;
     bool out_of_range = false;
-    Examined found[kTile];
-    for (std::size_t lane = 0; lane < kTile; ++lane) {
-      if ((summary.uncertain >> lane & 1) == 0) continue;
-      if (lane >= elements.count) {  // a repetition of the last element
-        for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
-        continue;
-      }
-      found[lane] = examined(source, elements.first + lane, limits_);
-      const auto& [normals, precision, certain, lane_needs_exact] = found[lane];
-      set_degree(summary, lane, degree(normals));
+    std::array<std::optional<Examined>, kTile> alone;
+    for_lanes(uncertain & ~known.known, [&](std::size_t lane) {
+      alone[lane] = examined(source, elements.first + lane, limits_);
+      const auto& [normals, precision, certain, lane_needs_exact] = *alone[lane];
       if (precision) {
         need.precision = std::max(need.precision, *precision);
         put(tile, lane, normals);
@@ -254,51 +237,54 @@ class PartBuilder {
         flagged |= 1u << lane;
         needs_exact |= static_cast<std::uint32_t>(lane_needs_exact) << lane;
       }
-    }
-    if (out_of_range) {
-      for (std::size_t lane = 0; lane < elements.count; ++lane) {
-        if ((summary.uncertain >> lane & 1) == 0) found[lane] = examined(source, elements.first + lane, limits_);
-      }
-      flagged |= rescale(found, elements, flagged, tile);
-    }
-    for (std::size_t lane = 0; lane < elements.count; ++lane) {
-      if ((flagged >> lane & 1) == 0) continue;
+    });
+    if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
+    for_lanes(flagged, [&](std::size_t lane) {
       put(tile, lane, kPlaceHolder);
       part_.flagged.push_back(elements.first + lane);
-      part_.flagged_normals.push_back({found[lane].normals, found[lane].certain});
+      if (alone[lane]) {
+        part_.flagged_normals.push_back({alone[lane]->normals, alone[lane]->certain});
+      } else {
+        part_.flagged_normals.push_back({element_of(bounded.normals, lane), known.certain[lane]});
+      }
       if constexpr (!std::is_same_v<Source, GivenNormals>) {
-        if ((needs_exact >> lane & 1) == 0) continue;
+        if ((needs_exact >> lane & 1) == 0) return;
         part_.exact.push_back({elements.first + lane, part_.exact_digits.size()});
         source.exact(elements.first + lane).append_to(part_.exact_digits);
       }
-    }
+    });
     for (std::size_t lane = elements.count; lane < kTile; ++lane)
       for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
     return flagged;
   }
 
-  static void set_degree(TileSummary& summary, std::size_t lane, int element_degree) {
-    const std::uint32_t bit = 1u << lane;
-    summary.moving = element_degree > 0 ? summary.moving | bit : summary.moving & ~bit;
-    summary.bending = element_degree > 1 ? summary.bending | bit : summary.bending & ~bit;
+  // Calls body(lane) for each bit that is set.
+  template <class Body>
+  static void for_lanes(std::uint32_t lanes, const Body& body) {
+    for (; lanes != 0; lanes &= lanes - 1) body(static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
-  // Gives a tile an exponent of its own. Returns the elements that are too small for it beside the others.
-  std::uint32_t rescale(const Examined* found, IndexRange elements, std::uint32_t flagged, ControlTile& tile) {
+  // Gives a tile an exponent of its own, which takes a look at all elements of it that are not flagged. Returns those that
+  // are too small for it beside the others.
+  template <class Source>
+  std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
+                        std::array<std::optional<Examined>, kTile>& alone) {
+    const std::uint32_t others = lanes_of(elements.count) & ~flagged;
     double largest = 0;
-    for (std::size_t lane = 0; lane < elements.count; ++lane) {
-      if ((flagged >> lane & 1) == 0) largest = std::max(largest, largest_component(found[lane].normals));
-    }
+    for_lanes(others, [&](std::size_t lane) {
+      if (!alone[lane]) alone[lane] = examined(source, elements.first + lane, limits_);
+      largest = std::max(largest, largest_component(alone[lane]->normals));
+    });
     const int exponent = std::ilogb(largest) - kLargestExponent;
     std::uint32_t too_small = 0;
-    for (std::size_t lane = 0; lane < elements.count; ++lane) {
-      if ((flagged >> lane & 1) != 0) continue;
-      if (!(smaller_end(found[lane].normals) >= kSmallestShare * largest)) {
+    for_lanes(others, [&](std::size_t lane) {
+      const ControlNormals& normals = alone[lane]->normals;
+      if (!(smaller_end(normals) >= kSmallestShare * largest)) {
         too_small |= 1u << lane;
       } else {
-        put(tile, lane, scaled(std::ldexp(1.0, -exponent), found[lane].normals));
+        put(tile, lane, scaled(std::ldexp(1.0, -exponent), normals));
       }
-    }
+    });
     if (part_.exponents.empty()) part_.exponents.resize((part_.elements.count + kTile - 1) / kTile);
     part_.exponents[(elements.first - part_.elements.first) / kTile] = static_cast<std::int16_t>(exponent);
     return too_small;

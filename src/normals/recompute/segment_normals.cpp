@@ -49,14 +49,15 @@ constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kP
 // Of groups: a triangle of the fan around an element, which is a point of its path, and a point that was not at hand.
 // (The ratio of these to what preparing took before is that of a Zen 4 of 3.7 GHz.)
 constexpr Row kPreparePoint = {2.75, 2.85, 3.4}, kPreparePointMiss = {0.3, 3, 9};
-// An element that is examined on its own, and each of its faces.
-constexpr double kExamined = 100, kExaminedFace = 52;
+// An element that is examined on its own, and each of its faces; or one of sixteen that are prepared once more, in double.
+// (The ratio of the latter to preparing is that of a Zen 4, too.)
+constexpr double kExamined = 100, kExaminedFace = 52, kExaminedOfTile = 20;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
 // Evaluating curves: an element, each byte that is read or written, and an element in double.
 constexpr Row kEvaluate = {0.43, 0.2, 0}, kEvaluateByte = {0.0006, 0.015, 0.04};
-constexpr double kEvaluateFlagged = 7.5;
+constexpr double kEvaluateFlagged = 2.8;
 
 constexpr double kResultBytes = 3 * sizeof(float);
 constexpr double kPositionBytes = 6 * sizeof(float);  // of both ends
@@ -273,7 +274,8 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   }
   costs.in_float32 += vertices / elements * cost(kFloatVertex, level);
   costs.recompute += kRecomputeThin * shape.doubtful * terms;
-  costs.prepare += shape.doubtful * (kExamined + kExaminedFace * terms);
+  costs.prepare +=
+      std::min(shape.doubtful * (kExamined + kExaminedFace * terms), costs.prepare + shape.doubtful * kExaminedOfTile);
 
   const double kept = curve_bytes_of_element(shape.degree, tolerance);
   costs.curve_bytes = kept * elements;

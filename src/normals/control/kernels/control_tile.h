@@ -34,6 +34,14 @@ inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) no
   }
 }
 
+/// The element in a lane of nine planes of doubles.
+[[nodiscard]] inline ControlNormals element_of(const double (&planes)[9][kTile], std::size_t lane) noexcept {
+  const auto vector = [&planes, lane](std::size_t k) {
+    return Vec3d{planes[k][lane], planes[k + 1][lane], planes[k + 2][lane]};
+  };
+  return {vector(0), vector(3), vector(6)};
+}
+
 }  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_

@@ -27,6 +27,11 @@ float magnitude_above(double magnitude) noexcept {
   return std::max(static_cast<float>(magnitude * (1 + 0x1p-20)), std::numeric_limits<float>::min());
 }
 
+void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept {
+  set_normals(c.normals, lane, tile);
+  for (std::size_t k = 0; k < c.errors.size(); ++k) tile.errors[k][lane] = c.errors[k];
+}
+
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept {
   const PolygonNormals polygon = polygon_control_normals(segment, segment.topology->face(face));
   set_normals(polygon.normals, lane, tile);

@@ -7,6 +7,7 @@
 
 #include "chronormal/motion/motion.h"
 #include "normals/control/kernels/control_tile.h"
+#include "normals/control/polygon_normals.h"
 
 namespace chronormal::inline internal {
 
@@ -15,6 +16,14 @@ struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
 };
+
+/// What BoundedNormals are for one element, of sixteen.
+struct BoundedTile : ExactTile {
+  double errors[3][kTile];  ///< how far any component of n0, m and n1 may be from the exact one
+};
+
+/// Writes an element into a lane of a tile.
+void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
 /// Of the magnitude of a triangle: its rounding error is below half of it.
 inline constexpr double kErrorAbove = 0x1p-47;

@@ -28,6 +28,10 @@ void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
   }
 }
 
+void BoundedTriangles(const Segment& segment, IndexRange faces, BoundedTile& tile) {
+  FaceTile(segment, AccessOf(segment), faces.first, faces.end(), tile, tile.errors);
+}
+
 void TriangleControlNormals(const Segment& segment, IndexRange faces, double* result) {
   constexpr std::size_t kRow = 9;
   const PointAccess access = AccessOf(segment);
@@ -53,12 +57,18 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(FaceTiles);
+HWY_EXPORT(BoundedTriangles);
 HWY_EXPORT(TriangleControlNormals);
 
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {
   assert(faces.count > 0 && faces.end() <= segment.topology->face_count());
   assert(tiles.size() == (faces.count + kTile - 1) / kTile);
   HWY_DYNAMIC_DISPATCH(FaceTiles)(segment, faces, tiles.data());
+}
+
+void bounded_triangle_tile(const Segment& segment, IndexRange faces, BoundedTile& tile) noexcept {
+  assert(segment.topology->all_triangles() && faces.count > 0 && faces.count <= kTile);
+  HWY_DYNAMIC_DISPATCH(BoundedTriangles)(segment, faces, tile);
 }
 
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {

@@ -9,6 +9,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "normals/control/kernels/control_tile.h"
+#include "normals/control/kernels/exact_tile.h"
 
 namespace chronormal::inline internal {
 
@@ -16,6 +17,10 @@ namespace chronormal::inline internal {
 /// are those of face_control_normals(), rounded to float32, and so is the degree.
 /// tiles must have ceil(faces.count / 16) elements; faces.count > 0
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
+
+/// Writes up to sixteen triangles in double, with bounds on their errors, for a closer look. Lanes behind the last one
+/// repeat it.
+void bounded_triangle_tile(const Segment& segment, IndexRange faces, BoundedTile& tile) noexcept;
 
 /// face_control_normals() of a mesh of triangles.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;

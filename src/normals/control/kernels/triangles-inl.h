@@ -15,6 +15,7 @@
 #include <limits>
 
 #include "chronormal/motion/motion.h"
+#include "core/rounding.h"
 #include "motion/coherence.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/exact_tile.h"
@@ -139,6 +140,17 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
+// The same of n0, m and n1, each with its own ends; in m, of both products.
+HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
+  const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
+  const Floats f0 = MaxAbs(p.c0 - p.a0), f1 = MaxAbs(p.c1 - p.a1);
+  const auto above = [](Floats e, Floats f) HWY_ATTR {
+    const Floats tiny = hn::Min(hn::Min(e, f), hn::Set(kFloats, std::numeric_limits<float>::min()));
+    return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-18f), hn::Mul(e, f)), tiny);
+  };
+  return {above(e0, f0), hn::Add(above(e0, f1), above(e1, f0)), above(e1, f1)};
+}
+
 // Of half of the lanes, into tile. Whether one of the values may be noise, or a zero, or a vector hardly more than
 // noise.
 template <int kHalf>
@@ -159,6 +171,15 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
   const Doubles smallest = SmallerAbs(SmallerAbs(MinAbs(n0), MinAbs(m)), MinAbs(n1));
   const Doubles certain = hn::Mul(hn::Set(kDoubles, kCertainAbove), ToDouble<kHalf>(magnitude));
   return !hn::AllTrue(kDoubles, hn::Gt(smallest, certain));
+}
+
+// Of half of the lanes, the errors that CrossSum::error() bounds.
+template <int kHalf>
+HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], std::size_t lane) {
+  const Doubles3 e = Scale(hn::Set(kDoubles, 12 * kUnitRoundoff), ToDouble<kHalf>(magnitudes));
+  hn::Store(e.x, kDoubles, errors[0] + lane);
+  hn::Store(e.y, kDoubles, errors[1] + lane);
+  hn::Store(e.z, kDoubles, errors[2] + lane);
 }
 
 // Makes -0 a 0, and asks for every triangle with a component that may be noise, or a vector of which noise may be more
@@ -189,8 +210,9 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   }
 }
 
+// Where `errors` is given, it gets those of BoundedTile.
 template <PointAccess kAccess>
-void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
+void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTile& tile, double (*errors)[kTile]) {
   bool noise = false;
   for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
     const TriangleLanes p = LoadTriangles<kAccess>(segment, corners + 3 * lane);
@@ -198,6 +220,11 @@ void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTil
     hn::Store(magnitude, kFloats, tile.magnitude + lane);
     noise |= HalfOfTriangles<0>(p, magnitude, lane, tile);
     if constexpr (kLanes > 1) noise |= HalfOfTriangles<1>(p, magnitude, lane, tile);
+    if (errors != nullptr) {
+      const Lanes3 magnitudes = MagnitudesAbove(p);
+      StoreErrors<0>(magnitudes, errors, lane);
+      if constexpr (kLanes > 1) StoreErrors<1>(magnitudes, errors, lane + kDoubleLanes);
+    }
   }
   if (noise) SettleNoise(segment, corners, tile);
 }
@@ -212,10 +239,10 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 }
 
 // Sixteen triangles; corners: their 48 vertices. Whether those are far from each other in memory.
-HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const std::uint32_t* corners,
-                             ExactTile& tile) {
+HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const std::uint32_t* corners, ExactTile& tile,
+                             double (*errors)[kTile] = nullptr) {
   if (access == PointAccess::kAny) {
-    TriangleTile<PointAccess::kAny>(segment, corners, tile);
+    TriangleTile<PointAccess::kAny>(segment, corners, tile, errors);
     return false;
   }
   constexpr std::uint32_t kFar = 1u << 14;  // positions: more than a cache near the core holds
@@ -227,21 +254,22 @@ HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const s
   }
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(segment.from.count - 1));
   if (HWY_UNLIKELY(!hn::AllFalse(tag, hn::Eq(highest, last)))) {
-    TriangleTile<PointAccess::kLastRow>(segment, corners, tile);
+    TriangleTile<PointAccess::kLastRow>(segment, corners, tile, errors);
   } else if (access == PointAccess::kPacked) {
-    TriangleTile<PointAccess::kPacked>(segment, corners, tile);
+    TriangleTile<PointAccess::kPacked>(segment, corners, tile, errors);
   } else if (access == PointAccess::kEnds) {
-    TriangleTile<PointAccess::kEnds>(segment, corners, tile);
+    TriangleTile<PointAccess::kEnds>(segment, corners, tile, errors);
   } else {
-    TriangleTile<PointAccess::kRow>(segment, corners, tile);
+    TriangleTile<PointAccess::kRow>(segment, corners, tile, errors);
   }
   const auto far_bits = hn::And(hn::Sub(highest, lowest), hn::Set(tag, ~(kFar - 1)));
   return !hn::AllTrue(tag, hn::Eq(far_bits, hn::Zero(tag)));
 }
 
-// The faces first ... first + 15; those from `end` on repeat the one before. first < end
+// The faces first ... first + 15; those from `end` on repeat the one before. Where `errors` is given, it gets those of
+// BoundedTile, of triangles. first < end
 HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
-                         ExactTile& tile) {
+                         ExactTile& tile, double (*errors)[kTile] = nullptr) {
   constexpr std::size_t kAhead = 2;  // tiles
   const Topology& topology = *segment.topology;
   if (!topology.all_triangles()) {
@@ -250,14 +278,14 @@ HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t
   }
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {
-    const bool far = TriangleTile(segment, access, corners, tile);
+    const bool far = TriangleTile(segment, access, corners, tile, errors);
     if (far && first + (kAhead + 1) * kTile <= topology.face_count())
       PrefetchPoints(segment, corners + 3 * kAhead * kTile, 3 * kTile);
     return;
   }
   std::uint32_t repeated[3 * kTile];
   for (std::size_t i = 0; i < 3 * kTile; ++i) repeated[i] = corners[3 * std::min(i / 3, end - 1 - first) + i % 3];
-  TriangleTile(segment, access, repeated, tile);
+  TriangleTile(segment, access, repeated, tile, errors);
 }
 
 // Sixteen rows of nine doubles: the components of a face.

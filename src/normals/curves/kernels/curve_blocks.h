@@ -63,6 +63,12 @@ enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
   return degree == 1 ? BlockKind::kLinear32 : BlockKind::kQuadratic32;
 }
 
+// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2, at worst
+// that of 2^-53 / 64, stays in the range of float32.
+inline constexpr int kLargestExponent = 50;
+inline constexpr double kLargestComponent = 0x1p50;
+inline constexpr double kSmallestEnd = 0x1p-52;
+
 inline constexpr int kMaxScaleExponent = 31;
 
 /// What all elements share at one t, in the form that each kind wants it.

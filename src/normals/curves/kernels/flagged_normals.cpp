@@ -1,93 +1,75 @@
+// Evaluates sixteen flagged elements in lanes of double.
 #include "normals/curves/kernels/flagged_normals.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/flagged_normals.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
+#include "simd/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-using DoubleTag = hn::CappedTag<double, 8>;
-using Doubles = hn::Vec<DoubleTag>;
-inline constexpr DoubleTag kDoubles;
-inline constexpr std::size_t kDoubleLanes = hn::MaxLanes(DoubleTag());
+HWY_INLINE Doubles LargestOf(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 
-struct DoubleLanes3 {
-  Doubles x, y, z;
-};
-
-HWY_INLINE Doubles LargestOf(const DoubleLanes3& v) {
-  return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+// The inverse of the power of two below a number, so that their product is exact, and at least 1 and below 4; of numbers
+// below the normal ones, the largest such inverse.
+HWY_INLINE Doubles InversePowerBelow(Doubles v) {
+  const hn::RebindToSigned<DoubleTag> ints;
+  const Doubles bounded = hn::Min(v, hn::Set(kDoubles, 0x1p1022));  // 2^-1023 would not be a normal number
+  const auto exponent = hn::And(hn::BitCast(ints, bounded), hn::Set(ints, std::int64_t{0x7FF} << 52));
+  return hn::BitCast(kDoubles, hn::Sub(hn::Set(ints, std::int64_t{0x7FE} << 52), exponent));
 }
 
-HWY_INLINE DoubleLanes3 Weighted(Doubles w, const DoubleLanes3& v) {
-  return {hn::Mul(w, v.x), hn::Mul(w, v.y), hn::Mul(w, v.z)};
-}
-
-HWY_INLINE DoubleLanes3 Sum(const DoubleLanes3& a, const DoubleLanes3& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-
-// Unit normals of the regular lanes, with n(t) operation by operation as normal_at() has it; returns which are, as
-// bits.
-std::uint32_t RegularUnitNormals(const double* planes, std::size_t stride, double t, double* result) {
+// Writes n(t), scaled, and returns for which elements it is not certain, as bits. With the operations of normal_at().
+HWY_INLINE std::uint32_t Evaluate(const FlaggedTile& tile, double t, FlaggedUnits& result) {
   const double s = 1 - t;
-  const auto vector = [=](std::size_t k) HWY_ATTR {
-    const double* const p = planes + 3 * k * stride;
-    return DoubleLanes3{hn::Load(kDoubles, p), hn::Load(kDoubles, p + stride), hn::Load(kDoubles, p + 2 * stride)};
-  };
   const Doubles w0 = hn::Set(kDoubles, s * s), w1 = hn::Set(kDoubles, 2 * t * s), w2 = hn::Set(kDoubles, t * t);
-  const DoubleLanes3 n0 = vector(0), m = vector(1), n1 = vector(2);
-  const DoubleLanes3 n = Sum(Sum(Weighted(w0, n0), Weighted(w1, m)), Weighted(w2, n1));
-  const Doubles size =
-      hn::Add(hn::Add(hn::Mul(w0, LargestOf(n0)), hn::Mul(w1, LargestOf(m))), hn::Mul(w2, LargestOf(n1)));
-  const Doubles largest = LargestOf(n), certain = hn::Load(kDoubles, planes + 9 * stride);
-  const auto regular = hn::Gt(largest, hn::Mul(certain, size));
+  std::uint32_t uncertain = 0;
+  for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
+    const auto vector = [&tile, lane](std::size_t k) HWY_ATTR {
+      return Doubles3{hn::Load(kDoubles, tile.normals[k] + lane), hn::Load(kDoubles, tile.normals[k + 1] + lane),
+                      hn::Load(kDoubles, tile.normals[k + 2] + lane)};
+    };
+    const Doubles3 n0 = vector(0), m = vector(3), n1 = vector(6);
+    const Doubles3 n = (Scale(w0, n0) + Scale(w1, m)) + Scale(w2, n1);
+    const Doubles size =
+        hn::Add(hn::Add(hn::Mul(w0, LargestOf(n0)), hn::Mul(w1, LargestOf(m))), hn::Mul(w2, LargestOf(n1)));
+    const Doubles largest = LargestOf(n);
+    const auto certain = hn::Gt(largest, hn::Mul(hn::Load(kDoubles, tile.certain + lane), size));
 
-  // Against the largest component, so that squares stay in range.
-  const Doubles divisor = hn::IfThenElse(regular, largest, hn::Set(kDoubles, 1.0));
-  const DoubleLanes3 u{hn::Div(n.x, divisor), hn::Div(n.y, divisor), hn::Div(n.z, divisor)};
-  const Doubles square = hn::Add(hn::Add(hn::Mul(u.x, u.x), hn::Mul(u.y, u.y)), hn::Mul(u.z, u.z));
-  const Doubles length = hn::Sqrt(hn::IfThenElse(regular, square, hn::Set(kDoubles, 1.0)));
-  hn::Store(hn::Div(u.x, length), kDoubles, result);
-  hn::Store(hn::Div(u.y, length), kDoubles, result + stride);
-  hn::Store(hn::Div(u.z, length), kDoubles, result + 2 * stride);
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(kDoubles, regular, bits);
-  return bits[0] & ((1u << kDoubleLanes) - 1);
+    // Times a power of two, so that float32 has all of it in range, and carries on from here.
+    const Doubles3 u = Scale(InversePowerBelow(largest), n);
+    const HalfFloatTag floats;
+    hn::Store(hn::DemoteTo(floats, u.x), floats, result.x + lane);
+    hn::Store(hn::DemoteTo(floats, u.y), floats, result.y + lane);
+    hn::Store(hn::DemoteTo(floats, u.z), floats, result.z + lane);
+    uncertain |= BitsOf(kDoubles, hn::Not(certain)) << lane;
+  }
+  return uncertain;
 }
 
-std::size_t FlaggedUnitNormals(const FlaggedNormals* normals, std::size_t count, double t, Vec3f* result,
-                               std::uint32_t* doubtful) {
-  std::size_t doubtful_count = 0;
-  for (std::size_t first = 0; first < count; first += kDoubleLanes) {
-    const std::size_t part = std::min(kDoubleLanes, count - first);
-    alignas(64) double planes[10][kDoubleLanes], units[3][kDoubleLanes];
-    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) {
-      const auto& [c, certain] = normals[first + std::min(lane, part - 1)];
-      std::size_t plane = 0;
-      for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
-        planes[plane++][lane] = v->x;
-        planes[plane++][lane] = v->y;
-        planes[plane++][lane] = v->z;
-      }
-      planes[plane][lane] = certain;
-    }
-    const std::uint32_t regular = RegularUnitNormals(planes[0], kDoubleLanes, t, units[0]);
-    for (std::size_t lane = 0; lane < part; ++lane) {
-      Vec3f& to = result[first + lane];
-      to = {static_cast<float>(units[0][lane]), static_cast<float>(units[1][lane]), static_cast<float>(units[2][lane])};
-      if ((regular >> lane & 1) == 0) doubtful[doubtful_count++] = static_cast<std::uint32_t>(first + lane);
-    }
+HWY_INLINE void Normalize(FlaggedUnits& result) {
+  for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+    const Lanes3 u{hn::Load(kFloats, result.x + lane), hn::Load(kFloats, result.y + lane),
+                   hn::Load(kFloats, result.z + lane)};
+    // What is not certain may be zero.
+    const Floats square = hn::Max(Dot(u, u), hn::Set(kFloats, 0x1p-100f));
+    const Lanes3 unit = Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u);
+    hn::Store(unit.x, kFloats, result.x + lane);
+    hn::Store(unit.y, kFloats, result.y + lane);
+    hn::Store(unit.z, kFloats, result.z + lane);
   }
-  return doubtful_count;
+}
+
+void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double t, FlaggedUnits* results) {
+  for (std::size_t i = 0; i < count; ++i) results[i].uncertain = Evaluate(tiles[i], t, results[i]);
+  for (std::size_t i = 0; i < count; ++i) Normalize(results[i]);
 }
 
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
@@ -98,10 +80,9 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(FlaggedUnitNormals);
 
-std::size_t flagged_unit_normals(std::span<const FlaggedNormals> normals, double t, std::span<Vec3f> result,
-                                 std::span<std::uint32_t> doubtful) noexcept {
-  assert(result.size() == normals.size() && doubtful.size() >= normals.size());
-  return HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(normals.data(), normals.size(), t, result.data(), doubtful.data());
+void flagged_unit_normals(std::span<const FlaggedTile> tiles, double t, std::span<FlaggedUnits> results) noexcept {
+  assert(results.size() >= tiles.size());
+  HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(tiles.data(), tiles.size(), t, results.data());
 }
 
 }  // namespace chronormal::inline internal

@@ -9,6 +9,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/control_normals.h"
+#include "normals/control/kernels/control_tile.h"
 
 namespace chronormal::inline internal {
 
@@ -17,11 +18,29 @@ struct FlaggedNormals {
   double certain = 0;  ///< the share of sum w_k max_abs(c_k) above which n(t) has a direction (certificate.h)
 };
 
-/// Writes n(t) / |n(t)| rounded to float32, and into `doubtful` the places of those for which n(t) is not certain;
-/// returns how many those are.
-/// t in [0, 1]; result and doubtful must have as many places as normals
-std::size_t flagged_unit_normals(std::span<const FlaggedNormals> normals, double t, std::span<Vec3f> result,
-                                 std::span<std::uint32_t> doubtful) noexcept;
+/// Sixteen of them side by side: the planes of ControlTile in double, and `certain`. Lanes that are not used are zero.
+struct alignas(64) FlaggedTile {
+  double normals[9][kTile]{};
+  double certain[kTile]{};
+
+  void set(std::size_t lane, const FlaggedNormals& flagged) noexcept {
+    std::size_t k = 0;
+    for (const Vec3d* const v : {&flagged.normals.n0, &flagged.normals.m, &flagged.normals.n1}) {
+      for (const double component : {v->x, v->y, v->z}) normals[k++][lane] = component;
+    }
+    certain[lane] = flagged.certain;
+  }
+};
+
+/// Unit normals of a tile, in planes.
+struct alignas(64) FlaggedUnits {
+  float x[kTile], y[kTile], z[kTile];
+  std::uint32_t uncertain;  ///< bit i: n(t) of element i is not certain
+};
+
+/// Evaluates n(t) in double, and rounds its direction to float32: within 2^-22 rad.
+/// t in [0, 1]; results must have a place for each tile
+void flagged_unit_normals(std::span<const FlaggedTile> tiles, double t, std::span<FlaggedUnits> results) noexcept;
 
 }  // namespace chronormal::inline internal
 

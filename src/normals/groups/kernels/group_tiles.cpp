@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/rounding.h"
 #include "normals/control/kernels/exact_tile.h"
 #include "normals/groups/group_sum.h"
 
@@ -173,6 +174,39 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   return sum;
 }
 
+// Half of the lanes of bounds on the errors of a sum over a path: for every product, 4 u of it, and one for each addition;
+// twice that is taken for safety.
+HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::size_t lane, double (*errors)[kTile]) {
+  const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
+    const auto& plane = points[r].at + 3 * end;
+    const HalfFloatTag half;
+    using V = LanesOf3<hn::Vec<HalfFloatTag>>;
+    return V{hn::Load(half, plane[0] + lane), hn::Load(half, plane[1] + lane), hn::Load(half, plane[2] + lane)};
+  };
+  const auto distance = [&](std::size_t a, std::size_t b, std::size_t end) HWY_ATTR {
+    const auto d = at(a, end) - at(b, end);
+    // A little more, for the rounding of the difference.
+    return hn::Mul(hn::Set(kDoubles, 1 + 0x1p-20),
+                   hn::PromoteTo(kDoubles, hn::Max(hn::Max(hn::Abs(d.x), hn::Abs(d.y)), hn::Abs(d.z))));
+  };
+  Doubles n0 = hn::Zero(kDoubles), m = n0, n1 = n0;
+  const auto add = [&](Doubles e0, Doubles e1, Doubles d0, Doubles d1) HWY_ATTR {
+    n0 = hn::Add(n0, hn::Mul(e0, d0));
+    m = hn::Add(m, hn::Add(hn::Mul(e0, d1), hn::Mul(e1, d0)));
+    n1 = hn::Add(n1, hn::Mul(e1, d1));
+  };
+  std::size_t r = 2;
+  for (; r + 1 < rows; r += 2)
+    add(distance(r, 0, 0), distance(r, 0, 1), distance(r + 1, r - 1, 0), distance(r + 1, r - 1, 1));
+  if (r < rows) add(distance(r - 1, 0, 0), distance(r - 1, 0, 1), distance(r, 0, 0), distance(r, 0, 1));
+  // Each component has two of these products, and m is half of a sum.
+  const double terms = static_cast<double>(rows / 2 + 5);
+  const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * terms);
+  hn::Store(hn::Mul(share, n0), kDoubles, errors[0] + lane);
+  hn::Store(hn::Mul(hn::Mul(hn::Set(kDoubles, 0.5), share), m), kDoubles, errors[1] + lane);
+  hn::Store(hn::Mul(share, n1), kDoubles, errors[2] + lane);
+}
+
 // ---- tiles ---------------------------------------------------------------------------------------------------------
 
 // Rounds the sums into the tile. Returns the elements with a component that may be nothing but rounding, as bits.
@@ -198,6 +232,26 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
   return doubtful;
 }
 
+HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::uint32_t* indices, std::size_t rows,
+                         PointColumns* points) {
+  const Segment& segment = input.segment;
+  if (access == PointAccess::kEnds) {
+    LoadRing<PointAccess::kEnds>(segment, indices, rows, points);
+  } else if (access == PointAccess::kPacked && !HasLast(indices, rows, segment.from.count)) {
+    LoadRing<PointAccess::kPacked>(segment, indices, rows, points);
+  } else {
+    LoadRing<PointAccess::kAny>(segment, indices, rows, points);
+  }
+}
+
+void BoundedGroupTile(const RingInput& input, std::size_t slice, BoundedTile& tile) {
+  const std::size_t first_row = input.rings.first_row[slice], rows = input.rings.first_row[slice + 1] - first_row;
+  PointColumns points[1 + kMostPathPoints];
+  LoadRing(input, AccessOf(input.segment), input.rings.indices + kTile * first_row, rows, points);
+  SumRing(points, rows, tile);
+  for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) StoreErrors(points, rows, lane, tile.errors);
+}
+
 void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tiles) {
   const Segment& segment = input.segment;
   const RingSlices& rings = input.rings;
@@ -216,13 +270,7 @@ void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tile
         if (access != PointAccess::kEnds) hwy::Prefetch(segment.to.x + vertex * segment.to.stride);
       }
     }
-    if (access == PointAccess::kEnds) {
-      LoadRing<PointAccess::kEnds>(segment, indices, rows, points);
-    } else if (access == PointAccess::kPacked && !HasLast(indices, rows, segment.from.count)) {
-      LoadRing<PointAccess::kPacked>(segment, indices, rows, points);
-    } else {
-      LoadRing<PointAccess::kAny>(segment, indices, rows, points);
-    }
+    LoadRing(input, access, indices, rows, points);
     SumRing(points, rows, exact);
     const std::uint32_t doubtful = RoundTile(points, rows, exact, tile);
     if (HWY_UNLIKELY(doubtful != 0)) {
@@ -242,6 +290,7 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(GroupTilesOf);
+HWY_EXPORT(BoundedGroupTile);
 
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept {
@@ -267,6 +316,16 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) const 
   const auto left_out = rings_->left_out();
   auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
   for (; next != left_out.end() && *next < elements.end(); ++next) set_alone(*next, elements, tiles);
+}
+
+std::uint32_t GroupTiles::write_bounded(IndexRange elements, BoundedTile& tile) const noexcept {
+  assert(elements.count > 0 && elements.count <= kTile && elements.first % kTile == 0);
+  HWY_DYNAMIC_DISPATCH(BoundedGroupTile)({segment_, *groups_, rings_->view(), false}, elements.first / kTile, tile);
+  const auto left_out = rings_->left_out();
+  std::uint32_t unknown = 0;
+  auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
+  for (; next != left_out.end() && *next < elements.end(); ++next) unknown |= 1u << (*next - elements.first);
+  return unknown;
 }
 
 void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept {

@@ -3,12 +3,14 @@
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "normals/control/kernels/control_tile.h"
+#include "normals/control/kernels/exact_tile.h"
 #include "normals/groups/rings.h"
 
 namespace chronormal::inline internal {
@@ -28,6 +30,10 @@ class GroupTiles {
   /// elements must begin at a multiple of 16, and end at one or at the last element; elements.count > 0; tiles must have
   /// ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
+
+  /// Writes up to sixteen elements in double, with bounds on their errors, for a closer look. Returns the elements that it
+  /// leaves to others, as bits: those with many faces. elements.first must be a multiple of 16
+  [[nodiscard]] std::uint32_t write_bounded(IndexRange elements, BoundedTile& tile) const noexcept;
 
  private:
   void set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept;

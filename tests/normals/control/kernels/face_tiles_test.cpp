@@ -15,9 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "normals/control/exact_curve.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
 
 namespace chronormal::face_tiles_test {
 namespace {
@@ -232,6 +234,44 @@ TEST(FaceTiles, have_a_magnitude_that_is_not_far_above_the_products) {
   face_control_tiles(segment, {0, 320}, tiles);
   for (std::size_t f = 0; f < 320; ++f)
     ASSERT_LE(static_cast<long double>(tiles[f / kTile].magnitude[f % kTile]), 12 * largest_products(segment, f));
+}
+
+TEST(FaceTiles, bound_the_errors_of_triangles_in_double) {
+  fixtures::Random random(20261125);
+  std::size_t counted = 0, rounded = 0;
+  for (int round = 0; round < 40; ++round) {
+    for (const test::HardMotions& family : test::hard_motions()) {
+      const Motion motion = family.make(random);
+      const Segment segment = motion.segment(0);
+      if (!segment.topology->all_triangles()) continue;
+      const std::size_t faces = segment.topology->face_count();
+      for (const auto target : supported_targets()) {
+        const ScopedTarget scope(target);
+        for (std::size_t f = 0; f < faces; f += kTile) {
+          BoundedTile tile;
+          const IndexRange range{f, std::min(kTile, faces - f)};
+          bounded_triangle_tile(segment, range, tile);
+          for (std::size_t lane = 0; lane < kTile; ++lane) {
+            const std::size_t i = std::min(f + lane, faces - 1);
+            const ControlNormals c = element_of(tile.normals, lane);
+            const auto found = components(c), public_ones = components(one_face(segment, i));
+            ASSERT_TRUE(std::equal(found.begin(), found.end(), public_ones.begin(), same_bits<double>));
+            const BoundedNormals bounded{c, {tile.errors[0][lane], tile.errors[1][lane], tile.errors[2][lane]}};
+            if (!(bounded.largest_share() <= 0x1p-30)) continue;
+            ++counted;
+            const auto exact = components(ExactCurve::of_polygon(segment, segment.topology->face(i)).rounded());
+            for (std::size_t k = 0; k < 9; ++k) {
+              const double off = std::fabs(found[k] - exact[k]);
+              rounded += off > 0 ? 1U : 0U;
+              ASSERT_LE(off, bounded.errors[k / 3]) << family.name << " " << target_name(target) << " " << i;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(counted, 5000U);
+  EXPECT_GT(rounded, 5000U);
 }
 
 TEST(FaceTiles, take_polygons) {

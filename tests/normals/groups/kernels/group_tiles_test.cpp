@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <initializer_list>
 #include <span>
@@ -16,6 +17,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "normals/control/exact_curve.h"
 #include "normals/groups/rings.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
@@ -311,6 +313,74 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
       ASSERT_EQ(difference_on_all_targets(motion), "") << scale << " " << offset;
     }
   }
+}
+
+// What is wrong with the elements in double and the bounds on their errors, against sums of integers of any size; counts
+// those for which the bounds are of use.
+std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, std::size_t& counted) {
+  std::vector<BoundedTile> first;
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    const GroupTiles writer(segment, groups, false);
+    std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
+    for (std::size_t e = 0; e < groups.size(); e += kTile) {
+      BoundedTile& tile = tiles[e / kTile];
+      const std::uint32_t unknown = writer.write_bounded({e, std::min(kTile, groups.size() - e)}, tile);
+      for (std::size_t lane = 0; lane < kTile; ++lane) {
+        const std::size_t i = std::min(e + lane, groups.size() - 1);
+        if ((unknown >> lane & 1) != 0) {
+          if (groups.faces(i).size() < 22) return "few faces, but unknown";
+          continue;
+        }
+        const ControlNormals c = element_of(tile.normals, lane);
+        const BoundedNormals bounded{c, {tile.errors[0][lane], tile.errors[1][lane], tile.errors[2][lane]}};
+        if (!(bounded.largest_share() <= 0x1p-30)) continue;
+        ++counted;
+        const ControlNormals exact = ExactCurve::of_faces(segment, groups.faces(i)).rounded();
+        const Vec3d off[] = {c.n0 - exact.n0, c.m - exact.m, c.n1 - exact.n1};
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (!(max_abs(off[k]) <= bounded.errors[k]))
+            return "element " + std::to_string(i) + " is off by " +
+                   std::to_string(max_abs(off[k]) / bounded.errors[k]) + " of its bound " + std::to_string(k);
+        }
+      }
+    }
+    if (first.empty()) first = tiles;
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+      if (std::memcmp(tiles[k].normals, first[k].normals, sizeof(tiles[k].normals)) != 0 ||
+          std::memcmp(tiles[k].errors, first[k].errors, sizeof(tiles[k].errors)) != 0)
+        return "other bits on " + target_name(target);
+    }
+  }
+  return "";
+}
+
+TEST(GroupTiles, bound_the_errors_of_elements_in_double) {
+  std::size_t counted = 0;
+  for (const double offset : {0.0, 10.0, 1e4, 3e6}) {
+    for (const double scale : {1.0, 1e-9, 1e12}) {
+      const Motion motion = test::with_positions(grid(12, 12), [scale, offset](const Point& p) {
+        return Point{scale * (p[0] + offset), scale * (p[1] - offset), scale * p[2]};
+      });
+      ASSERT_EQ(fault_of_bounds(motion.segment(0), vertices_of(motion), counted), "") << offset << " " << scale;
+    }
+  }
+  EXPECT_GT(counted, 4000U);
+  counted = 0;
+  fixtures::Random random(15);
+  for (const std::size_t count : std::initializer_list<std::size_t>{3, 4, 5, 17, 40, 63, 64, 200}) {
+    std::vector<Point> from = {{1, 2, 3}}, to = {{3, 2, 1}};
+    std::vector<std::uint32_t> corners;
+    for (std::size_t i = 0; i < count; ++i) {
+      from.push_back(random.in_cube(2));
+      to.push_back(random.in_cube(2));
+      corners.insert(corners.end(),
+                     {0U, static_cast<std::uint32_t>(1 + i), static_cast<std::uint32_t>(1 + (i + 1) % count)});
+    }
+    const Motion motion = fixtures::make_motion(fixtures::make_triangles(count + 1, corners), from, to);
+    ASSERT_EQ(fault_of_bounds(motion.segment(0), vertices_of(motion), counted), "") << count;
+  }
+  EXPECT_GT(counted, 200U);
 }
 
 TEST(GroupTiles, have_the_degree_of_the_sum) {

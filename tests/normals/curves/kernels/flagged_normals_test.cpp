@@ -1,0 +1,84 @@
+// Flagged elements, sixteen at a time, against eq. 5 in long double, whatever their size.
+
+#include "normals/curves/kernels/flagged_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#include "simd/targets.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal {
+namespace {
+
+using LongVector = std::array<long double, 3>;
+
+LongVector combination(const ControlNormals& c, double t) {
+  const long double a = t, w0 = (1 - a) * (1 - a), w1 = 2 * a * (1 - a), w2 = a * a;
+  return {w0 * c.n0.x + w1 * c.m.x + w2 * c.n1.x, w0 * c.n0.y + w1 * c.m.y + w2 * c.n1.y,
+          w0 * c.n0.z + w1 * c.m.z + w2 * c.n1.z};
+}
+
+// |u x v| / |v|, where u has length 1: the sine of their angle.
+long double off(const LongVector& u, const LongVector& v) {
+  const LongVector x{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  return std::hypot(x[0], x[1], x[2]) / std::hypot(v[0], v[1], v[2]);
+}
+
+FlaggedNormals element(fixtures::Random& random, int exponent) {
+  const auto vector = [&] {
+    const auto [x, y, z] = random.in_cube(0.5);
+    return Vec3d{std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)};
+  };
+  FlaggedNormals result{{vector(), vector(), vector()}, 0x1p-26};
+  // Through zero at t = 1/2, but for a little.
+  if (random.below(2) == 0) result.normals = {result.normals.n0, -1.0 * result.normals.n0, result.normals.n0};
+  result.normals.m.x += std::ldexp(random.uniform(-1e-9, 1e-3), exponent);
+  return result;
+}
+
+TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
+  for (const int exponent : {0, -20, 100, 500, 1000, 1022, 1023, -500, -1000, -1021, -1030}) {
+    std::vector<std::vector<FlaggedUnits>> results;
+    for (const auto target : supported_targets()) {
+      const ScopedTarget scope(target);
+      fixtures::Random random(20261125);
+      std::vector<FlaggedTile> tiles(6);
+      std::vector<FlaggedNormals> elements;
+      for (std::size_t i = 0; i < 90; ++i) {  // six lanes are not used
+        elements.push_back(element(random, exponent));
+        tiles[i / kTile].set(i % kTile, elements.back());
+      }
+      results.emplace_back(tiles.size());
+      for (const double t : {0.5, 0.0, 0.31, 1.0}) {
+        flagged_unit_normals(tiles, t, results.back());
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+          const FlaggedUnits& units = results.back()[i / kTile];
+          const std::size_t lane = i % kTile;
+          const LongVector expected = combination(elements[i].normals, t);
+          const Vec3d n = normal_at(elements[i].normals, t);
+          const auto& [n0, m, n1] = elements[i].normals;
+          const double size = (1 - t) * (1 - t) * max_abs(n0) + 2 * t * (1 - t) * max_abs(m) + t * t * max_abs(n1);
+          ASSERT_EQ((units.uncertain >> lane & 1) != 0, !(max_abs(n) > 0x1p-26 * size)) << exponent << " " << i;
+          if ((units.uncertain >> lane & 1) != 0) continue;
+          const LongVector found{units.x[lane], units.y[lane], units.z[lane]};
+          // What cancels is off in double already, most of all where numbers are below the normal ones.
+          const long double in_double = (exponent < -1000 ? 0x1p-36L : 0x1p-52L) * size / max_abs(n);
+          ASSERT_LE(off(found, expected), 1.3e-7L + 10 * in_double) << exponent << " " << i << " at " << t;
+          ASSERT_NEAR(static_cast<double>(std::hypot(found[0], found[1], found[2])), 1, 4e-7);
+        }
+      }
+      ASSERT_EQ(std::memcmp(results.back().data(), results[0].data(), sizeof(FlaggedUnits) * tiles.size()), 0)
+          << target_name(target);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chronormal
