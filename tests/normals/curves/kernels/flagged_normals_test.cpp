@@ -33,7 +33,7 @@ long double off(const LongVector& u, const LongVector& v) {
 
 FlaggedNormals element(fixtures::Random& random, int exponent) {
   const auto vector = [&] {
-    const auto [x, y, z] = random.in_cube(0.5);
+    const auto [x, y, z] = random.in_cube(1.9);
     return Vec3d{std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)};
   };
   FlaggedNormals result{{vector(), vector(), vector()}, 0x1p-26};
