@@ -10,9 +10,11 @@
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
+#include "analysis/signs/length_1.h"
 #include "chronormal/normals/control_normals.h"
 
 namespace chronormal::inline internal {
@@ -33,6 +35,15 @@ struct NearCollapses {
   std::size_t count = 0;
   bool everywhere = false;  ///< n is zero in the whole segment; count is 0
 };
+
+/// Whether a half space proves at a glance that a normal neither nearly vanishes nor vanishes (find_collapses()). It proves
+/// that of almost every face, and says nothing of the others.
+[[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
+  const Vec3d w = c.n0 + c.n1;
+  const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});
+  const double most = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
+  return least > 2 * kCollapseShare * most * length_1(w);
+}
 
 /// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros so close together that |n(t)| stays below the share
 /// between them are one. Cost: three dot products for most faces, the roots of a cubic for those that turn far.

@@ -147,16 +147,19 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges some faces of one keyframe by the normals that they have there.
+// Judges some faces of one keyframe by the normals that they have there. No coordinate is larger than `most`.
 template <class NormalOf>
-KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, IndexRange faces,
-                               NormalOf normal_of, FaceMarks& marks) {
+KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, double most,
+                               IndexRange faces, NormalOf normal_of, FaceMarks& marks) {
   KeyframeTally tally;
+  const double largest_rounding = kRounding * most * 2 * most;  // of a triangle
   for (std::size_t f = faces.first; f < faces.end(); ++f) {
     const double size = max_abs(normal_of(f - faces.first));
+    const std::span<const std::uint32_t> face = topology.face(f);
+    if (size > static_cast<double>(face.size() - 2) * largest_rounding) continue;
     if (size == 0)
       tally.no_area.add(f, kNoArea, marks);
-    else if (size <= rounding_of(topology.face(f), positions))
+    else if (size <= rounding_of(face, positions))
       tally.slivers.add(f, kSliver, marks);
   }
   return tally;
@@ -193,6 +196,7 @@ void inspect_faces(const Segment& segment, IndexRange faces, std::span<const Con
       }
     }
     if (along < 0) tally.turned_far.add(f, kTurnsFar, marks);
+    if (is_far_from_collapse(c)) continue;
     const Collapses exact = find_collapses(segment, f, c);
     const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
       return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
@@ -275,6 +279,7 @@ Result<Inspection> inspect(MotionStream& stream,
   for (std::size_t k = 0; k < judge.size(); ++k) {
     if (!judge[k]) still.push_back(k);
   }
+  const double most = maximum_number(max_abs(result.low), max_abs(result.high));
   FaceMarks marks(result.faces);
   std::vector<KeyframeTally> keyframes(result.keyframes);
   std::vector<SegmentTally> segments(segment_count);
@@ -304,11 +309,11 @@ Result<Inspection> inspect(MotionStream& stream,
       SegmentTally& tally = of_blocks[i] = {};
       if (!moves || judge[motion.segments[s].from] == s)
         tally.from = inspect_keyframe(
-            topology, segment.from, faces, [&normals](std::size_t f) { return normals[f].n0; }, marks);
+            topology, segment.from, most, faces, [&normals](std::size_t f) { return normals[f].n0; }, marks);
       if (!moves) return;
       if (judge[motion.segments[s].to] == s)
         tally.to = inspect_keyframe(
-            topology, segment.to, faces, [&normals](std::size_t f) { return normals[f].n1; }, marks);
+            topology, segment.to, most, faces, [&normals](std::size_t f) { return normals[f].n1; }, marks);
       inspect_vertices(segment, block_of(i % blocks, result.vertices), tally);
       inspect_faces(segment, faces, normals, marks, tally);
     });

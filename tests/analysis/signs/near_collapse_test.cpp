@@ -152,6 +152,35 @@ TEST(NearCollapse, random_faces_in_space_do_not_collapse) {
     EXPECT_EQ(find_near_collapses(normals).count, 0U);
 }
 
+// Directions around an axis at up to 90 degrees, so that |n(t)| may get as small as it likes.
+TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_never_wrong) {
+  fixtures::Random random(20261125);
+  std::size_t proven = 0, near = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double scale = std::pow(10, random.uniform(-30, 30)), least = std::pow(10, random.uniform(-8, -5));
+    const auto vector = [&](double z) {
+      const auto [x, y, unused] = random.in_cube(1);
+      return scale * Vec3d{x, y, z};
+    };
+    // In half of the cases both ends are opposed to each other, but for a little.
+    ControlNormals c{vector(least), vector(least), vector(least)};
+    if (i % 2 == 0) c.n1 = {-c.n0.x, -c.n0.y, c.n0.z};
+    if (i % 4 == 0) c.m = {(i % 8 == 0 ? 1e-3 : 0) * c.m.x, 0, c.n0.z};
+    const NearCollapses found = find_near_collapses(c);
+    near += found.count > 0 ? 1U : 0U;
+    if (!is_far_from_collapse(c)) continue;
+    ++proven;
+    ASSERT_EQ(found.count, 0U) << i;
+    ASSERT_FALSE(found.everywhere);
+    for (double t = 0; t <= 1; t += 1.0 / 64)
+      ASSERT_GT(length(normal_at(c, t)), 1e-6 * scale * std::fabs(c.n0.x / scale));
+  }
+  EXPECT_GT(proven, 10000U);
+  EXPECT_GT(near, 1000U);
+  EXPECT_FALSE(is_far_from_collapse({}));
+  EXPECT_TRUE(is_far_from_collapse({{1, 2, 3}, {1, 2, 4}, {1, 2, 5}}));
+}
+
 TEST(NearCollapse, is_the_same_in_any_unit_and_mirrored_when_time_runs_back) {
   for (const Motion& motion : {fixtures::collapsing_soup(1e-8, 500), fixtures::inside_out_soup(100)}) {
     std::size_t all = 0;

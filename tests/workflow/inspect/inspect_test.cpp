@@ -100,6 +100,13 @@ TEST(Inspect, face_on_a_line_throughout_has_no_normal_and_one_between_two_lines_
   EXPECT_EQ(inspect(triangle_motion({kLine, kOtherLine})).without_normals.pairs, 0U);
 }
 
+TEST(Inspect, sliver_may_be_as_long_as_the_mesh) {
+  // n is 2 h, and the bound 4 sqrt(3) 2^-24 times 2: h = 2^-22 is below it, and 2^-21 above.
+  const Positions sliver = {-1, 0, 0, 1, 0, 0, 0, 0x1p-22F, 0}, narrow = {-1, 0, 0, 1, 0, 0, 0, 0x1p-21F, 0};
+  EXPECT_EQ(inspect(triangle_motion({sliver, kTriangle})).slivers.pairs, 1U);
+  EXPECT_EQ(inspect(triangle_motion({narrow, kTriangle})).slivers.pairs, 0U);
+}
+
 TEST(Inspect, sliver_is_what_rounding_can_turn) {
   // At a distance of 1000 neighbouring floats are 6e-5 apart.
   Positions sliver = {1000, 0, 0, 1001, 0, 0, 1002, 0, 0}, narrow = sliver;
