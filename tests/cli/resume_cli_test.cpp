@@ -148,7 +148,8 @@ TEST_F(Resume, what_cannot_go_on_is_refused_at_once) {
         "compare --sample shapes --blend 5 --resume -o x", "audit w_0.obj - --resume -o x < t.obj",
         "audit w_0.obj pipe.obj --resume -o x", "audit w_0.obj cache.xml --resume -o x", "audit m.glb --resume -o x",
         "audit m.glb w_0.glb --resume -o x", "compare m.glb --resume -o x",
-        "sample --base w_0.obj t.obj --weights 1 --resume --format npy -o x"}) {
+        "sample --base w_0.obj t.obj --weights 1 --resume --format npy -o x",
+        "sample --sample bumps --weights 0.2 --resume --format npy -o x"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.err;
     EXPECT_FALSE(exists("x.journal")) << arguments;
