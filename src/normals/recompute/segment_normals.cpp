@@ -51,7 +51,7 @@ constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kP
 constexpr Row kPreparePoint = {2.75, 2.85, 3.4}, kPreparePointMiss = {0.3, 3, 9};
 // An element that is examined on its own, and each of its faces; or one of sixteen that are prepared once more, in double.
 // (The ratio of the latter to preparing is that of a Zen 4, too.)
-constexpr double kExamined = 100, kExaminedFace = 52, kExaminedOfTile = 20;
+constexpr double kExamined = 100, kExaminedFace = 52, kExaminedOfTile = 16;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 

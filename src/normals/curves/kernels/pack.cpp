@@ -68,10 +68,13 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     return whole;
   } else {
     const auto done = hn::And(whole.certain, hn::Ge(whole.shortest_square, enough));
-    const auto open = hn::AndNot(done, needed);
+    auto open = hn::AndNot(done, needed);
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
+    // Both halves end here, so that neither helps a lane that is too short here.
+    open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
+    if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
     const PieceTest after = TestPiece<kDepth - 1>({c, b, p.n1, lc, lb, p.l1}, open, enough);
     return {hn::Or(whole.certain, hn::And(before.certain, after.certain)),
