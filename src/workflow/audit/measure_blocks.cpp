@@ -66,25 +66,9 @@ struct Scratch {
 };
 
 // The sums of the normals of faces, and of their sizes.
-void add_up(const Block& block, const std::vector<TrianglesInMotion::Normal>& faces, PlanesOf4& result) {
-  result.resize(block.elements.count);
-  std::uint32_t i = 0;
-  for (std::size_t e = 0; e < block.elements.count; ++e) {
-    TrianglesInMotion::Normal sum{};
-    for (; i < block.face_ends[e]; ++i) {
-      const TrianglesInMotion::Normal& n = faces[block.faces[i]];
-      sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z, sum.size + n.size};
-    }
-    result.x[e] = sum.x;
-    result.y[e] = sum.y;
-    result.z[e] = sum.z;
-    result.w[e] = sum.size;
-  }
-}
-
 void add_up_at(const Block& block, double t, Scratch& scratch, PlanesOf4& result) {
   scratch.triangles.normals(t, scratch.faces);
-  add_up(block, scratch.faces, result);
+  sums_around(scratch.faces, block.faces, block.face_ends, result);
 }
 
 Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {

@@ -11,6 +11,7 @@
 #include <cassert>
 
 #include "simd/angles-inl.h"
+#include "simd/double_rows-inl.h"
 
 #ifndef CHRONORMAL_ANALYSIS_KERNELS_SHOWN_ANGLES_ONCE
 #define CHRONORMAL_ANALYSIS_KERNELS_SHOWN_ANGLES_ONCE
@@ -59,6 +60,35 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
       hn::StoreInterleaved4(n.x.v, n.y.v, n.z.v, max_abs(n).v, kDoubles, &to[lane].x);
     }
     if (to == normals) std::copy_n(normals, last, result + first);
+  }
+}
+
+// A row is added to a sum of four numbers at once; sums become columns as many at a time as there are lanes.
+void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
+                std::span<const std::uint32_t> ends, PlanesOf4& sums) {
+  alignas(64) double rows[kDoubleLanes][4];
+  std::uint32_t i = 0;
+  for (std::size_t first = 0; first < ends.size(); first += kDoubleLanes) {
+    const std::size_t count = std::min(kDoubleLanes, ends.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      DoubleRow sum = MakeRow([](std::size_t) HWY_ATTR { return hn::Zero(DoubleRowTag()); });
+      for (; i < ends[first + lane]; ++i) sum = sum + LoadDoubleRow(&normals[faces[i]].x);
+      StoreDoubleRow(sum, rows[lane]);
+    }
+    if (count == kDoubleLanes) {
+      const DoubleColumns columns = ColumnsOfDoubles([&rows](std::size_t lane) { return rows[lane]; });
+      hn::StoreU(columns.xyz.x, kDoubles, &sums.x[first]);
+      hn::StoreU(columns.xyz.y, kDoubles, &sums.y[first]);
+      hn::StoreU(columns.xyz.z, kDoubles, &sums.z[first]);
+      hn::StoreU(columns.w, kDoubles, &sums.w[first]);
+      continue;
+    }
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      sums.x[first + lane] = rows[lane][0];
+      sums.y[first + lane] = rows[lane][1];
+      sums.z[first + lane] = rows[lane][2];
+      sums.w[first + lane] = rows[lane][3];
+    }
   }
 }
 
@@ -156,6 +186,7 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(TriangleNormals);
+HWY_EXPORT(SumsAround);
 HWY_EXPORT(ShownAngles);
 HWY_EXPORT(AnglesOfPairs);
 HWY_EXPORT(UpperAngles);
@@ -180,6 +211,13 @@ void TrianglesInMotion::gather(VectorView<const float> from, VectorView<const fl
 void TrianglesInMotion::normals(double t, std::vector<Normal>& result) const {
   result.resize(count_);
   HWY_DYNAMIC_DISPATCH(TriangleNormals)(positions_.data(), count_, t, result.data());
+}
+
+void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
+                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
+  assert(ends.empty() || ends.back() == faces.size());
+  sums.resize(ends.size());
+  HWY_DYNAMIC_DISPATCH(SumsAround)(normals.data(), faces.data(), ends, sums);
 }
 
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept {

@@ -1,7 +1,7 @@
 /// Computes for every vertex and sample of an audit, in lanes of double, the normals of moving triangles, and the
 /// angles between right normals and those that are shown.
 ///
-/// All give the bits of their scalar forms: twice_vector_area() of positions interpolated in double, and
+/// All give the bits of their scalar forms: sums from left to right, twice_vector_area() of positions interpolated in double, and
 /// angle_between() of what unit() and lerp() of core/vec3.h make.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
@@ -44,6 +44,11 @@ struct PlanesOf4 {
     for (std::vector<double>* const plane : {&x, &y, &z, &w}) plane->resize(count);
   }
 };
+
+/// Adds up the normals of the faces around elements. `faces` are the places of normals, of one element after the other;
+/// ends[e] is where those of element e end. The sums are x, y and z, and w that of the sizes.
+void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
+                 std::span<const std::uint32_t> ends, PlanesOf4& sums);
 
 /// Values that stand for an error where there is none.
 inline constexpr double kNotLit = -1, kNotJudged = -2;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -47,6 +48,36 @@ TEST(TrianglesInMotion, have_the_bits_of_vector_areas_of_interpolated_positions_
     }
   }
   EXPECT_GT(judged, 1000U);
+}
+
+TEST(SumsAround, have_the_bits_of_sums_from_left_to_right_on_every_instruction_set) {
+  fixtures::Random random(9);
+  const auto number = [&random] { return std::pow(10.0, random.uniform(-9, 9)) * random.uniform(-1, 1); };
+  std::vector<TrianglesInMotion::Normal> normals(100);
+  for (auto& n : normals) n = {number(), number(), number(), number()};
+  for (std::size_t count = 0; count < 40; ++count) {
+    std::vector<std::uint32_t> faces, ends;
+    for (std::size_t e = 0; e < count; ++e) {
+      const std::size_t around = random.below(9);  // sometimes none
+      for (std::size_t i = 0; i < around; ++i) faces.push_back(static_cast<std::uint32_t>(random.below(100)));
+      ends.push_back(static_cast<std::uint32_t>(faces.size()));
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      PlanesOf4 sums;
+      sums_around(normals, faces, ends, sums);
+      ASSERT_EQ(sums.x.size(), count);
+      for (std::size_t e = 0, i = 0; e < count; ++e) {
+        double x = 0, y = 0, z = 0, size = 0;
+        for (; i < ends[e]; ++i) {
+          x += normals[faces[i]].x, y += normals[faces[i]].y, z += normals[faces[i]].z;
+          size += normals[faces[i]].size;
+        }
+        ASSERT_EQ((Vec3d{sums.x[e], sums.y[e], sums.z[e]}), (Vec3d{x, y, z})) << target_name(target) << " " << e;
+        ASSERT_EQ(sums.w[e], size);
+      }
+    }
+  }
 }
 
 void put(PlanesOf4& planes, std::size_t i, const Vec3d& v, double w) {
