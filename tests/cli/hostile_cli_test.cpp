@@ -343,8 +343,8 @@ TEST_F(HostileCli, the_rounding_mode_of_a_host_changes_no_byte) {
   }
 }
 
-// 127 kB may not become 455 MB: an answer has a row for every face of every target.
-TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
+// A GLB of so many meshes that share a grid of 3,600 vertices and its targets.
+std::string grid_of_targets(int mesh_count, int target_count) {
   test::GltfBuilder builder;
   std::vector<float> positions, lift;
   std::vector<std::uint16_t> corners;
@@ -362,16 +362,30 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   const std::size_t base = builder.add_positions(positions), indices = builder.add_indices(corners);
   const std::size_t delta = builder.add_positions(lift);
   Json targets = Json::array();
-  for (int k = 0; k < 150; ++k) targets.push_back({{"POSITION", delta}});
-  builder.add_node(
-      builder.add_mesh({{"attributes", {{"POSITION", base}}}, {"indices", indices}, {"targets", targets}}));
-  folder_.write("many.glb", builder.glb());
+  for (int k = 0; k < target_count; ++k) targets.push_back({{"POSITION", delta}});
+  for (int m = 0; m < mesh_count; ++m)
+    builder.add_node(
+        builder.add_mesh({{"attributes", {{"POSITION", base}}}, {"indices", indices}, {"targets", targets}}));
+  return builder.glb();
+}
+
+// 127 kB may not become 455 MB: an answer has a row for every face of every target.
+TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
+  folder_.write("many.glb", grid_of_targets(1, 150));
   for (const std::string arguments :
        {"query cones many.glb", "query shutter many.glb -o s.npz", "query cones many.glb --json",
         "compare many.glb --schemes linear --errors e.npz"}) {
     expect(run(arguments), 3, {"ask for", "--max-expansion"});
   }
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
+}
+
+// No table of a mesh alone is too large, but all together are.
+TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
+  folder_.write("many.glb", grid_of_targets(60, 5));
+  expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
+  // Without normals in the file nothing is judged, but that is another question.
+  expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing was judged"});
 }
 
 TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {

@@ -342,6 +342,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     ++done;
     if (options.progress) options.progress(std::min(done, total), total);
   };
+  std::uint64_t error_bytes = 0;  // of the tables of all meshes
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const Tracks tracks = tracks_of(document, m, only);
     if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;
@@ -361,7 +362,8 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     if (options.keep_errors) {
       table = table_of(shading);
       const std::size_t rows = count_rows(document, m, tracks, only.has_value(), options);
-      if (const Status status = reserve_rows(table, rows, document.expansion()); !status) return status.error();
+      if (const Status status = reserve_rows(table, rows, document.expansion(), error_bytes); !status)
+        return status.error();
     }
     const MeshAudit mesh{
         document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr, watch};

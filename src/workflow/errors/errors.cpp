@@ -94,15 +94,15 @@ Status write_errors(std::span<const ErrorTable> tables, const std::string& path,
   return write_output(path, bytes.value(), force);
 }
 
-Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion) {
+Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion, std::uint64_t& earlier) {
   const std::size_t columns = table.columns();
   if (columns > 0 && rows > kMostErrorBytes / sizeof(float) / columns)
     return Error{ErrorCode::kUsage, table.name,
                  "the errors of " + grouped(rows) + " samples of " + grouped(columns) + ' ' +
                      std::string(element_kind_name(table.kind)) +
                      " take more than 1 GiB: ask for fewer samples, or for less of the input"};
-  const std::uint64_t bytes = std::uint64_t{sizeof(float)} * rows * columns;
-  if (Status status = expansion.check(bytes, "the errors of every sample"); !status) return status;
+  earlier += std::uint64_t{sizeof(float)} * rows * columns;  // at most 1 GiB for each of the meshes in a file
+  if (Status status = expansion.check(earlier, "the errors of every sample"); !status) return status;
   table.degrees.reserve(rows * columns);
   return Success{};
 }
