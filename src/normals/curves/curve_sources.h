@@ -67,7 +67,8 @@ class FaceNormals {
     return 0;
   }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
-    return polygon_control_normals(segment_, segment_.topology->face(i));
+    const PolygonNormals polygon = polygon_control_normals(segment_, segment_.topology->face(i));
+    return {polygon.normals, polygon.errors};
   }
   [[nodiscard]] ExactCurve exact(std::size_t i) const {
     return ExactCurve::of_polygon(segment_, segment_.topology->face(i));

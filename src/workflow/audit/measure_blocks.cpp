@@ -194,6 +194,7 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
   const Motion& motion = stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
   std::vector<std::vector<double>> largest;  // an element at the border of two blocks is in both
+  largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
   const IndexRange looked_at = kept.looked_at(segments.size());
   // Segments that are held together share the normals at the keyframes between them.

@@ -45,6 +45,7 @@ std::string npz_of(std::span<const ErrorTable> tables) {
     arrays.emplace_back(prefix + "vertices", NpyBytes({table.columns()}, table.vertices).bytes());
   }
   std::vector<NpzMember> members;
+  members.reserve(arrays.size());
   for (const auto& [name, bytes] : arrays) members.push_back({name, bytes});
   return write_npz(members);
 }

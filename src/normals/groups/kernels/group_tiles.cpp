@@ -200,8 +200,8 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
     add(distance(r, 0, 0), distance(r, 0, 1), distance(r + 1, r - 1, 0), distance(r + 1, r - 1, 1));
   if (r < rows) add(distance(r - 1, 0, 0), distance(r - 1, 0, 1), distance(r, 0, 0), distance(r, 0, 1));
   // Each component has two of these products, and m is half of a sum.
-  const double terms = static_cast<double>(rows / 2 + 5);
-  const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * terms);
+  const std::size_t most_products = rows / 2 + 1;
+  const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * static_cast<double>(most_products + 4));
   hn::Store(hn::Mul(share, n0), kDoubles, errors[0] + lane);
   hn::Store(hn::Mul(hn::Mul(hn::Set(kDoubles, 0.5), share), m), kDoubles, errors[1] + lane);
   hn::Store(hn::Mul(share, n1), kDoubles, errors[2] + lane);
