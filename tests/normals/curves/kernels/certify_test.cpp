@@ -18,7 +18,7 @@
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::certify_test {
 namespace {
 
 Vec3d vector(fixtures::Random& random) {
@@ -152,4 +152,4 @@ TEST(CertifyTile, decides_as_for_one_element_on_every_target) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::certify_test

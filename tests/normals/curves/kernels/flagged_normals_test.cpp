@@ -14,7 +14,7 @@
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
-namespace chronormal {
+namespace chronormal::flagged_normals_test {
 namespace {
 
 using LongVector = std::array<long double, 3>;
@@ -81,4 +81,4 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
 }
 
 }  // namespace
-}  // namespace chronormal
+}  // namespace chronormal::flagged_normals_test
