@@ -57,7 +57,7 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
-/// What an expression of a VRM avatar, versions 0 and 1, makes of a mesh at its full strength.
+/// The weights that an expression of a VRM avatar (version 0 or 1) gives the targets of a mesh at its full strength.
 struct GltfExpression {
   std::string name;             ///< as the file has it; may be empty
   std::vector<double> weights;  ///< target_count of them

@@ -45,7 +45,7 @@ template <std::size_t M>
 
 /// Below this, the scale itself would leave the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// What is added to lengths where control normals have exponents of their own, which end there.
+/// Where each control normal has an exponent of its own, this is added to its length, since exponents go no lower.
 inline constexpr double kSmallestScale = 0x1p-30;
 
 /// The fewest bits that keep this element within the tolerance at every t; nothing where double is needed.

@@ -52,7 +52,7 @@ struct CurveData {
   std::vector<std::int32_t> exact_digits;
   AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
 
-  /// Of the element flagged[index].
+  /// Returns the control normals of the element flagged[index].
   [[nodiscard]] ControlNormals flagged_normals(std::size_t index) const noexcept {
     return element_of(flagged_tiles[index / kTile].normals, index % kTile);
   }

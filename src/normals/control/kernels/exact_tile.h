@@ -17,7 +17,7 @@ struct alignas(64) ExactTile {
   float magnitude[kTile];
 };
 
-/// What BoundedNormals are for one element, of sixteen.
+/// Sixteen elements as BoundedNormals has one: control normals in double, with bounds on their errors.
 struct BoundedTile : ExactTile {
   double errors[3][kTile];  ///< how far any component of n0, m and n1 may be from the exact one
 };

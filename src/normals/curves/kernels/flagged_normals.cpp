@@ -58,7 +58,7 @@ HWY_INLINE void Normalize(FlaggedUnits& result) {
   for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
     const Lanes3 u{hn::Load(kFloats, result.x + lane), hn::Load(kFloats, result.y + lane),
                    hn::Load(kFloats, result.z + lane)};
-    // What is not certain may be zero.
+    // The vector of an element that is not certain may be zero, and is divided by something else then.
     const Floats square = hn::Max(Dot(u, u), hn::Set(kFloats, 0x1p-100f));
     const Lanes3 unit = Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u);
     hn::Store(unit.x, kFloats, result.x + lane);

@@ -91,7 +91,7 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   return result;
 }
 
-// What is wrong with the certificates of one element; `alone` asks for no other.
+// Says what is wrong with the certificates of one element, or nothing. `alone`: no other element was asked for.
 std::string fault(const TileCertificates& found, std::size_t lane, const Decided& expected, bool alone) {
   const auto has = [lane](std::uint32_t bits) { return (bits >> lane & 1) != 0; };
   if (has(found.known) != expected.known) return expected.known ? "not known" : "known";

@@ -315,8 +315,8 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
   }
 }
 
-// What is wrong with the elements in double and the bounds on their errors, against sums of integers of any size; counts
-// those for which the bounds are of use.
+// Compares the elements in double, and the bounds on their errors, with sums of integers of any size. Returns what is
+// wrong, or nothing, and counts the elements for which the bounds are of use.
 std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, std::size_t& counted) {
   std::vector<BoundedTile> first;
   for (const auto target : supported_targets()) {
