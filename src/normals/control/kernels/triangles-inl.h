@@ -103,19 +103,20 @@ struct TriangleLanes {
   Lanes3 a0, b0, c0, a1, b1, c1;
 };
 
-// corners: three for each lane, of which the first counts. Both ends at once, so that no index is kept in between.
-template <PointAccess kAccess>
-HWY_INLINE void LoadCorners(const Segment& segment, const std::uint32_t* corners, Lanes3& from, Lanes3& to) {
+// Where one vertex of each lane is at both ends. The vertex of the next lane stands kStep further on. Both ends are
+// loaded together, so that every index is read once.
+template <PointAccess kAccess, std::size_t kStep>
+HWY_INLINE void LoadBothEnds(const Segment& segment, const std::uint32_t* vertices, Lanes3& from, Lanes3& to) {
 #if HWY_TARGET == HWY_SCALAR
-  from = LoadPoint<kAccess>(segment.from, corners[0]).xyz();
-  to = LoadPoint<kAccess>(segment.to, corners[0]).xyz();
+  from = LoadPoint<kAccess>(segment.from, vertices[0]).xyz();
+  to = LoadPoint<kAccess>(segment.to, vertices[0]).xyz();
 #else
   Floats from_rows[4], to_rows[4];
   for (std::size_t k = 0; k < 4; ++k) {
-    std::uint32_t vertices[kLanes / 4];
-    for (std::size_t block = 0; block < kLanes / 4; ++block) vertices[block] = corners[3 * (4 * block + k)];
-    from_rows[k] = LoadPoints<kAccess>(segment.from, vertices);
-    to_rows[k] = LoadPoints<kAccess>(segment.to, vertices);
+    std::uint32_t of_blocks[kLanes / 4];
+    for (std::size_t block = 0; block < kLanes / 4; ++block) of_blocks[block] = vertices[kStep * (4 * block + k)];
+    from_rows[k] = LoadPoints<kAccess>(segment.from, of_blocks);
+    to_rows[k] = LoadPoints<kAccess>(segment.to, of_blocks);
   }
   from = Transposed(from_rows).xyz();
   to = Transposed(to_rows).xyz();
@@ -125,9 +126,9 @@ HWY_INLINE void LoadCorners(const Segment& segment, const std::uint32_t* corners
 template <PointAccess kAccess>
 HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32_t* corners) {
   TriangleLanes p;
-  LoadCorners<kAccess>(segment, corners, p.a0, p.a1);
-  LoadCorners<kAccess>(segment, corners + 1, p.b0, p.b1);
-  LoadCorners<kAccess>(segment, corners + 2, p.c0, p.c1);
+  LoadBothEnds<kAccess, 3>(segment, corners, p.a0, p.a1);
+  LoadBothEnds<kAccess, 3>(segment, corners + 1, p.b0, p.b1);
+  LoadBothEnds<kAccess, 3>(segment, corners + 2, p.c0, p.c1);
   return p;
 }
 

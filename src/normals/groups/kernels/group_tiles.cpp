@@ -64,21 +64,6 @@ constexpr std::size_t kRowsAhead = 24;
 
 // ---- points --------------------------------------------------------------------------------------------------------
 
-template <PointAccess kAccess>
-HWY_INLINE Lanes3 PointsAt(const VectorView<const float>& points, const std::uint32_t* vertices) {
-#if HWY_TARGET == HWY_SCALAR
-  return LoadPoint<kAccess>(points, vertices[0]).xyz();
-#else
-  Floats rows[4];
-  for (std::size_t k = 0; k < 4; ++k) {
-    std::uint32_t of_blocks[kLanes / 4];
-    for (std::size_t block = 0; block < kLanes / 4; ++block) of_blocks[block] = vertices[4 * block + k];
-    rows[k] = LoadPoints<kAccess>(points, of_blocks);
-  }
-  return Transposed(rows).xyz();
-#endif
-}
-
 HWY_INLINE void StoreColumns(const Lanes3& v, float (*to)[kTile], std::size_t lane) {
   hn::Store(v.x, kFloats, to[0] + lane);
   hn::Store(v.y, kFloats, to[1] + lane);
@@ -89,8 +74,10 @@ template <PointAccess kAccess>
 HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, std::size_t rows, PointColumns* points) {
   for (std::size_t r = 0; r < rows; ++r, indices += kTile) {
     for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
-      StoreColumns(PointsAt<kAccess>(segment.from, indices + lane), points[r].at, lane);
-      StoreColumns(PointsAt<kAccess>(segment.to, indices + lane), points[r].at + 3, lane);
+      Lanes3 from, to;
+      LoadBothEnds<kAccess, 1>(segment, indices + lane, from, to);
+      StoreColumns(from, points[r].at, lane);
+      StoreColumns(to, points[r].at + 3, lane);
     }
   }
 }
