@@ -91,7 +91,8 @@ struct GltfTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
   /// KHR_animation_pointer gives every weight a channel of its own, which are put together here; channel is that of the
-  /// first of these weights. All of them have the same keys and interpolation: other files are refused.
+  /// first of these weights. The track has the keys of all of them. It is cubic where one of them is; files in which some
+  /// of them step and others do not are refused.
   bool is_assembled = false;
 };
 

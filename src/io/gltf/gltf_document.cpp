@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "core/charconv.h"
@@ -12,6 +13,7 @@
 #include "io/gltf/decode/gltf_draco.h"
 #include "io/gltf/glb/glb.h"
 #include "io/gltf/gltf_document_state.h"
+#include "io/gltf/gltf_lone_weights.h"
 #include "io/gltf/model/gltf_model.h"
 
 namespace chronormal {
@@ -93,6 +95,79 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
   return document;
 }
 
+namespace {
+
+// The times of keys, which must ascend.
+Result<std::vector<float>> read_times(gltf::Bytes& bytes, std::size_t accessor) {
+  Result<std::vector<float>> times = bytes.floats(accessor);
+  if (!times) return times;
+  if (times.value().front() < 0)
+    return invalid_input(bytes.accessor_place(accessor), "the time of the first key is negative");
+  for (std::size_t k = 1; k < times.value().size(); ++k) {
+    if (!(times.value()[k - 1] < times.value()[k]))
+      return invalid_input(bytes.accessor_place(accessor),
+                           "the time of key " + std::to_string(k) + " is not after that of the one before");
+  }
+  return times;
+}
+
+// The times of all keys of the channels of single weights, ascending.
+Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
+  std::vector<float> times;
+  std::set<std::size_t> inputs;
+  for (const gltf::ElementSource& element : source.elements) {
+    if (!inputs.insert(element.input).second) continue;
+    const Result<std::vector<float>> own = read_times(bytes, element.input);
+    if (!own) return own;
+    const std::uint64_t wanted = sizeof(float) * (std::uint64_t{times.size()} + own.value().size());
+    if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(element.input)); !status)
+      return status.error();
+    times.insert(times.end(), own.value().begin(), own.value().end());
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+// Puts the channels of single weights together; the weights of all others are at rest, and so are their tangents.
+Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& source, const GltfTrack& track) {
+  const Result<std::vector<float>> times = times_of_all(bytes, source);
+  if (!times) return times.error();
+  const bool is_cubic = track.interpolation == GltfInterpolation::kCubicSpline;
+  const std::size_t targets = source.rest.size(), rows = times.value().size() * (is_cubic ? 3 : 1);
+  const std::uint64_t wanted = std::uint64_t{sizeof(double)} * rows * targets;
+  if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(source.output)); !status)
+    return status.error();
+  GltfKeys keys{{times.value().begin(), times.value().end()}, std::vector<double>(rows * targets)};
+  for (std::size_t row = is_cubic ? 1 : 0; row < rows; row += is_cubic ? 3 : 1)
+    std::copy(source.rest.begin(), source.rest.end(), keys.values.begin() + static_cast<std::ptrdiff_t>(row * targets));
+  for (const gltf::ElementSource& element : source.elements) {
+    const Result<std::vector<float>> own = read_times(bytes, element.input), weights = bytes.floats(element.output);
+    if (!own) return own.error();
+    if (!weights) return weights.error();
+    gltf::write_column({own.value(), weights.value(), element.interpolation}, times.value(), is_cubic, element.target,
+                       targets, keys.values);
+  }
+  return keys;
+}
+
+// Counts the keys of tracks that are put together from channels with different times. Where these cannot be read, the
+// number stays as it is, and whoever asks for the keys is told why.
+void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
+  for (std::size_t a = 0; a < model.animations.size(); ++a) {
+    for (std::size_t t = 0; t < model.animations[a].tracks.size(); ++t) {
+      const gltf::TrackSource& source = model.track_sources[a][t];
+      const bool has_one = std::all_of(source.elements.begin(), source.elements.end(),
+                                       [&](const gltf::ElementSource& each) { return each.input == source.input; });
+      if (has_one) continue;
+      if (const Result<std::vector<float>> times = times_of_all(bytes, source))
+        model.animations[a].tracks[t].key_count = times.value().size();
+    }
+  }
+}
+
+}  // namespace
+
 Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   const Expansion expansion(options.max_expansion, bytes.size());
@@ -109,7 +184,9 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   origin.bin = chunks.bin;
   Result<gltf::Model> model = gltf::parse_model(chunks.json, name, chunks.json_offset, bytes.size());
   if (!model) return model.error();
-  return GltfDocument(std::make_unique<State>(chunks, std::move(model).value(), std::move(origin), options.most_bytes));
+  auto state = std::make_unique<State>(chunks, std::move(model).value(), std::move(origin), options.most_bytes);
+  count_keys(state->bytes, state->model);
+  return GltfDocument(std::move(state));
 }
 
 Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const {
@@ -207,64 +284,13 @@ void GltfDocument::State::release(std::size_t vertices) const noexcept {
   bytes.release();
 }
 
-namespace {
-
-// The times of keys, which must ascend.
-Result<std::vector<float>> read_times(gltf::Bytes& bytes, std::size_t accessor) {
-  Result<std::vector<float>> times = bytes.floats(accessor);
-  if (!times) return times;
-  if (times.value().front() < 0)
-    return invalid_input(bytes.accessor_place(accessor), "the time of the first key is negative");
-  for (std::size_t k = 1; k < times.value().size(); ++k) {
-    if (!(times.value()[k - 1] < times.value()[k]))
-      return invalid_input(bytes.accessor_place(accessor),
-                           "the time of key " + std::to_string(k) + " is not after that of the one before");
-  }
-  return times;
-}
-
-// Puts the channels of single weights together; the weights of all others are at rest, and so are their tangents.
-Result<std::vector<double>> assembled_values(gltf::Bytes& bytes, const gltf::TrackSource& source,
-                                             const std::vector<float>& times, bool is_cubic) {
-  const std::size_t targets = source.rest.size(), rows = times.size() * (is_cubic ? 3 : 1);
-  const std::uint64_t wanted = std::uint64_t{sizeof(double)} * rows * targets;
-  if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(source.output)); !status)
-    return status.error();
-  std::vector<double> values(rows * targets);
-  for (std::size_t row = is_cubic ? 1 : 0; row < rows; row += is_cubic ? 3 : 1)
-    std::copy(source.rest.begin(), source.rest.end(), values.begin() + static_cast<std::ptrdiff_t>(row * targets));
-  for (const gltf::ElementSource& element : source.elements) {
-    if (element.input != source.input) {
-      const Result<std::vector<float>> own = read_times(bytes, element.input);
-      if (!own) return own.error();
-      if (own.value() != times)
-        return invalid_input(bytes.accessor_place(element.input),
-                             "the keys are not at the same times as those of the other weights of this node, each of "
-                             "which has a channel of its own");
-    }
-    const Result<std::vector<float>> weights = bytes.floats(element.output);
-    if (!weights) return weights.error();
-    for (std::size_t row = 0; row < rows; ++row)
-      values[row * targets + element.target] = static_cast<double>(weights.value()[row]);
-  }
-  return values;
-}
-
-}  // namespace
-
 Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) const {
   const gltf::TrackSource& source = state_->model.track_sources[animation][track];
+  const GltfTrack& of_track = animations()[animation].tracks[track];
+  if (of_track.is_assembled) return assembled_keys(state_->bytes, source, of_track);
   const Result<std::vector<float>> times = read_times(state_->bytes, source.input);
   if (!times) return times.error();
   GltfKeys keys{{times.value().begin(), times.value().end()}, {}};
-  const GltfTrack& of_track = animations()[animation].tracks[track];
-  if (of_track.is_assembled) {
-    Result<std::vector<double>> values = assembled_values(state_->bytes, source, times.value(),
-                                                          of_track.interpolation == GltfInterpolation::kCubicSpline);
-    if (!values) return values.error();
-    keys.values = std::move(values).value();
-    return keys;
-  }
   const Result<std::vector<float>> values = state_->bytes.floats(source.output);
   if (!values) return values.error();
   keys.values.assign(values.value().begin(), values.value().end());

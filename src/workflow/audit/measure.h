@@ -42,7 +42,8 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
   const std::uint64_t number = degrees > 0 ? bit_cast<std::uint64_t>(degrees) >> kFractionBits : 0;
-  ++errors.counts[number >= kFirst ? std::min<std::size_t>(number - kFirst + 1, kAuditFineBins - 1) : 0];
+  const std::uint64_t fine_bin = number >= kFirst ? number - kFirst + 1 : 0;
+  ++errors.counts[static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1))];
 }
 
 /// How far what is shown is from a right direction, in degrees, at least: less what may have turned it where rounding

@@ -87,6 +87,7 @@ struct PrimitiveSource {
 /// A channel that drives one weight.
 struct ElementSource {
   std::size_t target = 0, input = 0, output = 0;  ///< input, output: accessors
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
 
   friend bool operator==(const ElementSource&, const ElementSource&) = default;
 };

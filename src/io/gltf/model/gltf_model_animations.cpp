@@ -1,6 +1,7 @@
 // Reads the animations of weights: channels by node or by KHR_animation_pointer, and those of single weights, which become
 // one track.
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -19,6 +20,11 @@ std::string pointer_of(const JsonView& target) {
   const std::optional<JsonView> extensions = target.object("extensions");
   const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
   return extension ? extension->required_text("pointer") : std::string();
+}
+
+std::size_t saturating_sum(std::size_t a, std::size_t b) {
+  const std::size_t most = std::numeric_limits<std::size_t>::max();
+  return a > most - b ? most : a + b;
 }
 
 std::string node_weights(std::size_t node) { return "/nodes/" + std::to_string(node) + "/weights"; }
@@ -139,6 +145,7 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
   TrackSource source;
   track.node = node;
   track.is_assembled = true;
+  std::set<std::size_t> inputs;
   const std::optional<std::uint32_t> mesh = model_.nodes[node].mesh;
   const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
   for (const LoneWeight& weight : weights) {
@@ -154,13 +161,17 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
     if (source.elements.empty()) {
       track.channel = weight.channel;
       track.interpolation = of_weight.interpolation;
-      track.key_count = of_weight.key_count;
       source = read;
     }
-    if (of_weight.interpolation != track.interpolation || of_weight.key_count != track.key_count)
-      return target.complain("the channels of single weights of node " + std::to_string(node) +
-                             " have different keys or interpolations, and are read only where they have the same");
-    source.elements.push_back({weight.target, read.input, read.output});
+    // At most: how many of them are at the same times is known when they are read.
+    if (inputs.insert(read.input).second) track.key_count = saturating_sum(track.key_count, of_weight.key_count);
+    // A line is a cubic, too. A step is none of both.
+    const bool is_step = of_weight.interpolation == GltfInterpolation::kStep;
+    if (is_step != (track.interpolation == GltfInterpolation::kStep))
+      return target.complain("some channels of single weights of node " + std::to_string(node) +
+                             " step while others are LINEAR or CUBICSPLINE, which cannot be put together as one track");
+    if (of_weight.interpolation == GltfInterpolation::kCubicSpline) track.interpolation = of_weight.interpolation;
+    source.elements.push_back({weight.target, read.input, read.output, of_weight.interpolation});
   }
   source.rest = model_.nodes[node].weights.empty() ? model_.meshes[*mesh].weights : model_.nodes[node].weights;
   result.tracks.push_back(track);

@@ -1,0 +1,90 @@
+// Evaluates the channel of one weight at the keys of all weights of its node. Pieces of lines, steps and cubics are again
+// lines, steps and cubics, so that nothing is lost.
+#include "io/gltf/gltf_lone_weights.h"
+
+namespace chronormal::inline internal::gltf {
+namespace {
+
+// What a key of a cubic spline consists of.
+struct Row {
+  double in_tangent = 0, value = 0, out_tangent = 0;
+};
+
+double number(std::span<const float> numbers, std::size_t i) { return static_cast<double>(numbers[i]); }
+
+// The key of this index as the file has it.
+Row key_at(const LoneKeys& keys, std::size_t k) {
+  if (keys.interpolation != GltfInterpolation::kCubicSpline) return {0, number(keys.values, k), 0};
+  return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};
+}
+
+// The slope of the line from key k to the next.
+double slope_after(const LoneKeys& keys, std::size_t k) {
+  return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
+}
+
+// A row at one of the keys of the channel. Where it is constant on one side, so is the row there.
+Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
+  Row row = key_at(keys, k);
+  const bool begins = k == 0, ends = k + 1 == keys.times.size();
+  if (keys.interpolation == GltfInterpolation::kLinear) {
+    row.in_tangent = begins ? 0 : slope_after(keys, k - 1);
+    row.out_tangent = ends ? 0 : slope_after(keys, k);
+  } else {
+    if (begins && !is_first) row.in_tangent = 0;
+    if (ends && !is_last) row.out_tangent = 0;
+  }
+  return row;
+}
+
+// A row at a time between key k and the next.
+Row row_between(const LoneKeys& keys, std::size_t k, double time) {
+  const Row from = key_at(keys, k), to = key_at(keys, k + 1);
+  const double begin = number(keys.times, k), duration = number(keys.times, k + 1) - begin;
+  const double s = (time - begin) / duration;
+  switch (keys.interpolation) {
+    case GltfInterpolation::kStep:
+      return {0, from.value, 0};
+    case GltfInterpolation::kLinear: {
+      const double slope = slope_after(keys, k);
+      return {slope, from.value + s * (to.value - from.value), slope};
+    }
+    case GltfInterpolation::kCubicSpline:
+      break;
+  }
+  // Appendix C.4 of the specification, and its derivative by the time.
+  const double rise = to.value - from.value;
+  const double value = from.value + s * s * (3 - 2 * s) * rise +
+                       duration * s * (1 - s) * ((1 - s) * from.out_tangent - s * to.in_tangent);
+  const double slope =
+      6 * s * (1 - s) * rise / duration + (1 - s) * (1 - 3 * s) * from.out_tangent + s * (3 * s - 2) * to.in_tangent;
+  return {slope, value, slope};
+}
+
+}  // namespace
+
+void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
+                  std::size_t width, std::span<double> values) noexcept {
+  std::size_t next = 0;  // the first key that is not before the time
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    while (next < keys.times.size() && keys.times[next] < times[i]) ++next;
+    Row row;
+    if (next < keys.times.size() && keys.times[next] == times[i])
+      row = row_at_key(keys, next, i == 0, i + 1 == times.size());
+    else if (next == 0)
+      row = {0, key_at(keys, 0).value, 0};
+    else if (next == keys.times.size())
+      row = {0, key_at(keys, next - 1).value, 0};
+    else
+      row = row_between(keys, next - 1, static_cast<double>(times[i]));
+    if (!is_cubic_track) {
+      values[target + width * i] = row.value;
+      continue;
+    }
+    values[target + width * (3 * i)] = row.in_tangent;
+    values[target + width * (3 * i + 1)] = row.value;
+    values[target + width * (3 * i + 2)] = row.out_tangent;
+  }
+}
+
+}  // namespace chronormal::inline internal::gltf
