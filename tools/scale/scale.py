@@ -72,7 +72,7 @@ print(time.time() - begin, usage.ru_utime + usage.ru_stime, usage.ru_maxrss)
 def measure(command, address_space=0):
     """Seconds by the clock, seconds of processors, and the peak of memory in MB, of a command that must succeed."""
     words = [sys.executable, "-S", "-E", "-c", MEASURE, str(address_space), *(str(word) for word in command)]
-    out = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    out = subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout
     clock, processor, kibibytes = (float(word) for word in out.split())
     return clock, processor, kibibytes * 1024 / MB
 

@@ -41,6 +41,10 @@ class PathCurves {
   PathCurves() noexcept;
   /// Packs control normals, each independently of the others.
   explicit PathCurves(std::span<const PolynomialNormals<3>> normals, Threads threads = Threads::kOne);
+  /// Packs those of all faces of a segment, or of all elements of the groups, some thousands at a time, so that no array
+  /// of all of them is needed. Nothing of the segment is kept. Throws std::bad_alloc.
+  explicit PathCurves(const PolynomialSegment<3>& segment, Threads threads = Threads::kOne);
+  PathCurves(const PolynomialSegment<3>& segment, const NormalGroups& groups, Threads threads = Threads::kOne);
   PathCurves(PathCurves&& other) noexcept;
   PathCurves& operator=(PathCurves&& other) noexcept;
   ~PathCurves();

@@ -18,6 +18,7 @@
 #include "normals/curves/certificate.h"
 #include "normals/curves/kernels/evaluate_path.h"
 #include "normals/curves/outputs.h"
+#include "normals/curves/path_sums.h"
 
 namespace chronormal {
 namespace {
@@ -79,6 +80,9 @@ struct PathCurves::Data {
   std::vector<std::size_t> flagged;  // ascending
   std::vector<Controls> flagged_normals;
 
+  template <class MakeSource>
+  Data(std::size_t count, Threads threads, const MakeSource& make_source);
+
   // Writes an element into its block, or zeros where float32 cannot carry it. Returns whether it can.
   bool pack(std::size_t element, const Controls& normals) {
     double largest = 0;
@@ -101,6 +105,76 @@ struct PathCurves::Data {
   std::size_t evaluate(IndexRange range, double t, VectorView<float> result, MemoryAccess pass) const noexcept;
 };
 
+namespace {
+
+// Where the control normals of curves come from, some elements at a time: an array, the faces of a segment, or its groups.
+class GivenSource {
+ public:
+  explicit GivenSource(std::span<const Controls> normals) : normals_(normals) {}
+  void write(IndexRange elements, std::span<Controls> result) const {
+    std::copy_n(normals_.begin() + static_cast<std::ptrdiff_t>(elements.first), elements.count, result.begin());
+  }
+
+ private:
+  std::span<const Controls> normals_;
+};
+
+class FaceSource {
+ public:
+  explicit FaceSource(const PolynomialSegment<3>& segment) : segment_(segment) {}
+  void write(IndexRange faces, std::span<Controls> result) const { polynomial_face_normals(segment_, faces, result); }
+
+ private:
+  const PolynomialSegment<3>& segment_;
+};
+
+// The faces around these elements are computed once for all of them.
+class GroupSource {
+ public:
+  GroupSource(const PolynomialSegment<3>& segment, const NormalGroups& groups)
+      : segment_(segment), groups_(groups), place_of_face_(segment.topology->face_count(), kNoPlace) {}
+
+  void write(IndexRange elements, std::span<Controls> result) {
+    faces_.clear();
+    for (std::size_t e = elements.first; e < elements.end(); ++e) {
+      for (const std::uint32_t f : groups_.faces(e)) {
+        if (place_of_face_[f] != kNoPlace) continue;
+        place_of_face_[f] = static_cast<std::uint32_t>(faces_.size());
+        faces_.push_back(f);
+      }
+    }
+    of_faces_.resize(faces_.size());
+    for (std::size_t i = 0; i < faces_.size(); ++i)
+      polynomial_face_normals(segment_, {faces_[i], 1}, std::span(&of_faces_[i], 1));
+    sum_path_normals<3>(
+        groups_, elements, [this](std::uint32_t f) -> const Controls& { return of_faces_[place_of_face_[f]]; }, result);
+    for (const std::uint32_t f : faces_) place_of_face_[f] = kNoPlace;
+  }
+
+ private:
+  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
+
+  const PolynomialSegment<3>& segment_;
+  const NormalGroups& groups_;
+  std::vector<std::uint32_t> place_of_face_, faces_;
+  std::vector<Controls> of_faces_;
+};
+
+// Calls body(source, piece) for pieces that cover all elements, on each thread with a source of its own.
+template <class MakeSource, class Body>
+void each_piece(std::size_t size, Threads threads, const MakeSource& make_source, const Body& body) {
+  const std::size_t pieces = block_count(size, kPathPiece);
+  const std::size_t workers = threads == Threads::kAll ? thread_count() : 1;
+  std::atomic<std::size_t> next = 0;
+  parallel_for(std::min(workers, pieces), [&](std::size_t) {
+    auto source = make_source();
+    for (std::size_t p = next++; p < pieces; p = next++)
+      body(source, IndexRange{p * kPathPiece, std::min(kPathPiece, size - p * kPathPiece)});
+  });
+}
+
+}  // namespace
+
 std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment) {
   std::vector<Controls> result(segment.topology->face_count());
   parallel_blocks(result.size(), kPathPiece, [&](IndexRange range) {
@@ -110,11 +184,12 @@ std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& s
 }
 
 std::vector<PolynomialNormals<3>> all_path_normals(const PolynomialSegment<3>& segment, const NormalGroups& groups) {
-  const std::vector<Controls> of_faces = all_path_normals(segment);
   std::vector<Controls> result(groups.size());
-  parallel_blocks(result.size(), kPathPiece, [&](IndexRange range) {
-    polynomial_group_normals<3>(groups, of_faces, range, std::span(result).subspan(range.first, range.count));
-  });
+  each_piece(
+      result.size(), Threads::kAll, [&] { return GroupSource(segment, groups); },
+      [&](GroupSource& source, IndexRange piece) {
+        source.write(piece, std::span(result).subspan(piece.first, piece.count));
+      });
   return result;
 }
 
@@ -124,19 +199,34 @@ PathCurves& PathCurves::operator=(PathCurves&&) noexcept = default;
 PathCurves::~PathCurves() = default;
 
 PathCurves::PathCurves(std::span<const PolynomialNormals<3>> normals, Threads threads)
-    : data_(std::make_unique<Data>()) {
-  data_->size = normals.size();
-  const std::size_t count = block_count(normals.size(), kTile);
-  data_->blocks = AlignedArray<float>(count * kPathBlock);
-  std::vector<char> carries(count * kTile);
-  blocks_on(threads, count * kTile, kPathPiece, [&](IndexRange range) {
-    for (std::size_t i = range.first; i < range.end(); ++i)
-      carries[i] = data_->pack(i, i < normals.size() ? normals[i] : Controls{}) ? 1 : 0;
+    : data_(std::make_unique<Data>(normals.size(), threads, [normals] { return GivenSource(normals); })) {}
+PathCurves::PathCurves(const PolynomialSegment<3>& segment, Threads threads)
+    : data_(std::make_unique<Data>(segment.topology->face_count(), threads, [&] { return FaceSource(segment); })) {}
+PathCurves::PathCurves(const PolynomialSegment<3>& segment, const NormalGroups& groups, Threads threads)
+    : data_(std::make_unique<Data>(groups.size(), threads, [&] { return GroupSource(segment, groups); })) {}
+
+template <class MakeSource>
+PathCurves::Data::Data(std::size_t count, Threads threads, const MakeSource& make_source)
+    : size(count), blocks(block_count(count, kTile) * kPathBlock) {
+  struct Flagged {
+    std::vector<std::size_t> elements;
+    std::vector<Controls> normals;
+  };
+  std::vector<Flagged> of_pieces(block_count(size, kPathPiece));
+  each_piece(size, threads, make_source, [&](auto& source, IndexRange piece) {
+    std::vector<Controls> normals(piece.count);
+    source.write(piece, normals);
+    Flagged& found = of_pieces[piece.first / kPathPiece];
+    for (std::size_t i = 0; i < piece.count; ++i) {
+      if (pack(piece.first + i, normals[i])) continue;
+      found.elements.push_back(piece.first + i);
+      found.normals.push_back(normals[i]);
+    }
   });
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (carries[i] != 0) continue;
-    data_->flagged.push_back(i);
-    data_->flagged_normals.push_back(normals[i]);
+  for (std::size_t i = size; i % kTile != 0; ++i) pack(i, {});
+  for (const Flagged& found : of_pieces) {
+    flagged.insert(flagged.end(), found.elements.begin(), found.elements.end());
+    flagged_normals.insert(flagged_normals.end(), found.normals.begin(), found.normals.end());
   }
 }
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/rounding.h"
-#include "core/vector_area.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/path_stream.h"
+#include "normals/curves/path_sums.h"
 
 namespace chronormal {
 namespace {
@@ -251,14 +251,11 @@ template <std::size_t K>
 void polynomial_group_normals(const NormalGroups& groups, std::span<const PolynomialNormals<K>> of_faces,
                               IndexRange elements, std::span<PolynomialNormals<K>> result) noexcept {
   assert(result.size() == elements.count && elements.end() <= groups.size());
-  for (std::size_t i = 0; i < elements.count; ++i) {
-    std::array<VectorSum, 2 * K + 1> sum;
-    for (const std::uint32_t f : groups.faces(elements.first + i)) {
-      assert(f < of_faces.size());
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k].add(of_faces[f][k]);
-    }
-    for (std::size_t k = 0; k < sum.size(); ++k) result[i][k] = sum[k].without_rounding();
-  }
+  const auto of_face = [of_faces](std::uint32_t f) -> const PolynomialNormals<K>& {
+    assert(f < of_faces.size());
+    return of_faces[f];
+  };
+  sum_path_normals<K>(groups, elements, of_face, result);
 }
 
 template <std::size_t N>

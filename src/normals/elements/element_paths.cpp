@@ -28,7 +28,7 @@ Result<ElementPaths> ElementPaths::make(Motion sequence, const ElementPathsOptio
 void ElementPaths::enter(std::size_t segment, Threads threads) {
   if (segment_ == segment) return;
   const PolynomialSegment<3> path = path_segment(motion_, segment, options_.path);
-  curves_ = PathCurves(are_faces() ? all_path_normals(path) : all_path_normals(path, groups_), threads);
+  curves_ = are_faces() ? PathCurves(path, threads) : PathCurves(path, groups_, threads);
   segment_ = segment;
 }
 

@@ -199,11 +199,13 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
 
 Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
   if (!curve_ || segment_ != segment) {
+    // The curves of the segment before take as much memory as those that are made now.
+    path_curves_ = {};
+    curve_.reset();
     curve_ = path_segment(*motion_, segment, options_.path);
     segment_ = segment;
     if (are_exact_units())
-      path_curves_ =
-          PathCurves(are_faces() ? all_path_normals(*curve_) : all_path_normals(*curve_, *groups_), Threads::kAll);
+      path_curves_ = are_faces() ? PathCurves(*curve_, Threads::kAll) : PathCurves(*curve_, *groups_, Threads::kAll);
   }
   Result<DoublePose> pose = double_pose(positions_at(*curve_, t), "this path moves");
   if (!pose) return pose.error();

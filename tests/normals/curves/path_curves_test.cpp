@@ -13,6 +13,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
@@ -186,6 +187,41 @@ TEST(PathCurves, are_the_same_bits_on_every_instruction_set_and_number_of_thread
       }
       if (first.empty()) first = found;
       EXPECT_EQ(found, first) << target_name(target) << " with " << threads << " threads";
+    }
+  }
+}
+
+TEST(PathCurves, of_a_segment_are_those_of_all_of_its_control_normals) {
+  const Bending mesh(60, 0.05);  // in three pieces, and bent so far that some elements are flagged
+  const NormalGroups groups = NormalGroups::of_vertices(mesh.topology, separate_points(mesh.topology.vertex_count()));
+  ASSERT_GT(groups.size(), 2U * 8192);
+  std::vector<Controls> of_faces(mesh.topology.face_count()), of_vertices(groups.size());
+  polynomial_face_normals<3>(mesh.segment, {0, of_faces.size()}, of_faces);
+  polynomial_group_normals<3>(groups, of_faces, {0, of_vertices.size()}, of_vertices);
+  const std::vector<Controls> all_of_faces = all_path_normals(mesh.segment),
+                              all_of_vertices = all_path_normals(mesh.segment, groups);
+  const auto are_equal = [](const Controls& a, const Controls& b) { return a == b; };
+  EXPECT_TRUE(std::equal(of_faces.begin(), of_faces.end(), all_of_faces.begin(), all_of_faces.end(), are_equal));
+  EXPECT_TRUE(
+      std::equal(of_vertices.begin(), of_vertices.end(), all_of_vertices.begin(), all_of_vertices.end(), are_equal));
+  const PathCurves faces{std::span<const Controls>(of_faces)}, vertices{std::span<const Controls>(of_vertices)};
+  EXPECT_GT(faces.flagged_count(), 10U);
+  EXPECT_GT(vertices.flagged_count(), 10U);
+  const auto expect_right = [](const PathCurves& curves, const std::vector<Controls>& normals) {
+    const std::vector<float> found = evaluated(curves, 0.34375);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      ASSERT_LT(length(vector(found, i) - unit_normal_at(normals[i], 0.34375).vector), 1.1e-6) << i;
+  };
+  expect_right(faces, of_faces);
+  expect_right(vertices, of_vertices);
+  for (const std::size_t threads : {1U, 3U}) {
+    const ThreadLimit limit(threads);
+    const PathCurves made_of_faces(mesh.segment, Threads::kAll), made_of_vertices(mesh.segment, groups, Threads::kAll);
+    EXPECT_EQ(made_of_faces.flagged_count(), faces.flagged_count());
+    EXPECT_EQ(made_of_vertices.flagged_count(), vertices.flagged_count());
+    for (const double t : kTimes) {
+      EXPECT_EQ(evaluated(made_of_faces, t), evaluated(faces, t)) << t << " with " << threads << " threads";
+      EXPECT_EQ(evaluated(made_of_vertices, t), evaluated(vertices, t)) << t << " with " << threads << " threads";
     }
   }
 }
