@@ -110,8 +110,12 @@ std::string group_words(const Audited& input, const Group& group) {
       return formatted("{}: {} no normals, and {} shown flat, which is right", who,
                        counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
     case Kind::kSkinned:
-      return formatted("{}: {} a skin, which turns shown and right normals alike", who,
-                       counted(found.count, "node has", "nodes have"));
+      return formatted(
+          "{}: {} a skin, through which normals are judged; skinning itself turns right ones by up to {} degrees",
+          of_mesh(input, found), counted(found.count, "node has", "nodes have"), worst);
+    case Kind::kUnreadSkin:
+      return formatted("{}: {} a skin that cannot be read, so that normals are judged without it: {}",
+                       of_mesh(input, found), counted(found.count, "node has", "nodes have"), found.reason->text());
     case Kind::kBaked:
       return formatted("{}: baked by chronormal, with {}", who, counted(found.count, "extra target", "extra targets"));
     case Kind::kEmptied:

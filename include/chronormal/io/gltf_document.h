@@ -5,7 +5,8 @@
 /// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
 /// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression,
 /// KHR_draco_mesh_compression and KHR_animation_pointer. What is read is checked, strictly by the specification; what
-/// is not read (materials, textures, skins, the bounds of accessors) is not.
+/// is not read (materials, textures, the bounds of accessors) is not. Skins, and animations of nodes, are read by those who
+/// look through skins, and what is wrong with them is an error for those alone.
 ///
 /// A file that requires another extension is refused by the name of that, but for those of materials, textures and
 /// lights, which do not touch geometry.
@@ -34,6 +35,7 @@ namespace chronormal {
 
 inline namespace internal {
 class FileBytes;
+class GltfSkin;
 }
 
 /// Finds the bytes of a file by its name, in place of the file system. They must stay as long as what was opened with
@@ -79,7 +81,8 @@ struct GltfNode {
   std::string name;
   std::optional<std::uint32_t> mesh, parent;
   bool has_skin = false;
-  std::vector<double> weights;  ///< its own, or empty: those of the mesh
+  std::optional<std::uint32_t> skin;  ///< as the file numbers it, if that is a number
+  std::vector<double> weights;        ///< its own, or empty: those of the mesh
 };
 
 /// The animation of the weights of one node: by a channel for it, or by one of KHR_animation_pointer for all weights of
@@ -196,6 +199,7 @@ class GltfDocument {
 
  private:
   friend class GltfEdit;
+  friend class internal::GltfSkin;
   struct State;
   explicit GltfDocument(std::unique_ptr<State> state) noexcept;
 

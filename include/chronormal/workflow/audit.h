@@ -8,6 +8,9 @@
 ///     motion error       the angle between what is shown at a sample and what should be, the offset kept
 ///
 ///     glTF       the rotation from n(0) to the stored N, fixed per vertex
+///     skins      where a node with a skin carries the mesh, both are judged as hosts take them to the screen: through the
+///                linear part of the blended joint matrix of the vertex, in the pose of the animation at that time, or
+///                else in that of the file (docs/decisions/0022). What skinning itself does wrong is told apart
 ///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///
@@ -81,6 +84,7 @@ struct AuditOptions {
   std::optional<Weighting> weighting = {};
   std::vector<Host> hosts = {};       ///< glTF, by the rule gltf: these are judged too
   PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
+  bool skins = true;                  ///< glTF: judges meshes in nodes with a skin as they are seen through it
   bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
   bool keep_errors = false;           ///< every single one, in Audit::errors
   /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
@@ -115,7 +119,8 @@ struct AuditSubject {
   std::size_t segments = 0, samples = 0;              ///< samples of each segment
   std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
   MotionError error;
-  MotionError at_keys;  ///< of the same, those at both ends of each segment
+  MotionError at_keys;                         ///< of the same, those at both ends of each segment
+  std::optional<SkinningError> skinning = {};  ///< where it was judged through a skin
 
   /// Whether it is found by a weight, and not by a time.
   [[nodiscard]] bool is_weighed() const noexcept { return kind == Kind::kTarget || kind == Kind::kExpression; }
@@ -146,7 +151,8 @@ struct AuditFinding {
     kWrongTogether,   ///< off where an animation or expression has several targets, by more than each of them alone
     kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
-    kSkinned,         ///< a note: skins turn the shown and the right normal alike
+    kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
+    kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
     kBaked,           ///< a note: a bake was here
     kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its extra targets turn nothing now
     kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
@@ -156,6 +162,7 @@ struct AuditFinding {
   std::optional<std::size_t> mesh, target, node, animation, expression;
   std::size_t count = 0;               ///< pairs, primitives, targets or nodes, as the kind has it
   double degrees = 0;                  ///< the worst
+  std::optional<Error> reason = {};    ///< why something could not be read
   std::optional<AuditPlace> worst_at;  ///< where there is one
   std::optional<Host> host;            ///< that it is about; nothing: all
 

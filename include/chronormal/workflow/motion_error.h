@@ -80,6 +80,24 @@ struct MotionError {
   void add(const MotionError& other) noexcept;
 };
 
+/// How far a skin turns right normals from those of the surface that it makes, over pairs of a vertex and a sample: what
+/// no target can mend.
+struct SkinningError {
+  std::size_t judged = 0;  ///< pairs
+  double sum = 0, worst = 0;
+  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+
+  [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
+  void add(double degrees, const AuditPlace& place) noexcept { add({1, degrees, degrees, place}); }
+  void add(const SkinningError& other) noexcept {
+    judged += other.judged;
+    sum += other.sum;
+    if (!(other.worst > worst)) return;
+    worst = other.worst;
+    worst_at = other.worst_at;
+  }
+};
+
 /// In which respects what an audit found after a change is worse than what it found before: more pairs that cannot be
 /// lit, or a worst or mean error that grew by more than what the rounding of float32 may turn. With the two exchanged, in
 /// which respects it is better.

@@ -61,12 +61,12 @@ const std::vector<std::string>& GltfDocument::extensions() const noexcept { retu
 Expansion GltfDocument::expansion() const { return state_->bytes.expansion(); }
 
 AffineTransform GltfDocument::world_transform(std::size_t node) const noexcept {
-  const auto& transforms = state_->model.transforms;
+  const auto& placements = state_->model.placements;
   AffineTransform result;
   for (std::optional<std::uint32_t> at = static_cast<std::uint32_t>(node); at; at = nodes()[*at].parent) {
-    const auto found = std::lower_bound(transforms.begin(), transforms.end(), *at,
+    const auto found = std::lower_bound(placements.begin(), placements.end(), *at,
                                         [](const auto& entry, std::size_t index) { return entry.first < index; });
-    if (found != transforms.end() && found->first == *at) result = composed(found->second, result);
+    if (found != placements.end() && found->first == *at) result = composed(gltf::transform_of(found->second), result);
   }
   return result;
 }
@@ -97,27 +97,13 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
 
 namespace {
 
-// The times of keys, which must ascend.
-Result<std::vector<float>> read_times(gltf::Bytes& bytes, std::size_t accessor) {
-  Result<std::vector<float>> times = bytes.floats(accessor);
-  if (!times) return times;
-  if (times.value().front() < 0)
-    return invalid_input(bytes.accessor_place(accessor), "the time of the first key is negative");
-  for (std::size_t k = 1; k < times.value().size(); ++k) {
-    if (!(times.value()[k - 1] < times.value()[k]))
-      return invalid_input(bytes.accessor_place(accessor),
-                           "the time of key " + std::to_string(k) + " is not after that of the one before");
-  }
-  return times;
-}
-
 // The times of all keys of the channels of single weights, ascending.
 Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
   std::vector<float> times;
   std::set<std::size_t> inputs;
   for (const gltf::ElementSource& element : source.elements) {
     if (!inputs.insert(element.input).second) continue;
-    const Result<std::vector<float>> own = read_times(bytes, element.input);
+    const Result<std::vector<float>> own = bytes.times(element.input);
     if (!own) return own;
     const std::uint64_t wanted = sizeof(float) * (std::uint64_t{times.size()} + own.value().size());
     if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(element.input)); !status)
@@ -142,7 +128,7 @@ Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& sou
   for (std::size_t row = is_cubic ? 1 : 0; row < rows; row += is_cubic ? 3 : 1)
     std::copy(source.rest.begin(), source.rest.end(), keys.values.begin() + static_cast<std::ptrdiff_t>(row * targets));
   for (const gltf::ElementSource& element : source.elements) {
-    const Result<std::vector<float>> own = read_times(bytes, element.input), weights = bytes.floats(element.output);
+    const Result<std::vector<float>> own = bytes.times(element.input), weights = bytes.floats(element.output);
     if (!own) return own.error();
     if (!weights) return weights.error();
     gltf::write_column({own.value(), weights.value(), element.interpolation}, times.value(), is_cubic, element.target,
@@ -288,7 +274,7 @@ Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) co
   const gltf::TrackSource& source = state_->model.track_sources[animation][track];
   const GltfTrack& of_track = animations()[animation].tracks[track];
   if (of_track.is_assembled) return assembled_keys(state_->bytes, source, of_track);
-  const Result<std::vector<float>> times = read_times(state_->bytes, source.input);
+  const Result<std::vector<float>> times = state_->bytes.times(source.input);
   if (!times) return times.error();
   GltfKeys keys{{times.value().begin(), times.value().end()}, {}};
   const Result<std::vector<float>> values = state_->bytes.floats(source.output);

@@ -47,6 +47,8 @@ class JsonComplaint {
   }
   [[nodiscard]] std::string place(const std::string& pointer) const;
   [[nodiscard]] const std::optional<Error>& first() const noexcept { return first_; }
+  /// The same, after which there is none.
+  [[nodiscard]] std::optional<Error> take() noexcept { return std::exchange(first_, std::nullopt); }
 
  private:
   std::string name_;

@@ -23,12 +23,13 @@ AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
 }
 
 BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights,
-                         Moment moment)
+                         Moment moment, MeshSkin* skin)
     : shading_(shading),
       part_(part),
       rule_(rule),
       weights_at_(std::move(weights)),
       moment_(std::move(moment)),
+      skin_(skin),
       moved_(shading.set.targets.size()),
       turned_(shading.set.targets.size()) {
   std::vector<Vec3d> positions(part.vertices().size());
@@ -48,10 +49,12 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
     end_ = weights(segment, 1);
   }
   std::vector<double> now = weights(segment, t);
-  const bool same = known_ && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
+  const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1);
+  const bool same = known_ && !turns && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
   known_ = true;
   t_ = t;
   if (same) return false;
+  ++placed_;
   now_ = std::move(now);
   place_at(now_, positions);
   return true;
@@ -64,6 +67,20 @@ void BlendSource::show() {
     add_up(start_, shown_start_);
     add_up(end_, shown_end_);
   }
+  if (skin_ == nullptr) return;
+  carriers_.resize(part_.outputs().size());
+  parallel_each(carriers_.size(), kBlock,
+                [&](std::size_t i) { carriers_[i] = skin_->of_vertex(part_.outputs()[i].vertex); });
+}
+
+Vec3d BlendSource::seen(std::size_t i, const Vec3d& normal) const noexcept {
+  return skin_ == nullptr ? normal : carried(carriers_[i], normal);
+}
+
+bool BlendSource::hides(const JudgedOutput& output, const Vec3d& normal) const {
+  if (skin_ == nullptr) return false;
+  const Vec3d is_seen = right(output, normal);
+  return is_seen == Vec3d{} || !is_finite(is_seen);
 }
 
 void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> positions) {
@@ -85,12 +102,14 @@ void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> pos
 
 Vec3f BlendSource::shown(const JudgedOutput& output) const {
   const std::size_t i = number(output);
-  if (rule_ == AuditRule::kGltf) return to_float(unit(to_double(vector_at(shown_now_, i))));
-  return blend_stored(rule_, to_double(vector_at(shown_start_, i)), to_double(vector_at(shown_end_, i)), t_);
+  if (rule_ == AuditRule::kGltf) return to_float(seen(i, unit(to_double(vector_at(shown_now_, i)))));
+  const Vec3d from = to_double(vector_at(shown_start_, i)), to = to_double(vector_at(shown_end_, i));
+  return to_float(seen(i, to_double(blend_stored(rule_, from, to, t_))));
 }
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal) const {
-  return turns_[number(output)](unit(normal));
+  const std::size_t i = number(output);
+  return seen(i, turns_[i](unit(normal)));
 }
 
 std::size_t BlendSource::number(const JudgedOutput& output) const {

@@ -13,6 +13,7 @@
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/mesh_skin.h"
 
 namespace chronormal::inline internal {
 
@@ -33,8 +34,10 @@ class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading and part must outlive this. Outputs are those of the part.
-  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment);
+  /// shading and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
+  /// joints move, moment says when. Outputs are those of the part.
+  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment,
+              MeshSkin* skin = nullptr);
 
   /// Does nothing: all data are in memory.
   [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
@@ -43,10 +46,17 @@ class BlendSource {
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
   /// The weights of the moment that was placed.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
+  /// How often place() has placed anything.
+  [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Adds up the normals that are shown at the moment that was placed.
+  /// Adds up the normals that are shown at the moment that was placed, and finds what the skin does to them.
   void show();
+  /// A normal of the i-th output, of any length, as it is seen: carried along by the skin, or else as it is.
+  [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal) const noexcept;
+  /// Whether the skin leaves nothing of the right normal, so that no target could show any.
+  [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal) const;
+  [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const;
@@ -70,6 +80,9 @@ class BlendSource {
   AuditRule rule_;
   Weights weights_at_;
   Moment moment_;
+  MeshSkin* skin_;
+  std::vector<AffineTransform> carriers_;  // of outputs, where there is a skin
+  std::size_t placed_ = 0;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
   std::vector<std::optional<TurnedRuns>> turned_;         // likewise
   std::vector<ShownTurn> turns_;                          // of outputs

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "chronormal/workflow/audit.h"
@@ -12,11 +15,13 @@
 #include "workflow/audit/gltf_findings.h"
 #include "workflow/audit/host_errors.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/skinning_error.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/mesh_skin.h"
 
 namespace chronormal {
 namespace {
@@ -31,7 +36,28 @@ struct MeshAudit {
   std::function<void()> progress;
   ErrorTable* errors;  // nullptr: none are kept
   const AuditWatch& watch;
+  MeshSkin* standing;                    // through which targets and expressions are seen; nullptr: none
+  std::map<std::size_t, Error>& unread;  // why the skins of nodes cannot be read
 };
+
+// The skin of a node, which must have one; nothing where it cannot be read, which is noted.
+std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShading& shading, std::size_t node,
+                                  std::optional<std::size_t> animation, std::map<std::size_t, Error>& unread) {
+  Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation);
+  if (skin) return std::move(skin).value();
+  unread.emplace(node, skin.error());
+  return std::nullopt;
+}
+
+// The skin of the first node that has one and carries the mesh, as the file poses it.
+std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfShading& shading,
+                                      std::map<std::size_t, Error>& unread) {
+  const std::vector<GltfNode>& nodes = document.nodes();
+  const auto found = std::find_if(nodes.begin(), nodes.end(),
+                                  [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
+  if (found == nodes.end()) return std::nullopt;
+  return read_skin(document, shading, static_cast<std::size_t>(found - nodes.begin()), std::nullopt, unread);
+}
 
 // Tracks by animation and index.
 using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
@@ -80,16 +106,18 @@ struct Measured {
 
 // Measures a subject that will be the one of this index; nothing where there is nothing to judge.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const std::vector<bool>& involved,
-                                     const SubjectWeights& weights, const Moment& moment, AuditSubject subject,
-                                     std::size_t index) {
+                                     const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
+                                     AuditSubject subject, std::size_t index) {
   if (part.outputs().empty()) {
     for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
     return std::nullopt;
   }
-  BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment);
+  BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment, skin);
   HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved);
+  SkinningErrors skinning;
   const auto judge_hosts = [&](const MeasuredSample& sample) {
     hosts.add_sample(source, sample);
+    skinning.add_sample(source, sample);
     if (!mesh.watch) return;
     mesh.watch({index, subject, sample.segment, sample.t, moment(sample.segment, sample.t), part, sample.largest,
                 sample.error, sample.each, source.now(), hosts.now()});
@@ -97,6 +125,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   const bool are_watched = static_cast<bool>(mesh.watch);
   // Nothing is read here, so that there can be no error.
   (void)measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index, are_watched}, judge_hosts);
+  subject.skinning = skinning.all();
   return Measured{std::move(subject), hosts.take()};
 }
 
@@ -146,7 +175,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const auto moment = [](std::size_t, double t) { return t; };
   const JudgedPart part = part_of(mesh, involved);
   std::optional<Measured> measured =
-      measure_part(mesh, part, involved, weights, moment, std::move(subject), result.subjects.size());
+      measure_part(mesh, part, involved, weights, moment, mesh.standing, std::move(subject), result.subjects.size());
   if (!measured) {
     ++result.still;
     return;
@@ -202,16 +231,23 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
       by_host.at(moment(segment, t), moves && t == 1, of_targets);
     });
   }
-  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, std::move(subject), subject_index);
+  std::optional<MeshSkin> skin;
+  if (mesh.options.skins && mesh.document.nodes()[track.node].has_skin)
+    skin = read_skin(mesh.document, mesh.shading, track.node, animation, mesh.unread);
+  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, skin ? &*skin : nullptr,
+                      std::move(subject), subject_index);
 }
 
 // Audits all tracks of a mesh; those with the same keys are measured once, and are subjects each.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  std::map<std::pair<std::size_t, std::size_t>, std::optional<Measured>> of_curves;  // by animation, same_keys_as
+  // By animation, same_keys_as, and the skin of the node.
+  using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
+  std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {
     const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
-    const auto [known, is_new] = of_curves.try_emplace({animation, track.same_keys_as});
+    const GltfNode& node = mesh.document.nodes()[track.node];
+    const auto [known, is_new] = of_curves.try_emplace({animation, track.same_keys_as, node.has_skin, node.skin});
     if (is_new) {
       Result<std::optional<Measured>> measured = audit_track(mesh, animation, index, result.subjects.size());
       if (!measured) return measured.error();
@@ -262,7 +298,7 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
     });
   }
   std::optional<Measured> measured = measure_part(mesh, part_of(mesh, involved), involved, weights, moment,
-                                                  std::move(subject), result.subjects.size());
+                                                  mesh.standing, std::move(subject), result.subjects.size());
   if (!measured) {
     ++result.still;
     return;
@@ -365,8 +401,19 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
       if (const Status status = reserve_rows(table, rows, document.expansion(), error_bytes); !status)
         return status.error();
     }
-    const MeshAudit mesh{
-        document, options, shading, weighting, result.rule, progress, options.keep_errors ? &table : nullptr, watch};
+    std::map<std::size_t, Error> unread;
+    std::optional<MeshSkin> standing;
+    if (options.skins && !only) standing = standing_skin(document, shading, unread);
+    const MeshAudit mesh{document,
+                         options,
+                         shading,
+                         weighting,
+                         result.rule,
+                         progress,
+                         options.keep_errors ? &table : nullptr,
+                         watch,
+                         standing ? &*standing : nullptr,
+                         unread};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
     const std::size_t first = result.subjects.size();
     for (std::size_t k = 0; k < document.meshes()[m].target_count && are_targets_judged; ++k)
@@ -378,6 +425,11 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
       audit_expression(mesh, k, worst_target, result);
     if (Status status = audit_tracks(mesh, tracks, are_targets_judged, worst_target, result); !status)
       return status.error();
+    if (options.skins) {
+      const std::span<const AuditSubject> of_mesh = std::span(result.subjects).subspan(first);
+      for (const AuditFinding& note : notes_of_skins(document, shading, of_mesh, unread))
+        result.findings.push_back(note);
+    }
     if (table.rows() > 0) result.errors.push_back(std::move(table));
   }
   finish(result);

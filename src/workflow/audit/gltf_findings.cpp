@@ -74,10 +74,36 @@ std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShadi
   if (shading.mark) note(Kind::kBaked, shading.mark->extras.size());
   if (shading.emptied > 0) note(Kind::kEmptied, shading.emptied);
   if (shading.mark && shading.mark->sequence) note(Kind::kSequenceTargets, shading.own_targets());
+  return notes;
+}
+
+std::vector<AuditFinding> notes_of_skins(const GltfDocument& document, const GltfShading& shading,
+                                         std::span<const AuditSubject> subjects,
+                                         const std::map<std::size_t, Error>& unread) {
+  std::vector<AuditFinding> notes;
   const auto skinned = std::count_if(document.nodes().begin(), document.nodes().end(), [&](const GltfNode& node) {
     return node.mesh && *node.mesh == shading.mesh && node.has_skin;
   });
-  if (skinned > 0) note(Kind::kSkinned, static_cast<std::size_t>(skinned));
+  const std::size_t count = static_cast<std::size_t>(skinned) - unread.size();
+  if (count > 0) {
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kSkinned, shading.mesh));
+    note.count = count;
+    for (const AuditSubject& subject : subjects) {
+      if (!subject.skinning || !(subject.skinning->worst > note.degrees)) continue;
+      note.degrees = subject.skinning->worst;
+      note.worst_at = subject.skinning->worst_at;
+      note.target = subject.target;
+      note.expression = subject.expression;
+      note.animation = subject.animation;
+      note.node = subject.node;
+    }
+  }
+  if (!unread.empty()) {
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kUnreadSkin, shading.mesh));
+    note.count = unread.size();
+    note.node = unread.begin()->first;
+    note.reason = unread.begin()->second;
+  }
   return notes;
 }
 

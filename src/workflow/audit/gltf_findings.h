@@ -3,6 +3,7 @@
 #define CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,12 @@ namespace chronormal::inline internal {
 
 /// What is no fault, but good to know.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
+
+/// The nodes with a skin that carry the mesh: through which it was judged, by what was found of these subjects, and those
+/// of which the skin or an animation could not be read.
+[[nodiscard]] std::vector<AuditFinding> notes_of_skins(const GltfDocument& document, const GltfShading& shading,
+                                                       std::span<const AuditSubject> subjects,
+                                                       const std::map<std::size_t, Error>& unread);
 
 /// The hosts that take fewer targets than the mesh has.
 [[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts);

@@ -86,7 +86,7 @@ std::vector<Vec3f> HostErrors::shown(const Kept& kept, std::span<const double> w
 }
 
 void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
-  const bool is_still = known_ && source.now() == specified_;
+  const bool is_still = source.placed() == placed_;
   std::vector<bool> is_judged(weights_.size());
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
@@ -94,8 +94,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
     is_judged[h] = is_still && now == now_[h];  // as in the sample before
     now_[h] = std::move(now);
   }
-  known_ = true;
-  specified_ = source.now();
+  placed_ = source.placed();
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
@@ -122,7 +121,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
         continue;
       }
       const std::vector<Vec3f> normals = shown(kept_[kept_by_[other]], now_[other]);
-      const auto shown_at = [&](std::size_t i, const JudgedOutput&) { return to_double(normals[i]); };
+      const auto shown_at = [&](std::size_t i, const JudgedOutput&) { return source.seen(i, to_double(normals[i])); };
       last_[other] = {error_at(source, *where, false, sample.largest, sample.segment, sample.t, shown_at), displaced};
       known = &last_[other].error;
     }

@@ -55,11 +55,10 @@ class HostErrors {
   const JudgedPart& part_;
   std::vector<Weights> weights_;
   std::vector<Kept> kept_;
-  std::vector<std::size_t> kept_by_;     // of each host, in kept_
-  double size_ = 0;                      // of the mesh
-  std::optional<PlacedPart> elsewhere_;  // at weights other than those of the specification, once there are any
-  bool known_ = false;
-  std::vector<double> specified_;         // the weights of the last sample by the specification
+  std::vector<std::size_t> kept_by_;      // of each host, in kept_
+  double size_ = 0;                       // of the mesh
+  std::optional<PlacedPart> elsewhere_;   // at weights other than those of the specification, once there are any
+  std::size_t placed_ = 0;                // as source.placed() was at the last sample; 0 before any
   std::vector<std::vector<double>> now_;  // of each host, the weights of the last sample
   std::vector<HostError> last_, errors_;  // of each host, those of the last sample and of all
 };

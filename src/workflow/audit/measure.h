@@ -75,7 +75,9 @@ void finish(Audit& result);
 //     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
 //     show()                         is called where something was placed, before shown()
 //     shown(output)                  a normal of any length, zero for none
+//     seen(i, n)                     what becomes of a normal of the i-th output on its way to the screen
 //     right(output, n)               the direction for a normal of the geometry
+//     hides(output, n)               whether what is seen has no direction, however right: such a pair is not judged
 //     at(segment, t, output)         for people
 
 /// Positions and normals of a part, as the source has placed it.
@@ -179,12 +181,14 @@ template <class Source, class Shown>
         const Vec3d& normal = placed.normals.elements[output.element];
         const double least = kVanished * largest[output.element];
         is_shown[k] = shown(from + k, output);
-        // A face without area is not drawn, whatever its normal.
+        // A face without area is not drawn, whatever its normal. A skin may leave nothing of a normal that is right.
+        const bool is_hidden = source.hides(output, normal);
         const bool is_drawn = is_flat ? is_shown[k] != Vec3d{} : placed.normals.sizes[output.element] > least;
         const bool has_normal = length(normal) > least;
-        of_some[k] = !is_finite(is_shown[k]) || (is_drawn && is_shown[k] == Vec3d{}) ? kNotLit
-                     : !has_normal || !is_drawn                                      ? kNotJudged
-                                                                                     : 0;
+        of_some[k] = is_hidden                                                         ? kNotJudged
+                     : !is_finite(is_shown[k]) || (is_drawn && is_shown[k] == Vec3d{}) ? kNotLit
+                     : !has_normal || !is_drawn                                        ? kNotJudged
+                                                                                       : 0;
         if (of_some[k] < 0)
           is_shown[k] = is_right[k] = {};
         else
@@ -200,7 +204,7 @@ template <class Source, class Shown>
         outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
         [&](const JudgedOutput& output, std::size_t i) {
           const Vec3d& normal = placed.normals.elements[output.element];
-          if (normal == Vec3d{}) return kNotJudged;
+          if (normal == Vec3d{} || source.hides(output, normal)) return kNotJudged;
           return faint_degrees(shown(first + i, output), source.right(output, normal), length(normal),
                                placed.part.rounding_of(placed.positions, output.element));
         },
@@ -278,8 +282,8 @@ template <class Source, class EachSample>
   const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;
-  const auto shown = [&](std::size_t, const JudgedOutput& output) {
-    return is_flat ? placed.normals.faces[output.face] : to_double(source.shown(output));
+  const auto shown = [&](std::size_t i, const JudgedOutput& output) {
+    return is_flat ? source.seen(i, placed.normals.faces[output.face]) : to_double(source.shown(output));
   };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);

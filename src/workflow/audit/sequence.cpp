@@ -79,6 +79,8 @@ class SequenceSource {
     return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
   }
 
+  [[nodiscard]] static Vec3d seen(std::size_t /*i*/, const Vec3d& normal) noexcept { return normal; }
+  [[nodiscard]] static bool hides(const JudgedOutput& /*output*/, const Vec3d& /*normal*/) noexcept { return false; }
   [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
     const Vec3d now = unit(normal);
     if (!stored_) return now;

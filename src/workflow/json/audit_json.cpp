@@ -7,9 +7,9 @@
 namespace chronormal {
 namespace {
 
-constexpr const char* kKinds[] = {"unlit",          "missing_normals", "wrong_at_keys",   "wrong_between",
-                                  "wrong_together", "stale_tangents",  "flat_primitive",  "skin",
-                                  "baked",          "emptied",         "baked_keyframes", "beyond_host"};
+constexpr const char* kKinds[] = {
+    "unlit", "missing_normals", "wrong_at_keys", "wrong_between", "wrong_together",  "stale_tangents", "flat_primitive",
+    "skin",  "unread_skin",     "baked",         "emptied",       "baked_keyframes", "beyond_host"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -61,6 +61,8 @@ Json subject_json(const AuditSubject& subject) {
                {"vertices", subject.vertices}};
   add_error(subject.error, json);
   json["worst_at_keys_degrees"] = subject.at_keys.worst;
+  json["skinning_worst_degrees"] = subject.skinning ? Json(subject.skinning->worst) : Json();
+  json["skinning_mean_degrees"] = subject.skinning ? Json(subject.skinning->mean()) : Json();
   json["worst_at"] = subject.error.worst > 0 ? place_json(subject.error.worst_at, moment_of(subject)) : Json();
   json["faint_at"] = subject.error.faint_worst > 0 ? place_json(subject.error.faint_at, moment_of(subject)) : Json();
   json["unlit_at"] = subject.error.unlit > 0 ? place_json(subject.error.unlit_at, moment_of(subject)) : Json();
@@ -92,7 +94,9 @@ Json finding_json(const AuditFinding& finding) {
           {"expression", or_null(finding.expression)},
           {"count", finding.count},
           {"host", finding.host ? Json(finding.host->name) : Json()},
-          {"worst_degrees", finding.is_fault() ? Json(finding.degrees) : Json()},
+          {"reason", finding.reason ? Json(finding.reason->text()) : Json()},
+          {"worst_degrees",
+           finding.is_fault() || finding.kind == AuditFinding::Kind::kSkinned ? Json(finding.degrees) : Json()},
           {"worst_at", finding.worst_at
                            ? place_json(*finding.worst_at, finding.target || finding.expression ? "weight" : "time")
                            : Json()}};

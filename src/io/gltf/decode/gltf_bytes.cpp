@@ -253,6 +253,18 @@ Result<std::vector<float>> Bytes::floats(std::size_t index) {
   return result;
 }
 
+Result<std::vector<float>> Bytes::times(std::size_t index) {
+  Result<std::vector<float>> times = floats(index);
+  if (!times) return times;
+  if (times.value().front() < 0) return invalid_input(accessor_place(index), "the time of the first key is negative");
+  for (std::size_t k = 1; k < times.value().size(); ++k) {
+    if (!(times.value()[k - 1] < times.value()[k]))
+      return invalid_input(accessor_place(index),
+                           "the time of key " + std::to_string(k) + " is not after that of the one before");
+  }
+  return times;
+}
+
 Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t vertex_count) {
   const Accessor& accessor = model_.accessors[index];
   if (Status status = open_buffer_of(accessor); !status) return status.error();

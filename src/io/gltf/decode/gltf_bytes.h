@@ -63,6 +63,9 @@ class Bytes {
   /// Errors: of the buffer; numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
+  /// The same of times of keys, which must ascend from 0 or more.
+  [[nodiscard]] Result<std::vector<float>> times(std::size_t accessor);
+
   /// The same as indices, of which every one must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 

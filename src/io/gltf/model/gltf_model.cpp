@@ -71,6 +71,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
     for_each_item(root, "accessors", [&](const JsonView& item) { parse_accessor(item); });
     for_each_item(root, "meshes", [&](const JsonView& item) { parse_mesh(item); });
     check_nodes(root);
+    parse_skins();
     for_each_item(root, "animations", [&](const JsonView& item) { parse_animation(item); });
     parse_expressions(document);
   }
@@ -234,6 +235,11 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   GltfNode& node = model_.nodes.emplace_back();
   node.name = item.text("name");
   node.has_skin = item.has("skin");
+  if (node.has_skin) {
+    (void)fault_of([&] {
+      if (const auto skin = item.find_index("skin", kMostNodes, "skins")) node.skin = static_cast<std::uint32_t>(*skin);
+    });
+  }
   if (const auto mesh = item.find_index("mesh", kMostNodes, "meshes")) node.mesh = static_cast<std::uint32_t>(*mesh);
   node.weights = parse_weights(item);
   parse_transform(item, index);
@@ -273,14 +279,13 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
     if (has_translation || has_rotation || has_scale)
       return item.complain("matrix", "a node has either a matrix or translation, rotation and scale");
     const double* m = matrix.data();
-    model_.transforms.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
+    model_.placements.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
   } else if (has_translation || has_rotation || has_scale) {
     const double length = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] +
                                     (rotation[2] * rotation[2] + rotation[3] * rotation[3]));
     if (!(std::fabs(length - 1) < 1e-2)) return item.complain("rotation", "the quaternion is not of length 1");
     for (double& component : rotation) component /= length;
-    model_.transforms.emplace_back(index,
-                                   affine_transform({vector(translation.data()), rotation, vector(scale.data())}));
+    model_.placements.emplace_back(index, NodeTransform{vector(translation.data()), rotation, vector(scale.data())});
   }
 }
 
@@ -355,6 +360,17 @@ void Parser::check_weights(const std::string& pointer, const std::vector<double>
   if (weights.size() != target_count)
     complaint_.add(pointer + "/weights", "there are " + std::to_string(weights.size()) + " weights for " +
                                              std::to_string(target_count) + " morph targets");
+}
+
+Placement placement_of(const Model& model, std::size_t node) noexcept {
+  const auto found = std::lower_bound(model.placements.begin(), model.placements.end(), node,
+                                      [](const auto& entry, std::size_t index) { return entry.first < index; });
+  return found != model.placements.end() && found->first == node ? found->second : NodeTransform{};
+}
+
+AffineTransform transform_of(const Placement& placement) noexcept {
+  if (const auto* const node = std::get_if<NodeTransform>(&placement)) return affine_transform(*node);
+  return std::get<AffineTransform>(placement);
 }
 
 std::string primitive_pointer(std::size_t mesh, std::size_t primitive) {

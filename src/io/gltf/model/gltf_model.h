@@ -11,6 +11,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -77,11 +79,24 @@ struct Draco {
   Attributes attributes;
 };
 
+/// Accessors of a set of JOINTS_n and WEIGHTS_n.
+struct InfluenceSource {
+  std::size_t joints = 0, weights = 0;
+};
+
 struct PrimitiveSource {
   Attributes base;
   std::optional<std::size_t> indices;
   std::vector<Attributes> targets;
   std::optional<Draco> draco;
+  std::vector<InfluenceSource> influences = {};  ///< of primitives with targets only
+  std::optional<Error> influence_fault = {};     ///< why they cannot be read
+};
+
+struct SkinSource {
+  std::vector<std::uint32_t> joints;         ///< nodes
+  std::optional<std::size_t> inverse_binds;  ///< an accessor
+  std::optional<Error> fault;                ///< why the skin cannot be read
 };
 
 /// A channel that drives one weight.
@@ -100,6 +115,25 @@ struct TrackSource {
   std::vector<double> rest = {};
 };
 
+/// A channel that moves a node.
+struct NodeChannel {
+  enum class Path { kTranslation, kRotation, kScale };
+
+  std::uint32_t node = 0;
+  Path path = Path::kTranslation;
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  std::size_t input = 0, output = 0;  ///< accessors
+};
+
+/// Those of an animation, in files that have skins.
+struct NodeChannels {
+  std::vector<NodeChannel> channels;
+  std::optional<Error> fault;  ///< why they cannot be read
+};
+
+/// Where a node stands in its parent: by a matrix, or by what animations can move.
+using Placement = std::variant<AffineTransform, NodeTransform>;
+
 struct Model {
   std::vector<Buffer> buffers;
   std::vector<BufferView> views;
@@ -107,11 +141,18 @@ struct Model {
   std::vector<GltfMesh> meshes;
   std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
   std::vector<GltfNode> nodes;
-  std::vector<std::pair<std::size_t, AffineTransform>> transforms;  ///< of nodes that have one, in their order
+  std::vector<std::pair<std::size_t, Placement>> placements;  ///< of nodes that have one, in their order
+  std::vector<SkinSource> skins;
   std::vector<GltfAnimation> animations;
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
+  std::vector<NodeChannels> node_channels;              ///< beside animations
   std::vector<std::string> extensions;
 };
+
+/// Where a node stands in its parent, as the file has it. O(log nodes).
+[[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
+/// The same as a transform.
+[[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
 
 /// The JSON pointer of a primitive.
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);

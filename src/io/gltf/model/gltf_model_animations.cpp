@@ -1,6 +1,7 @@
 // Reads the animations of weights: channels by node or by KHR_animation_pointer, and those of single weights, which become
 // one track.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -120,6 +121,9 @@ void Parser::parse_animation(const JsonView& item) {
   }
   model_.animations.push_back(std::move(animation));
   model_.track_sources.push_back(std::move(sources));
+  NodeChannels& moving = model_.node_channels.emplace_back();
+  if (complaint_.first() || model_.skins.empty()) return;
+  moving.fault = fault_of([&] { parse_node_channels(item, moving.channels); });
 }
 
 void Parser::parse_track(const JsonView& animation, std::size_t channel_index, std::size_t node, GltfAnimation& result,
@@ -134,7 +138,7 @@ void Parser::parse_track(const JsonView& animation, std::size_t channel_index, s
   const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
   if (target_count == 0)
     return channel.object("target")->complain("node", "the node has no mesh with morph targets to give weights to");
-  if (!parse_sampler(animation, channel_index, target_count, track, source)) return;
+  if (!parse_sampler(animation, channel_index, Use::kWeights, target_count, track, source)) return;
   result.tracks.push_back(track);
   sources.push_back(std::move(source));
 }
@@ -157,7 +161,7 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       return target.complain("the animation has two channels for these weights");
     GltfTrack of_weight;
     TrackSource read;
-    if (!parse_sampler(animation, weight.channel, 1, of_weight, read)) return;
+    if (!parse_sampler(animation, weight.channel, Use::kWeights, 1, of_weight, read)) return;
     if (source.elements.empty()) {
       track.channel = weight.channel;
       track.interpolation = of_weight.interpolation;
@@ -178,7 +182,48 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
   sources.push_back(std::move(source));
 }
 
-bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index, std::size_t weights_per_key,
+void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChannel>& result) {
+  using Path = NodeChannel::Path;
+  constexpr std::array<std::pair<std::string_view, Path>, 3> kPaths = {
+      {{"translation", Path::kTranslation}, {"rotation", Path::kRotation}, {"scale", Path::kScale}}};
+  std::set<std::pair<std::size_t, Path>> known;
+  const JsonView channels = *animation.array("channels");
+  for (std::size_t c = 0; c < channels.size() && !complaint_.first(); ++c) {
+    const JsonView channel = channels.item(c);
+    const std::optional<JsonView> target = channel.object("target");
+    std::optional<std::size_t> node;
+    std::string path = target->text("path");
+    if (path == "pointer") {
+      // "/nodes/3/rotation"
+      const std::string pointer = pointer_of(*target);
+      constexpr std::string_view kNodes = "/nodes/";
+      std::size_t index = 0;
+      if (!pointer.starts_with(kNodes)) continue;
+      const char* const end = pointer.data() + pointer.size();
+      const auto [stop, code] = from_chars(pointer.data() + kNodes.size(), end, index);
+      if (code != std::errc() || stop == end) continue;
+      path.assign(stop + 1, end);
+      if (index < model_.nodes.size()) node = index;
+    } else {
+      node = target->find_index("node", model_.nodes.size(), "nodes");
+    }
+    const auto* const found =
+        std::find_if(kPaths.begin(), kPaths.end(), [&](const auto& known_path) { return known_path.first == path; });
+    if (!node || found == kPaths.end()) continue;
+    if (!known.emplace(*node, found->second).second)
+      return target->complain("the animation has two channels for the " + path + " of this node");
+    if (!std::holds_alternative<NodeTransform>(placement_of(model_, *node)))
+      return target->complain("the node stands by a matrix, whose " + path + " cannot be animated");
+    GltfTrack track;
+    TrackSource source;
+    const Use use = found->second == Path::kRotation ? Use::kTurnedNode : Use::kMovedNode;
+    if (!parse_sampler(animation, c, use, 1, track, source)) return;
+    result.push_back(
+        {static_cast<std::uint32_t>(*node), found->second, track.interpolation, source.input, source.output});
+  }
+}
+
+bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                            GltfTrack& track, TrackSource& source) {
   const JsonView channel = animation.array("channels")->item(channel_index), samplers = *animation.array("samplers");
   const std::optional<std::size_t> sampler_index = channel.required_index("sampler", samplers.size(), "samplers");
@@ -197,15 +242,15 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
     if (!sampler.has(key)) sampler.complain(std::string("there is no ").append(key));
   }
   const std::optional<std::size_t> input = parse_use(sampler, "input", Use::kTimes);
-  const std::optional<std::size_t> output = parse_use(sampler, "output", Use::kWeights);
+  const std::optional<std::size_t> output = parse_use(sampler, "output", use);
   if (!input || !output) return false;
 
   track.key_count = model_.accessors[*input].count;
-  const std::size_t per_key = weights_per_key * (track.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1);
+  if (track.interpolation == GltfInterpolation::kCubicSpline) per_key *= 3;
   const std::size_t given = model_.accessors[*output].count;
   if (given % per_key != 0 || given / per_key != track.key_count) {
-    sampler.complain("output", "there are " + std::to_string(given) + " weights for " +
-                                   std::to_string(track.key_count) + " keys of " + std::to_string(per_key));
+    sampler.complain("output", "there are " + std::to_string(given) + (use == Use::kWeights ? " weights" : " values") +
+                                   " for " + std::to_string(track.key_count) + " keys of " + std::to_string(per_key));
     return false;
   }
   if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {

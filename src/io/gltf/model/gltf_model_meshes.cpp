@@ -1,5 +1,6 @@
 // Reads meshes, checks what their accessors must look like, and reads the expressions of avatars.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -97,6 +98,7 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
 
   parse_targets(item, primitive, source);
   if (complaint_.first()) return;
+  if (!source.targets.empty()) source.influence_fault = fault_of([&] { parse_influences(item, source); });
   if (!sources.empty() && primitive.targets.size() != mesh.target_count)
     item.complain("targets", "the primitive has " + number(primitive.targets.size()) +
                                  " targets, but the first of its mesh has " + number(mesh.target_count));
@@ -155,6 +157,58 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
   }
 }
 
+void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
+  const JsonView attributes = *item.object("attributes");
+  const std::optional<JsonView> extensions = item.object("extensions");
+  const std::optional<JsonView> draco = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
+  const std::optional<JsonView> compressed = draco ? draco->object("attributes") : std::nullopt;
+  for (std::size_t n = 0; !complaint_.first(); ++n) {
+    const std::string joints_key = "JOINTS_" + number(n), weights_key = "WEIGHTS_" + number(n);
+    const bool has_joints = attributes.has(joints_key.c_str()), has_weights = attributes.has(weights_key.c_str());
+    if (!has_joints && !has_weights) return;
+    if (!has_joints || !has_weights) {
+      return attributes.complain("there are " + (has_joints ? joints_key : weights_key) + " and no " +
+                                 (has_joints ? weights_key : joints_key));
+    }
+    const auto read = [&](const std::string& key, Use use) {
+      if (compressed && compressed->has(key.c_str()))
+        attributes.complain(key.c_str(), "joints and weights that KHR_draco_mesh_compression holds cannot be read");
+      const std::optional<std::size_t> index = parse_use(attributes, key.c_str(), use);
+      if (index && source.base.position &&
+          model_.accessors[*index].count != model_.accessors[*source.base.position].count)
+        attributes.complain(key.c_str(), "there are " + number(model_.accessors[*index].count) + " of these for " +
+                                             number(model_.accessors[*source.base.position].count) + " positions");
+      return index.value_or(0);
+    };
+    const std::size_t joints = read(joints_key, Use::kJoints), weights = read(weights_key, Use::kJointWeights);
+    if (!complaint_.first()) source.influences.push_back({joints, weights});
+  }
+}
+
+void Parser::parse_skins() {
+  const auto skins = document_->find("skins");
+  if (complaint_.first() || skins == document_->end() || !skins->is_array()) return;
+  for (std::size_t i = 0; i < skins->size(); ++i) {
+    SkinSource& skin = model_.skins.emplace_back();
+    skin.fault = fault_of([&] { parse_skin(JsonView((*skins)[i], "/skins/" + number(i), complaint_), skin); });
+  }
+}
+
+void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
+  if (!item.is_object()) return;
+  const std::optional<JsonView> joints = item.array("joints");
+  if (!joints) return item.complain("joints", "a skin has joints");
+  for (std::size_t j = 0; j < joints->size(); ++j) {
+    const std::optional<std::size_t> joint = joints->item(j).as_index(model_.nodes.size(), "nodes");
+    if (!joint) return;
+    skin.joints.push_back(static_cast<std::uint32_t>(*joint));
+  }
+  skin.inverse_binds = parse_use(item, "inverseBindMatrices", Use::kInverseBinds);
+  if (skin.inverse_binds && model_.accessors[*skin.inverse_binds].count < skin.joints.size())
+    item.complain("inverseBindMatrices", "there are " + number(model_.accessors[*skin.inverse_binds].count) +
+                                             " matrices for " + number(skin.joints.size()) + " joints");
+}
+
 std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char* key, Use use, bool compressed) {
   const std::optional<std::size_t> index = object.find_index(key, model_.accessors.size(), "accessors");
   if (!index || complaint_.first()) return std::nullopt;
@@ -171,10 +225,14 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
   };
 
   std::size_t components = 3;
-  if (use == Use::kTangent) components = 4;
+  if (use == Use::kTangent || use == Use::kTurnedNode || use == Use::kJoints || use == Use::kJointWeights)
+    components = 4;
   if (use == Use::kIndices || use == Use::kTimes || use == Use::kWeights) components = 1;
-  if (accessor.is_matrix || accessor.components != components)
+  if (use == Use::kInverseBinds) {
+    if (!accessor.is_matrix || accessor.components != 16) return complain("must be of type MAT4");
+  } else if (accessor.is_matrix || accessor.components != components) {
     return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)));
+  }
 
   // Section 3.7.2.1 of the specification, and KHR_mesh_quantization.
   const bool small = is_one_of(accessor.component, {kInt8, kInt16});
@@ -193,8 +251,17 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
       fits = fits || (quantized_ && small && accessor.normalized);
       break;
     case Use::kTimes:
+    case Use::kInverseBinds:
+    case Use::kMovedNode:
+      break;
+    case Use::kJoints:
+      fits = is_one_of(accessor.component, {kUint8, kUint16}) && !accessor.normalized;
+      break;
+    case Use::kJointWeights:
+      fits = fits || (is_one_of(accessor.component, {kUint8, kUint16}) && accessor.normalized);
       break;
     case Use::kWeights:
+    case Use::kTurnedNode:
       fits = fits || (accessor.component != kUint32 && accessor.normalized);
       break;
     case Use::kIndices:
@@ -219,7 +286,9 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
   const auto complain = [&](std::string message) {
     object.complain(key, "accessor " + number(index) + " " + std::move(message));
   };
-  const bool is_attribute = use != Use::kIndices && use != Use::kTimes && use != Use::kWeights;
+  constexpr std::array kNoAttributes = {Use::kIndices,      Use::kTimes,     Use::kWeights,
+                                        Use::kInverseBinds, Use::kMovedNode, Use::kTurnedNode};
+  const bool is_attribute = std::find(kNoAttributes.begin(), kNoAttributes.end(), use) == kNoAttributes.end();
   if (!is_attribute) check_unstrided(object, key, view, "an accessor of indices, times or weights");
   const std::size_t size = accessor.element_size(), stride = view.stride.value_or(size);
   const std::size_t alignment = component_size(accessor.component);

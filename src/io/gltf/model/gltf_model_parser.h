@@ -36,8 +36,21 @@ class Parser {
     kMovedTangent,
     kIndices,
     kTimes,
-    kWeights
+    kWeights,
+    kJoints,  ///< of vertices, and what they weigh
+    kJointWeights,
+    kInverseBinds,
+    kMovedNode,  ///< translations and scales over time
+    kTurnedNode  ///< rotations over time
   };
+
+  /// Parses a part of the file that only those have to understand who ask for it, and takes its complaint.
+  template <class Parse>
+  std::optional<Error> fault_of(const Parse& parse) {
+    if (complaint_.first()) return std::nullopt;
+    parse();
+    return complaint_.take();
+  }
 
   template <class Parse>
   void for_each_item(const JsonView& root, const char* key, const Parse& parse) {
@@ -66,6 +79,10 @@ class Parser {
   void parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
   std::optional<Draco> parse_draco(const JsonView& item, const JsonView& attributes);
   void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
+  /// Joints and weights of vertices: JOINTS_n and WEIGHTS_n.
+  void parse_influences(const JsonView& item, PrimitiveSource& source);
+  void parse_skins();
+  void parse_skin(const JsonView& item, SkinSource& skin);
   /// The accessor that a member names, checked for its use; nothing where there is none, or after a complaint.
   std::optional<std::size_t> parse_use(const JsonView& object, const char* key, Use use, bool compressed = false);
   void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
@@ -90,9 +107,11 @@ class Parser {
   /// Puts the channels of single weights of a node together as one track.
   void assemble_track(const JsonView& animation, std::size_t node, const std::vector<LoneWeight>& weights,
                       GltfAnimation& result, std::vector<TrackSource>& sources);
-  /// Reads and checks the sampler of a channel, which gives a key so many weights. Returns false after a complaint.
-  bool parse_sampler(const JsonView& animation, std::size_t channel_index, std::size_t weights_per_key,
+  /// Reads and checks the sampler of a channel, which gives a key so many elements. Returns false after a complaint.
+  bool parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                      GltfTrack& track, TrackSource& source);
+  /// The channels that move nodes.
+  void parse_node_channels(const JsonView& animation, std::vector<NodeChannel>& result);
   /// The expressions of a VRM avatar. What is not as they are defined is passed over: no geometry depends on it.
   void parse_expressions(const nlohmann::json& root);
 

@@ -1,0 +1,198 @@
+// A pose is found from the roots to the joints: each bone gets its place in its parent, moved by the curves that it has,
+// and then that of the parent in the world.
+#include "io/gltf/gltf_skin.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "io/gltf/gltf_document_state.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+using Path = gltf::NodeChannel::Path;
+using Quaternion = std::array<double, 4>;
+
+constexpr std::uint32_t kNoBone = ~std::uint32_t{0};
+
+// Of length 1; the identity where there is no direction.
+Quaternion as_rotation(const Quaternion& q) {
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + (q[2] * q[2] + q[3] * q[3]));
+  if (!(length > 0)) return {0, 0, 0, 1};
+  return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+}
+
+// Along the arc between two keys where they are LINEAR, as the specification has it.
+Quaternion rotation_at(const gltf::WeightCurve& curve, GltfInterpolation interpolation, double time, bool just_before) {
+  Quaternion rotation;
+  const auto times = curve.times();
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (interpolation != GltfInterpolation::kLinear || after == times.begin() || after == times.end()) {
+    curve.at(time, just_before, rotation);
+    return as_rotation(rotation);
+  }
+  NodeTransform from, to;
+  curve.at(*(after - 1), false, from.rotation);
+  curve.at(*after, false, to.rotation);
+  from.rotation = as_rotation(from.rotation);
+  to.rotation = as_rotation(to.rotation);
+  return interpolated(from, to, (time - *(after - 1)) / (*after - *(after - 1))).rotation;
+}
+
+Vec3d vector_at(const gltf::WeightCurve& curve, double time, bool just_before) {
+  std::array<double, 3> v{};
+  curve.at(time, just_before, v);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, std::optional<std::size_t> animation) {
+  GltfDocument::State& state = *document.state_;
+  const gltf::Model& model = state.model;
+  const std::optional<std::uint32_t> index = model.nodes[node].skin;
+  if (!index || *index >= model.skins.size())
+    return invalid_input(state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
+                         "this is none of the " + std::to_string(model.skins.size()) + " skins of the file");
+  const gltf::SkinSource& source = model.skins[*index];
+  if (source.fault) return *source.fault;
+  GltfSkin skin;
+  skin.joints_ = source.joints;
+  skin.inverse_binds_.resize(source.joints.size());
+  if (source.inverse_binds) {
+    const Result<std::vector<float>> numbers = state.bytes.floats(*source.inverse_binds);
+    if (!numbers) return numbers.error();
+    for (std::size_t j = 0; j < source.joints.size(); ++j) {
+      const float* const m = numbers.value().data() + 16 * j;
+      if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+        return invalid_input(state.bytes.accessor_place(*source.inverse_binds),
+                             "the last row of matrix " + std::to_string(j) + " is not 0, 0, 0, 1");
+      const auto column = [m](std::size_t c) { return to_double(Vec3f{m[4 * c], m[4 * c + 1], m[4 * c + 2]}); };
+      skin.inverse_binds_[j] = {{column(0), column(1), column(2)}, column(3)};
+    }
+  }
+  skin.add_bones(document);
+  if (!animation) return skin;
+  const gltf::NodeChannels& moving = model.node_channels[*animation];
+  if (moving.fault) return *moving.fault;
+  for (const gltf::NodeChannel& channel : moving.channels) {
+    if (skin.bone_of_node_[channel.node] == kNoBone) continue;
+    if (const Status status = skin.add_curve(document, channel); !status) return status.error();
+  }
+  return skin;
+}
+
+void GltfSkin::add_bones(const GltfDocument& document) {
+  const gltf::Model& model = document.state_->model;
+  bone_of_node_.assign(model.nodes.size(), kNoBone);
+  for (const std::uint32_t joint : joints_) {
+    std::vector<std::uint32_t> path;  // upwards, to a node that is known
+    for (std::optional<std::uint32_t> at = joint; at && bone_of_node_[*at] == kNoBone; at = model.nodes[*at].parent)
+      path.push_back(*at);
+    for (auto at = path.rbegin(); at != path.rend(); ++at) {
+      const std::optional<std::uint32_t> parent = model.nodes[*at].parent;
+      bone_of_node_[*at] = static_cast<std::uint32_t>(bones_.size());
+      bones_.push_back(
+          {gltf::placement_of(model, *at), parent ? std::optional<std::size_t>(bone_of_node_[*parent]) : std::nullopt});
+    }
+    bone_of_joint_.push_back(bone_of_node_[joint]);
+  }
+}
+
+Status GltfSkin::add_curve(const GltfDocument& document, const gltf::NodeChannel& channel) {
+  gltf::Bytes& bytes = document.state_->bytes;
+  const Result<std::vector<float>> times = bytes.times(channel.input);
+  if (!times) return times.error();
+  const Result<std::vector<float>> values = bytes.floats(channel.output);
+  if (!values) return values.error();
+  GltfKeys keys{{times.value().begin(), times.value().end()}, {values.value().begin(), values.value().end()}};
+  const std::size_t width = channel.path == Path::kRotation ? 4 : 3;
+  curves_.push_back({bone_of_node_[channel.node], channel.path, channel.interpolation,
+                     gltf::WeightCurve(std::move(keys), channel.interpolation, width)});
+  return Success{};
+}
+
+Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
+                             std::vector<std::size_t>& first, std::vector<JointShare>& shares) const {
+  GltfDocument::State& state = *document.state_;
+  const gltf::PrimitiveSource& source = state.model.sources[mesh][primitive];
+  const std::size_t vertices = state.model.meshes[mesh].primitives[primitive].vertex_count;
+  const std::string pointer = gltf::primitive_pointer(mesh, primitive) + "/attributes";
+  if (source.influence_fault) return *source.influence_fault;
+  const std::vector<gltf::InfluenceSource>& sets = source.influences;
+  if (sets.empty()) return invalid_input(state.bytes.place(pointer), "there is no JOINTS_0 for the skin of the mesh");
+  // Sets may be many, and all of one accessor.
+  constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
+  if (const Status status = state.bytes.expansion().check(
+          vertices <= most ? kOfVertex * sets.size() * vertices : std::numeric_limits<std::uint64_t>::max(),
+          state.bytes.place(pointer));
+      !status)
+    return status;
+  std::vector<std::vector<float>> joints, weights;
+  for (const gltf::InfluenceSource& set : sets) {
+    for (const auto& [accessor, all] : {std::pair(set.joints, &joints), {set.weights, &weights}}) {
+      Result<std::vector<float>> numbers = state.bytes.floats(accessor);
+      if (!numbers) return numbers.error();
+      all->push_back(std::move(numbers).value());
+    }
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    first.push_back(shares.size());
+    double sum = 0;
+    for (const std::vector<float>& of_set : weights)
+      for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) sum += static_cast<double>(of_set[i]);
+    const bool is_any = sum > 0;
+    for (std::size_t n = 0; n < sets.size(); ++n) {
+      for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
+        const bool is_first = n == 0 && i == 4 * v;
+        const double share = is_any ? static_cast<double>(weights[n][i]) / sum : is_first ? 1 : 0;
+        if (share == 0) continue;
+        const auto joint = static_cast<std::uint32_t>(joints[n][i]);
+        if (joint >= joints_.size())
+          return invalid_input(state.bytes.place(pointer + "/JOINTS_" + std::to_string(n)),
+                               "vertex " + std::to_string(v) + " follows joint " + std::to_string(joint) +
+                                   " of a skin that has " + std::to_string(joints_.size()));
+        shares.push_back({joint, share});
+      }
+    }
+  }
+  return Success{};
+}
+
+std::vector<AffineTransform> GltfSkin::pose(double time, bool just_before) const {
+  std::vector<gltf::Placement> placements;
+  placements.reserve(bones_.size());
+  for (const Bone& bone : bones_) placements.push_back(bone.placement);
+  for (const Curve& moving : curves_) {
+    auto& node = std::get<NodeTransform>(placements[moving.bone]);
+    switch (moving.path) {
+      case Path::kTranslation:
+        node.translation = vector_at(moving.curve, time, just_before);
+        break;
+      case Path::kRotation:
+        node.rotation = rotation_at(moving.curve, moving.interpolation, time, just_before);
+        break;
+      case Path::kScale:
+        node.scale = vector_at(moving.curve, time, just_before);
+        break;
+    }
+  }
+  std::vector<AffineTransform> in_world;
+  in_world.reserve(bones_.size());
+  for (std::size_t b = 0; b < bones_.size(); ++b) {
+    const AffineTransform in_parent = gltf::transform_of(placements[b]);
+    in_world.push_back(bones_[b].parent ? composed(in_world[*bones_[b].parent], in_parent) : in_parent);
+  }
+  std::vector<AffineTransform> result;
+  result.reserve(joints_.size());
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    result.push_back(composed(in_world[bone_of_joint_[j]], inverse_binds_[j]));
+  return result;
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,79 @@
+/// Skins of glTF files: where their joints are at any time, and which of them the vertices follow. Private to io and
+/// workflow.
+///
+///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin: what takes a
+///                     vertex of the mesh to where that joint carries it (section 3.7.3.3 of the specification). The
+///                     place of the node that has the skin does not matter
+///
+/// Nothing of this is checked when a document is opened: a file whose skin makes no sense can be read by everybody else.
+#ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
+#define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/normals/transform.h"
+#include "io/gltf/gltf_weights.h"
+#include "io/gltf/model/gltf_model.h"
+
+namespace chronormal::inline internal {
+
+/// A joint of the skin that a vertex follows, and its share.
+struct JointShare {
+  std::uint32_t joint = 0;
+  double share = 0;
+};
+
+class GltfSkin {
+ public:
+  /// Reads the skin of a node and what an animation does to its joints; without one they stand as the file has them.
+  /// Errors: kInvalidInput with the JSON pointer, where the skin or the animation is not as the specification has them
+  [[nodiscard]] static Result<GltfSkin> read(const GltfDocument& document, std::size_t node,
+                                             std::optional<std::size_t> animation);
+
+  /// Appends the shares of the vertices of a primitive, of which every one has the same number of them; first gets
+  /// where those of each vertex begin. They add up to 1: other weights are divided by their sum, and a vertex without
+  /// any follows its first joint, as in three.js. Joints without a weight are left out.
+  /// Errors: kInvalidInput with the JSON pointer, also for joints that this skin does not have
+  [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
+                                   std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
+
+  /// Whether the joints move in the animation.
+  [[nodiscard]] bool moves() const noexcept { return !curves_.empty(); }
+
+  /// The joint matrices at a time; where the joints jump, those just after it or just before it. O(joints and nodes
+  /// above them).
+  [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
+
+ private:
+  // A joint, or a node above one. Parents come before their children.
+  struct Bone {
+    gltf::Placement placement;
+    std::optional<std::size_t> parent;  // among the bones
+  };
+  struct Curve {
+    std::size_t bone = 0;
+    gltf::NodeChannel::Path path = gltf::NodeChannel::Path::kTranslation;
+    GltfInterpolation interpolation = GltfInterpolation::kLinear;
+    gltf::WeightCurve curve;
+  };
+
+  // Numbers the joints and all nodes above them.
+  void add_bones(const GltfDocument& document);
+  [[nodiscard]] Status add_curve(const GltfDocument& document, const gltf::NodeChannel& channel);
+
+  std::vector<std::uint32_t> joints_;        // nodes
+  std::vector<std::uint32_t> bone_of_node_;  // kNoBone where a node is none
+  std::vector<std::uint32_t> bone_of_joint_;
+  std::vector<AffineTransform> inverse_binds_;
+  std::vector<Bone> bones_;
+  std::vector<Curve> curves_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_GLTF_GLTF_SKIN_H_

@@ -1,0 +1,51 @@
+#include "workflow/audit/skinning_error.h"
+
+#include <vector>
+
+#include "chronormal/analysis/quality.h"
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+
+// The angle for one output; nothing where one of the two normals has no size.
+std::optional<double> degrees_at(const AffineTransform& matrix, const Vec3d& before, const Vec3d& after) {
+  const NormalMatrix exact = normal_matrix(matrix);
+  if (!(length(after) > kVanished * length(exact(before))) || !is_finite(after)) return std::nullopt;
+  const Vec3d shown = carried(matrix, before);
+  if (shown == Vec3d{} || !is_finite(shown)) return 180;
+  return angle_between(shown, exact.mirrored ? -after : after) * kDegreesPerRadian;
+}
+
+}  // namespace
+
+void SkinningErrors::add_sample(const BlendSource& source, const MeasuredSample& sample) {
+  if (source.skin() == nullptr) return;
+  if (!all_) all_.emplace();
+  if (source.placed() != placed_) {
+    placed_ = source.placed();
+    const JudgedPart& part = sample.placed.part;
+    std::vector<Vec3d> positions(part.vertices().size());
+    parallel_each(positions.size(), kBlock, [&](std::size_t i) {
+      positions[i] = source.skin()->of_vertex(part.vertices()[i])(sample.placed.positions[i]);
+    });
+    PartNormals skinned;
+    part.normals(positions, skinned);
+    last_ = parallel_fold<SkinningError>(
+        part.outputs().size(), kBlock,
+        [&](std::size_t i, SkinningError& result) {
+          const JudgedOutput& output = part.outputs()[i];
+          const Vec3d& before = sample.placed.normals.elements[output.element];
+          if (!(length(before) > kVanished * sample.largest[output.element])) return;
+          const std::optional<double> degrees =
+              degrees_at(source.skin()->of_vertex(output.vertex), before, skinned.elements[output.element]);
+          if (degrees) result.add(*degrees, source.at(sample.segment, sample.t, output));
+        },
+        [](SkinningError& to, const SkinningError& each) { to.add(each); });
+  }
+  all_->add(last_);
+}
+
+}  // namespace chronormal::inline internal

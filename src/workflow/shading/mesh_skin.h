@@ -1,0 +1,54 @@
+/// How the skin of a node moves the vertices of a mesh. Private to workflow.
+///
+/// Hosts blend the joint matrices of a vertex by its shares, M = sum of w_j M_j, and take its position through M and its
+/// normal through the linear part L of M (three.js, Babylon.js, PlayCanvas; docs/decisions/0022). L is no normal matrix:
+/// where it is more than a turn and a scale, what it makes of a right normal is not the normal of the skinned surface.
+/// No target can mend that. So normals are held against each other as L carries them, and what L itself does wrong is
+/// told apart.
+///
+/// Threads    const functions may run at once.
+#ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
+#define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/normals/transform.h"
+#include "io/gltf/gltf_skin.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+class MeshSkin {
+ public:
+  /// Reads what the skin of a node does to the mesh of the shading, and poses it as the file has it. Errors: of GltfSkin
+  [[nodiscard]] static Result<MeshSkin> read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
+                                             std::optional<std::size_t> animation);
+
+  /// Poses the joints as they are at a time; where they jump, just after it or just before it. Returns whether that may
+  /// have moved anything.
+  bool pose(double time, bool just_before);
+
+  /// The blended matrix of a vertex in this pose.
+  [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
+
+ private:
+  explicit MeshSkin(GltfSkin skin) : skin_(std::move(skin)), matrices_(skin_.pose(0, false)) {}
+
+  GltfSkin skin_;
+  std::vector<std::size_t> first_;  // (V + 1)
+  std::vector<JointShare> shares_;
+  std::vector<AffineTransform> matrices_;  // of joints
+};
+
+/// What hosts show of a normal that a matrix carries along: a unit vector, or zero or not finite where it has no
+/// direction.
+[[nodiscard]] Vec3d carried(const AffineTransform& matrix, const Vec3d& normal) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
