@@ -8,9 +8,8 @@
 ///     motion error       the angle between what is shown at a sample and what should be, the offset kept
 ///
 ///     glTF       the rotation from n(0) to the stored N, fixed per vertex
-///     skins      where a node with a skin carries the mesh, both are judged as hosts take them to the screen: through the
-///                linear part of the blended joint matrix of the vertex, in the pose of the animation at that time, or
-///                else in that of the file (docs/decisions/0022). What skinning itself does wrong is told apart
+///     skins      both as the skin of a node takes them to the screen, in the pose of that time (docs/decisions/0022).
+///                What skinning itself does wrong is told apart
 ///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///
@@ -232,12 +231,10 @@ struct Audit {
 /// keep that take more than kMostErrorBytes.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
-/// then. Without stored
-/// normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would get in
-/// between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; those of check_path();
-/// kInvalidInput for normals that do not fit.
-/// Precondition: the motion is valid
+/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject then.
+/// Without stored normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would
+/// get in between. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; those of check_path();
+/// kInvalidInput for normals that do not fit. Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 /// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is
 /// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also
@@ -245,8 +242,7 @@ struct Audit {
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 /// Joins the shards of one audit, which may come in any order, into the audit that one run would have made. Errors:
-/// kUsage unless they are shards of the same audit, and each segment is in exactly one of them.
-/// There must be at least one shard
+/// kUsage unless they are shards of the same audit, and each segment is in exactly one of them. There must be some
 [[nodiscard]] Result<Audit> merge(std::vector<Audit> shards);
 
 }  // namespace chronormal

@@ -1,0 +1,155 @@
+/// A skin over a morphing mesh, as JSON and bytes of a glTF file and as an oracle of what it does, in long double and with
+/// loops of its own: nothing here includes code of src/ but for the builder of files.
+#ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
+#define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/support/shaded_mesh.h"
+
+namespace chronormal::test {
+
+/// Three rows of four numbers: what takes (x, y, z, 1) to a place.
+struct Rows {
+  std::array<std::array<Real, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+  [[nodiscard]] Vector of_place(const Vector& p) const {
+    Vector result{};
+    for (std::size_t r = 0; r < 3; ++r) result[r] = m[r][0] * p[0] + m[r][1] * p[1] + m[r][2] * p[2] + m[r][3];
+    return result;
+  }
+  [[nodiscard]] Vector of_direction(const Vector& d) const {
+    Vector result{};
+    for (std::size_t r = 0; r < 3; ++r) result[r] = m[r][0] * d[0] + m[r][1] * d[1] + m[r][2] * d[2];
+    return result;
+  }
+  [[nodiscard]] Real determinant() const {
+    const auto row = [&](std::size_t r) { return Vector{m[r][0], m[r][1], m[r][2]}; };
+    return dotted(row(0), crossed(row(1), row(2)));
+  }
+};
+
+/// After b, a.
+[[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
+  Rows result;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      result.m[r][c] = c == 3 ? a.m[r][3] : 0;
+      for (std::size_t k = 0; k < 3; ++k) result.m[r][c] += a.m[r][k] * b.m[k][c];
+    }
+  }
+  return result;
+}
+
+/// A place by translation, rotation (a quaternion x, y, z, w of any length) and scale.
+struct Trs {
+  std::array<Real, 3> translation = {0, 0, 0};
+  std::array<Real, 4> rotation = {0, 0, 0, 1};
+  std::array<Real, 3> scale = {1, 1, 1};
+
+  /// Turns the axes by v + 2 w (u x v) + 2 u x (u x v), u = (x, y, z).
+  [[nodiscard]] Rows rows() const {
+    Real length = 0;
+    for (const Real c : rotation) length += c * c;
+    length = std::sqrt(length);
+    const Vector u = {rotation[0] / length, rotation[1] / length, rotation[2] / length};
+    Rows result;
+    for (std::size_t c = 0; c < 3; ++c) {
+      Vector axis = {0, 0, 0};
+      axis[c] = scale[c];
+      const Vector once = crossed(u, axis);
+      const Vector turned = plus(plus(axis, once, 2 * rotation[3] / length), crossed(u, once), 2);
+      for (std::size_t r = 0; r < 3; ++r) result.m[r][c] = turned[r];
+    }
+    for (std::size_t r = 0; r < 3; ++r) result.m[r][3] = translation[r];
+    return result;
+  }
+  [[nodiscard]] GltfBuilder::Json json() const {
+    const auto list = [](const auto& numbers) {
+      GltfBuilder::Json result = GltfBuilder::Json::array();
+      for (const Real c : numbers) result.push_back(static_cast<double>(c));
+      return result;
+    };
+    return {{"translation", list(translation)}, {"rotation", list(rotation)}, {"scale", list(scale)}};
+  }
+};
+
+/// Joints with shares of four vertices a set, and inverse bind matrices.
+struct Skin {
+  std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty: the file has none
+  std::vector<std::vector<std::uint8_t>> joints;     ///< of each set, four for each vertex
+  std::vector<std::vector<float>> weights;           ///< likewise
+
+  /// Appends the skin, whose joints are these nodes, and gives it to node 0 and the first primitive of mesh 0.
+  void add_to(GltfBuilder& builder, const std::vector<std::size_t>& nodes) const {
+    GltfBuilder::Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+    for (std::size_t n = 0; n < joints.size(); ++n) {
+      attributes["JOINTS_" + std::to_string(n)] = builder.add_accessor("VEC4", joints[n]);
+      attributes["WEIGHTS_" + std::to_string(n)] = builder.add_accessor("VEC4", weights[n]);
+    }
+    GltfBuilder::Json skin = {{"joints", nodes}};
+    if (!inverse_binds.empty()) {
+      std::vector<float> numbers;
+      for (const auto& matrix : inverse_binds) numbers.insert(numbers.end(), matrix.begin(), matrix.end());
+      skin["inverseBindMatrices"] =
+          builder.add_accessor_over(builder.add_view(bytes_of(numbers)), "MAT4", 5126, inverse_binds.size());
+    }
+    builder.json["nodes"][0]["skin"] = builder.add("skins", skin);
+  }
+
+  /// The blended matrix of a vertex where the joints are at these places of the world.
+  [[nodiscard]] Rows blended(std::size_t vertex, const std::vector<Rows>& world) const {
+    Real sum = 0;
+    for (const auto& of_set : weights)
+      for (std::size_t i = 0; i < 4; ++i) sum += of_set[4 * vertex + i];
+    Rows result;
+    result.m = {};
+    for (std::size_t n = 0; n < joints.size(); ++n) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t joint = joints[n][4 * vertex + i];
+        if (weights[n][4 * vertex + i] == 0) continue;
+        Rows bind;
+        for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
+          bind.m[k % 3][k / 3] = inverse_binds[joint][4 * (k / 3) + k % 3];
+        const Rows of_joint = after(world[joint], bind);
+        for (std::size_t r = 0; r < 3; ++r)
+          for (std::size_t c = 0; c < 4; ++c) result.m[r][c] += weights[n][4 * vertex + i] / sum * of_joint.m[r][c];
+      }
+    }
+    return result;
+  }
+};
+
+/// What is on the screen: how far the shown normal of a vertex is from the right one, both carried by the blended
+/// matrix; and how far the normal of the geometry, carried likewise, is from that of the skinned surface.
+struct SeenErrors {
+  double shown = 0, skinning = 0;
+};
+[[nodiscard]] inline SeenErrors seen_errors(const ShadedMesh& mesh, const Skin& skin, const std::vector<Rows>& world,
+                                            std::size_t v, const std::vector<double>& weights) {
+  const Rows matrix = skin.blended(v, world);
+  const Vector base = unit_of(mesh.normal(v, std::vector<double>(weights.size())));
+  const Vector normal = unit_of(mesh.normal(v, weights));
+  const Vector right = rotated(base, unit_of(vector_at(mesh.normals, v)), normal);
+  Vector around = {0, 0, 0};
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
+    if (!mesh.same_element(mesh.corners[c], v)) continue;
+    const std::size_t f = c - c % 3;
+    std::array<Vector, 3> p;
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = skin.blended(mesh.corners[f + k], world).of_place(mesh.position(mesh.corners[f + k], weights));
+    around = plus(around, crossed(plus(p[1], p[0], -1), plus(p[2], p[0], -1)));
+  }
+  if (matrix.determinant() < 0) around = {-around[0], -around[1], -around[2]};
+  return {degrees_between(matrix.of_direction(mesh.shown(v, weights)), matrix.of_direction(right)),
+          degrees_between(matrix.of_direction(normal), around)};
+}
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
