@@ -102,6 +102,14 @@ struct Skin {
     builder.json["nodes"][0]["skin"] = builder.add("skins", skin);
   }
 
+  /// What takes a vertex to where a joint carries it.
+  [[nodiscard]] Rows of_joint(std::size_t joint, const std::vector<Rows>& world) const {
+    Rows bind;
+    for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
+      bind.m[k % 3][k / 3] = inverse_binds[joint][4 * (k / 3) + k % 3];
+    return after(world[joint], bind);
+  }
+
   /// The blended matrix of a vertex where the joints are at these places of the world.
   [[nodiscard]] Rows blended(std::size_t vertex, const std::vector<Rows>& world) const {
     Real sum = 0;
@@ -113,17 +121,36 @@ struct Skin {
       for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t joint = joints[n][4 * vertex + i];
         if (weights[n][4 * vertex + i] == 0) continue;
-        Rows bind;
-        for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
-          bind.m[k % 3][k / 3] = inverse_binds[joint][4 * (k / 3) + k % 3];
-        const Rows of_joint = after(world[joint], bind);
+        const Rows matrix = of_joint(joint, world);
         for (std::size_t r = 0; r < 3; ++r)
-          for (std::size_t c = 0; c < 4; ++c) result.m[r][c] += weights[n][4 * vertex + i] / sum * of_joint.m[r][c];
+          for (std::size_t c = 0; c < 4; ++c) result.m[r][c] += weights[n][4 * vertex + i] / sum * matrix.m[r][c];
       }
     }
     return result;
   }
 };
+
+/// How hosts carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of each
+/// joint.
+enum class Carry { kBlended, kInverseTranspose, kByJoint };
+
+[[nodiscard]] inline Vector by_cofactors(const Rows& matrix, const Vector& n) {
+  const auto column = [&](std::size_t c) { return Vector{matrix.m[0][c], matrix.m[1][c], matrix.m[2][c]}; };
+  const Vector a = column(0), b = column(1), c = column(2);
+  return plus(plus(plus({0, 0, 0}, crossed(b, c), n[0]), crossed(c, a), n[1]), crossed(a, b), n[2]);
+}
+[[nodiscard]] inline Vector carried(Carry rule, const Skin& skin, const std::vector<Rows>& world, std::size_t v,
+                                    const Vector& n) {
+  const Rows blended = skin.blended(v, world);
+  if (rule == Carry::kBlended) return blended.of_direction(n);
+  if (rule == Carry::kInverseTranspose) return plus({0, 0, 0}, by_cofactors(blended, n), 1 / blended.determinant());
+  Vector sum = {0, 0, 0};
+  for (std::size_t set = 0; set < skin.joints.size(); ++set)
+    for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
+      if (skin.weights[set][i] != 0)
+        sum = plus(sum, unit_of(by_cofactors(skin.of_joint(skin.joints[set][i], world), n)), skin.weights[set][i]);
+  return sum;
+}
 
 /// What is on the screen: how far the shown normal of a vertex is from the right one, both carried by the blended
 /// matrix; and how far the normal of the geometry, carried likewise, is from that of the skinned surface.
@@ -131,7 +158,8 @@ struct SeenErrors {
   double shown = 0, skinning = 0;
 };
 [[nodiscard]] inline SeenErrors seen_errors(const ShadedMesh& mesh, const Skin& skin, const std::vector<Rows>& world,
-                                            std::size_t v, const std::vector<double>& weights) {
+                                            std::size_t v, const std::vector<double>& weights,
+                                            Carry rule = Carry::kBlended) {
   const Rows matrix = skin.blended(v, world);
   const Vector base = unit_of(mesh.normal(v, std::vector<double>(weights.size())));
   const Vector normal = unit_of(mesh.normal(v, weights));
@@ -146,7 +174,8 @@ struct SeenErrors {
     around = plus(around, crossed(plus(p[1], p[0], -1), plus(p[2], p[0], -1)));
   }
   if (matrix.determinant() < 0) around = {-around[0], -around[1], -around[2]};
-  return {degrees_between(matrix.of_direction(mesh.shown(v, weights)), matrix.of_direction(right)),
+  const auto seen = [&](const Vector& n) { return carried(rule, skin, world, v, n); };
+  return {degrees_between(seen(mesh.shown(v, weights)), seen(right)),
           degrees_between(matrix.of_direction(normal), around)};
 }
 

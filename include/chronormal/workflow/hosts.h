@@ -45,6 +45,13 @@ enum class TrackRule {
   kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and weights of zero beyond these
 };
 
+/// How a host takes a normal through the skin of a node (docs/decisions/0022).
+enum class SkinRule {
+  kBlended,           ///< through the linear part of the blended matrix of the joints
+  kInverseTranspose,  ///< through the inverse transpose of that
+  kByJoint            ///< through the cofactors of each joint, and blends the unit vectors
+};
+
 inline constexpr double kHostSampleRate = 30;  ///< samples a second of tracks that are resampled
 
 struct Host {
@@ -61,6 +68,7 @@ struct Host {
   bool by_frame = false;
   bool octahedral_base = false;  ///< clamped: N goes through octahedral numbers of as many bits before
   TrackRule tracks = TrackRule::kSpecified;
+  SkinRule skins = SkinRule::kBlended;
   int weight_bits = 32;  ///< of a weight in a track
   double least_weight = 0;
   bool adds_tangents = true;     ///< of targets; else the tangents of the base stay, whatever the targets do
@@ -104,17 +112,21 @@ inline constexpr std::array<Host, 9> kHosts = {{
      .bits = 16,
      .by_frame = true,
      .tracks = TrackRule::kSplinesWithoutDuration,
+     .skins = SkinRule::kByJoint,
      .most_targets = 256,
      .beyond = "the program ends",
-     .source = "Filament 1.53, shaders/src/surface_getters.vs (morphNormal), libs/gltfio/src/TangentsJob.cpp, "
-               "libs/geometry/src/SurfaceOrientation.cpp, libs/math/include/math/mat3.h (packTangentFrame), "
-               "libs/gltfio/include/gltfio/math.h (cubicSpline) and CONFIG_MAX_MORPH_TARGET_COUNT of EngineEnums.h"},
+     .source =
+         "Filament 1.53, shaders/src/surface_getters.vs (morphNormal, skinNormal), libs/gltfio/src/TangentsJob.cpp, "
+         "libs/geometry/src/SurfaceOrientation.cpp, libs/math/include/math/mat3.h (packTangentFrame), "
+         "libs/gltfio/include/gltfio/math.h (cubicSpline) and CONFIG_MAX_MORPH_TARGET_COUNT of EngineEnums.h"},
     {.name = "bevy",
      .title = "Bevy",
+     .skins = SkinRule::kInverseTranspose,
      .most_targets = 256,
      .beyond = "the file is refused",
-     .source = "Bevy, crates/bevy_pbr/src/render/mesh.wgsl, crates/bevy_animation/src/gltf_curves.rs and "
-               "MAX_MORPH_WEIGHTS of crates/bevy_mesh/src/morph.rs"},
+     .source =
+         "Bevy, crates/bevy_pbr/src/render/mesh.wgsl and skinning.wgsl, crates/bevy_animation/src/gltf_curves.rs and "
+         "MAX_MORPH_WEIGHTS of crates/bevy_mesh/src/morph.rs"},
     {.name = "gltfpack",
      .title = "after gltfpack",
      .normals = NormalRule::kClamped,

@@ -73,13 +73,13 @@ void BlendSource::show() {
                 [&](std::size_t i) { carriers_[i] = skin_->of_vertex(part_.outputs()[i].vertex); });
 }
 
-Vec3d BlendSource::seen(std::size_t i, const Vec3d& normal) const noexcept {
-  return skin_ == nullptr ? normal : carried(carriers_[i], normal);
+Vec3d BlendSource::seen(std::size_t i, const Vec3d& normal, SkinRule rule) const noexcept {
+  return skin_ == nullptr ? normal : skin_->carried(rule, part_.outputs()[i].vertex, carriers_[i], normal);
 }
 
-bool BlendSource::hides(const JudgedOutput& output, const Vec3d& normal) const {
+bool BlendSource::hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   if (skin_ == nullptr) return false;
-  const Vec3d is_seen = right(output, normal);
+  const Vec3d is_seen = right(output, normal, rule);
   return is_seen == Vec3d{} || !is_finite(is_seen);
 }
 
@@ -107,9 +107,9 @@ Vec3f BlendSource::shown(const JudgedOutput& output) const {
   return to_float(seen(i, to_double(blend_stored(rule_, from, to, t_))));
 }
 
-Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal) const {
+Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   const std::size_t i = number(output);
-  return seen(i, turns_[i](unit(normal)));
+  return seen(i, turns_[i](unit(normal)), rule);
 }
 
 std::size_t BlendSource::number(const JudgedOutput& output) const {

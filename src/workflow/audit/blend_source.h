@@ -53,12 +53,12 @@ class BlendSource {
   /// Adds up the normals that are shown at the moment that was placed, and finds what the skin does to them.
   void show();
   /// A normal of the i-th output, of any length, as it is seen: carried along by the skin, or else as it is.
-  [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal) const noexcept;
+  [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
   /// Whether the skin leaves nothing of the right normal, so that no target could show any.
-  [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal) const;
+  [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
-  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const;
+  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const;
 
  private:

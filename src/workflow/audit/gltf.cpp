@@ -113,7 +113,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
     return std::nullopt;
   }
   BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment, skin);
-  HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved);
+  HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved, skin != nullptr);
   SkinningErrors skinning;
   const auto judge_hosts = [&](const MeasuredSample& sample) {
     hosts.add_sample(source, sample);

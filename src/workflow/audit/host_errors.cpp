@@ -7,13 +7,32 @@
 namespace chronormal::inline internal {
 namespace {
 
-bool keep_alike(const Host& a, const Host& b) noexcept {
+bool keep_alike(const Host& a, const Host& b, bool is_skinned) noexcept {
+  if (is_skinned && a.skins != b.skins) return false;
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base;
 }
 
-// Whether a host adds up normals in float32, as BlendSource does by the rule of the specification.
-bool adds_as_specified(const Host& host) noexcept { return host.normals == NormalRule::kSum && host.bits == 32; }
+// Whether a host adds up normals in float32 and shows them as BlendSource does by the rule of the specification.
+bool adds_as_specified(const Host& host, bool is_skinned) noexcept {
+  return host.normals == NormalRule::kSum && host.bits == 32 && (!is_skinned || host.skins == SkinRule::kBlended);
+}
+
+// A source as a host sees it through a skin: what error_at() needs of it.
+struct SeenByHost {
+  const BlendSource& source;
+  SkinRule rule;
+
+  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
+    return source.right(output, normal, rule);
+  }
+  [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal) const {
+    return source.hides(output, normal, rule);
+  }
+  [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
+    return source.at(segment, t, output);
+  }
+};
 
 // The diagonal of the box around the base.
 double size_of(const GltfShading& shading) noexcept {
@@ -37,8 +56,9 @@ double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noex
 }  // namespace
 
 HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
-                       std::vector<Weights> weights, const std::vector<bool>& involved)
+                       std::vector<Weights> weights, const std::vector<bool>& involved, bool is_skinned)
     : part_(part),
+      is_skinned_(is_skinned),
       weights_(std::move(weights)),
       size_(size_of(shading)),
       now_(hosts.size(), std::vector<double>(involved.size())),
@@ -46,8 +66,8 @@ HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::
       errors_(hosts.size()) {
   const std::span<const JudgedOutput> outputs = part.outputs();
   for (const Host& host : hosts) {
-    const auto known =
-        std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return keep_alike(*kept.host, host); });
+    const auto known = std::find_if(kept_.begin(), kept_.end(),
+                                    [&](const Kept& kept) { return keep_alike(*kept.host, host, is_skinned); });
     kept_by_.push_back(static_cast<std::size_t>(known - kept_.begin()));
     if (known != kept_.end()) continue;
     Kept& kept = kept_.emplace_back();
@@ -110,7 +130,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
       if (size_ > 0) displaced = largest_distance(sample.placed.positions, elsewhere_->positions) / size_;
     } else if (source.rule() == AuditRule::kGltf) {
       for (std::size_t k = 0; k < kept_.size(); ++k)
-        if (adds_as_specified(*kept_[k].host)) of_kept[k] = &sample.error;
+        if (adds_as_specified(*kept_[k].host, is_skinned_)) of_kept[k] = &sample.error;
     }
     for (std::size_t other = h; other < weights_.size(); ++other) {
       if (is_judged[other] || now_[other] != now_[h]) continue;
@@ -120,9 +140,13 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
         last_[other] = {*known, displaced};
         continue;
       }
-      const std::vector<Vec3f> normals = shown(kept_[kept_by_[other]], now_[other]);
-      const auto shown_at = [&](std::size_t i, const JudgedOutput&) { return source.seen(i, to_double(normals[i])); };
-      last_[other] = {error_at(source, *where, false, sample.largest, sample.segment, sample.t, shown_at), displaced};
+      const Kept& kept = kept_[kept_by_[other]];
+      const SeenByHost by_host{source, kept.host->skins};
+      const std::vector<Vec3f> normals = shown(kept, now_[other]);
+      const auto shown_at = [&](std::size_t i, const JudgedOutput&) {
+        return source.seen(i, to_double(normals[i]), by_host.rule);
+      };
+      last_[other] = {error_at(by_host, *where, false, sample.largest, sample.segment, sample.t, shown_at), displaced};
       known = &last_[other].error;
     }
   }

@@ -28,9 +28,9 @@ struct HostError {
 class HostErrors {
  public:
   /// weights are those that each host plays. shading and part must outlive this. involved has one entry for each
-  /// target: others have no weight at any time.
+  /// target: others have no weight at any time. is_skinned: hosts may see the part through a skin in ways of their own.
   HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
-             std::vector<Weights> weights, const std::vector<bool>& involved);
+             std::vector<Weights> weights, const std::vector<bool>& involved, bool is_skinned = false);
 
   /// Judges every host at a sample that the source has placed. What shows the same as the source has its error.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
@@ -53,6 +53,7 @@ class HostErrors {
   [[nodiscard]] std::vector<Vec3f> shown(const Kept& kept, std::span<const double> weights) const;
 
   const JudgedPart& part_;
+  bool is_skinned_;
   std::vector<Weights> weights_;
   std::vector<Kept> kept_;
   std::vector<std::size_t> kept_by_;      // of each host, in kept_

@@ -10,11 +10,12 @@ namespace {
 
 constexpr std::size_t kBlock = 1024;
 
-// The angle for one output; nothing where one of the two normals has no size.
-std::optional<double> degrees_at(const AffineTransform& matrix, const Vec3d& before, const Vec3d& after) {
+// The angle for one vertex; nothing where one of the two normals has no size.
+std::optional<double> degrees_at(const MeshSkin& skin, std::size_t vertex, const Vec3d& before, const Vec3d& after) {
+  const AffineTransform matrix = skin.of_vertex(vertex);
   const NormalMatrix exact = normal_matrix(matrix);
   if (!(length(after) > kVanished * length(exact(before))) || !is_finite(after)) return std::nullopt;
-  const Vec3d shown = carried(matrix, before);
+  const Vec3d shown = skin.carried(SkinRule::kBlended, vertex, matrix, before);
   if (shown == Vec3d{} || !is_finite(shown)) return 180;
   return angle_between(shown, exact.mirrored ? -after : after) * kDegreesPerRadian;
 }
@@ -40,7 +41,7 @@ void SkinningErrors::add_sample(const BlendSource& source, const MeasuredSample&
           const Vec3d& before = sample.placed.normals.elements[output.element];
           if (!(length(before) > kVanished * sample.largest[output.element])) return;
           const std::optional<double> degrees =
-              degrees_at(source.skin()->of_vertex(output.vertex), before, skinned.elements[output.element]);
+              degrees_at(*source.skin(), output.vertex, before, skinned.elements[output.element]);
           if (degrees) result.add(*degrees, source.at(sample.segment, sample.t, output));
         },
         [](SkinningError& to, const SkinningError& each) { to.add(each); });

@@ -182,7 +182,7 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
                "", "targets go farther than what is looked at here, w from 0 to 1");
   const std::size_t skinned = gltf.inspection.skinned_nodes;
   troubles.add("skin", skinned, have(counted(skinned, "node", "nodes"), skinned) + " a skin", "",
-               "the skeleton is not applied: normals are those before skinning");
+               "audit judges its normals through the skin; everything else applies no skeleton");
   const std::size_t without_faces = gltf.inspection.without_faces;
   troubles.add("no_faces", without_faces,
                counted(without_faces, "primitive is", "primitives are") + " points, lines or empty", "",

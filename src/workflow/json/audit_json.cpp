@@ -106,10 +106,12 @@ Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAu
   constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
   constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
                                      "splines_misread"};
+  constexpr const char* kSkins[] = {"blended", "inverse_transpose", "by_joint"};
   Json json = {{"name", found.host.name},
                {"title", found.host.title},
                {"normals", kNormals[static_cast<std::size_t>(found.host.normals)]},
                {"tracks", kTracks[static_cast<std::size_t>(found.host.tracks)]},
+               {"skins", kSkins[static_cast<std::size_t>(found.host.skins)]},
                {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
                {"source", found.host.source},
                {"passed", tolerance ? Json(found.is_within(*tolerance)) : Json()}};

@@ -36,8 +36,18 @@ AffineTransform MeshSkin::of_vertex(std::size_t vertex) const noexcept {
   return sum;
 }
 
-Vec3d carried(const AffineTransform& matrix, const Vec3d& normal) noexcept {
-  return unit(normal.x * matrix.columns[0] + normal.y * matrix.columns[1] + normal.z * matrix.columns[2]);
+Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
+                        const Vec3d& normal) const noexcept {
+  if (rule == SkinRule::kInverseTranspose) return unit(normal_matrix(matrix)(normal));
+  if (rule == SkinRule::kBlended)
+    return unit(normal.x * matrix.columns[0] + normal.y * matrix.columns[1] + normal.z * matrix.columns[2]);
+  Vec3d sum;
+  for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
+    const NormalMatrix of_joint = normal_matrix(matrices_[shares_[i].joint]);
+    // The cofactors themselves look to the other side where the joint mirrors.
+    sum = sum + (of_joint.mirrored ? -shares_[i].share : shares_[i].share) * unit(of_joint(normal));
+  }
+  return unit(sum);
 }
 
 }  // namespace chronormal::inline internal

@@ -1,7 +1,7 @@
 /// How the skin of a node moves the vertices of a mesh. Private to workflow.
 ///
 /// Hosts blend the joint matrices of a vertex by its shares, M = sum of w_j M_j, and take its position through M and its
-/// normal through the linear part L of M (three.js, Babylon.js, PlayCanvas; docs/decisions/0022). L is no normal matrix:
+/// normal through the linear part L of M (docs/decisions/0022, which has those that do otherwise). L is no normal matrix:
 /// where it is more than a turn and a scale, what it makes of a right normal is not the normal of the skinned surface.
 /// No target can mend that. So normals are held against each other as L carries them, and what L itself does wrong is
 /// told apart.
@@ -18,6 +18,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/normals/transform.h"
+#include "chronormal/workflow/hosts.h"
 #include "io/gltf/gltf_skin.h"
 #include "workflow/shading/gltf_shading.h"
 
@@ -36,6 +37,11 @@ class MeshSkin {
   /// The blended matrix of a vertex in this pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
+  /// What is shown of a normal of a vertex, of any length, in this pose: a unit vector, or zero or not finite where it has
+  /// no direction. matrix is that of the vertex, as of_vertex() has it.
+  [[nodiscard]] Vec3d carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
+                              const Vec3d& normal) const noexcept;
+
  private:
   explicit MeshSkin(GltfSkin skin) : skin_(std::move(skin)), matrices_(skin_.pose(0, false)) {}
 
@@ -44,10 +50,6 @@ class MeshSkin {
   std::vector<JointShare> shares_;
   std::vector<AffineTransform> matrices_;  // of joints
 };
-
-/// What hosts show of a normal that a matrix carries along: a unit vector, or zero or not finite where it has no
-/// direction.
-[[nodiscard]] Vec3d carried(const AffineTransform& matrix, const Vec3d& normal) noexcept;
 
 }  // namespace chronormal::inline internal
 

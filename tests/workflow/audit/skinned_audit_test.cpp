@@ -162,6 +162,34 @@ TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
   }
 }
 
+TEST(SkinnedAudit, hosts_see_the_same_normals_through_a_skin_in_ways_of_their_own) {
+  const ShadedMesh mesh = test::random_sheet(11, kSide, 1, 0.2);
+  fixtures::Random random(11);
+  const Skin skin = random_skin(random, mesh.vertices());
+  const Rig rig{random_place(random, 0.5), random_place(random, 0.5), random_place(random, 0.5)};
+  GltfBuilder builder = mesh.file();
+  rig.add_to(builder);
+  skin.add_to(builder, {1, 2, 3});
+  AuditOptions options;
+  for (const SkinRule rule : {SkinRule::kBlended, SkinRule::kInverseTranspose, SkinRule::kByJoint, SkinRule::kBlended})
+    options.hosts.emplace_back().skins = rule;
+  const Audit result = audit_of(builder, options);
+  const std::array rules = {test::Carry::kBlended, test::Carry::kInverseTranspose, test::Carry::kByJoint,
+                            test::Carry::kBlended};
+  for (std::size_t h = 0; h < rules.size(); ++h) {
+    Sums shown;
+    for (std::size_t i = 0; i <= 20; ++i)
+      for (std::size_t v = 0; v < mesh.vertices(); ++v)
+        shown.add(test::seen_errors(mesh, skin, rig.world(), v, {static_cast<double>(i) / 20}, rules[h]).shown);
+    EXPECT_EQ(result.hosts[h].error.judged, shown.count);
+    EXPECT_NEAR(result.hosts[h].error.worst, shown.worst, 2e-5) << h;
+    EXPECT_NEAR(result.hosts[h].error.mean(), shown.mean(), 1e-5) << h;
+  }
+  EXPECT_EQ(result.hosts[0].error.sum, result.error.sum);
+  EXPECT_GT(std::fabs(result.hosts[1].error.mean() - result.error.mean()), 0.1);
+  EXPECT_GT(std::fabs(result.hosts[2].error.mean() - result.hosts[1].error.mean()), 0.1);
+}
+
 // The value of a track by the formulas of the specification, with its own search.
 template <std::size_t N>
 std::array<Real, N> value_at(const std::string& interpolation, const std::vector<float>& times,
