@@ -85,10 +85,11 @@ inline constexpr std::array<Host, 9> kHosts = {{
      .title = "three.js",
      .adds_tangents = false,
      .source = "three.js r187, src/renderers/shaders/ShaderChunk/morphnormal_vertex.glsl.js and "
-               "examples/jsm/loaders/GLTFLoader.js"},
+               "skinnormal_vertex.glsl.js, and examples/jsm/loaders/GLTFLoader.js"},
     {.name = "babylon",
      .title = "Babylon.js",
-     .source = "Babylon.js 9.28, packages/dev/core/src/Shaders/ShadersInclude/morphTargetsVertex.fx"},
+     .source = "Babylon.js 9.28, packages/dev/core/src/Shaders/ShadersInclude/morphTargetsVertex.fx and "
+               "bonesVertex.fx"},
     {.name = "playcanvas",
      .title = "PlayCanvas",
      .bits = 16,
@@ -96,6 +97,7 @@ inline constexpr std::array<Host, 9> kHosts = {{
      .least_weight = 1e-5,
      .adds_tangents = false,
      .source = "PlayCanvas 2.23, src/scene/morph.js, src/scene/morph-instance.js, "
+               "src/scene/shader-lib/glsl/chunks/common/vert/normalCore.js, "
                "src/framework/parsers/glb-parser.js (createMorphTargetCurves) and "
                "src/framework/anim/evaluator/anim-cache.js"},
     {.name = "godot",
