@@ -274,7 +274,9 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
     rig.add_to(builder);
     skin.add_to(builder, {1, 2, 3});
     const std::size_t animation = builder.add_animation("talk");
-    const std::vector<float> times = {0.25F, 1, 1.5F}, keys = {0, 0.5F, 1, 0.25F, 0.5F, 1};
+    const std::vector<float> times = {0.25F, 1, 1.5F};
+    std::vector<float> keys = {0, 0.5F, 1, 0.25F, 0.5F, 1};
+    if (seed % 2 == 0) keys = {0, 0.5F, 1, 0.25F, 1, 0.25F};  // only joints move between the last two keys
     builder.add_track(animation, 0, times, keys);
     const Channel turn(random, "rotation", kinds[seed % 3]), grow(random, "scale", kinds[(seed + 1) % 3]),
         move(random, "translation", kinds[(seed + 2) % 3]), other(random, "rotation", kinds[(seed + 1) % 3]);
