@@ -9,7 +9,7 @@
 ///
 ///     glTF       the rotation from n(0) to the stored N, fixed per vertex
 ///     skins      both as the skin of a node takes them to the screen, in the pose of that time (docs/decisions/0022).
-///                What skinning itself does wrong is told apart
+///                The errors of skinning itself are reported apart from these.
 ///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///

@@ -104,7 +104,7 @@ Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSou
   for (const gltf::ElementSource& element : source.elements) {
     if (!inputs.insert(element.input).second) continue;
     const Result<std::vector<float>> own = bytes.times(element.input);
-    if (!own) return own;
+    if (!own) return own.error();
     const std::uint64_t wanted = sizeof(float) * (std::uint64_t{times.size()} + own.value().size());
     if (Status status = bytes.expansion().check(wanted, bytes.accessor_place(element.input)); !status)
       return status.error();

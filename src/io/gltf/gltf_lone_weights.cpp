@@ -5,7 +5,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// What a key of a cubic spline consists of.
+// The three numbers that a cubic spline has at each of its keys.
 struct Row {
   double in_tangent = 0, value = 0, out_tangent = 0;
 };

@@ -19,7 +19,7 @@ using Quaternion = std::array<double, 4>;
 
 constexpr std::uint32_t kNoBone = ~std::uint32_t{0};
 
-// Of length 1; the identity where there is no direction.
+// Scales a quaternion to length 1, and returns the identity where it has no direction.
 Quaternion as_rotation(const Quaternion& q) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + (q[2] * q[2] + q[3] * q[3]));
   if (!(length > 0)) return {0, 0, 0, 1};
@@ -128,7 +128,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   // Sets may be many, and all of one accessor.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
-  if (const Status status = state.bytes.expansion().check(
+  if (Status status = state.bytes.expansion().check(
           vertices <= most ? kOfVertex * sets.size() * vertices : std::numeric_limits<std::uint64_t>::max(),
           state.bytes.place(pointer));
       !status)

@@ -1,9 +1,9 @@
 /// Skins of glTF files: where their joints are at any time, and which of them the vertices follow. Private to io and
 /// workflow.
 ///
-///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin: what takes a
+///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. It takes a
 ///                     vertex of the mesh to where that joint carries it (section 3.7.3.3 of the specification). The
-///                     place of the node that has the skin does not matter
+///                     place of the node that has the skin does not matter.
 ///
 /// Nothing of this is checked when a document is opened: a file whose skin makes no sense can be read by everybody else.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_

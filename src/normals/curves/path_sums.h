@@ -10,7 +10,7 @@
 #include "chronormal/core/views.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/paths.h"
-#include "core/vector_area.h"
+#include "core/rounding.h"
 
 namespace chronormal::inline internal {
 

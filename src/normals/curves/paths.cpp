@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/rounding.h"
+#include "core/vector_area.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/path_stream.h"
 #include "normals/curves/path_sums.h"
@@ -51,6 +52,7 @@ std::vector<float> curve_velocities(std::span<const Motion::Keyframe* const> key
 
 std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyframe>& keyframes) {
   std::vector<const Motion::Keyframe*> keys;
+  keys.reserve(keyframes.size());
   for (const Motion::Keyframe& keyframe : keyframes) keys.push_back(&keyframe);
   return keys;
 }
@@ -171,8 +173,9 @@ PolynomialSegment<3> path_segment(const Topology& topology, std::span<const Moti
   if (kind == PathKind::kLinear) {
     PolynomialSegment<3> segment = empty_segment<3>(topology, from.time, to.time);
     const auto start = packed(from.positions), end = packed(to.positions);
+    const std::size_t count = std::min(start.count, end.count);
     for (std::size_t k = 0; k <= 3; ++k)
-      for (std::size_t v = 0; v < start.count; ++v)
+      for (std::size_t v = 0; v < count; ++v)
         segment.control[k][v] = lerp(to_double(start[v]), to_double(end[v]), static_cast<double>(k) / 3);
     return segment;
   }

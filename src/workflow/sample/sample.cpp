@@ -245,7 +245,7 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (weights[i] == 0) continue;
       const auto target = positions_of(*motion_, i + 1);
-      for (std::size_t v = vertices.first; v < vertices.end(); ++v)
+      for (std::size_t v = vertices.first; v < std::min(vertices.end(), target.count); ++v)
         positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
     }
   });

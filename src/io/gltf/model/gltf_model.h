@@ -125,7 +125,7 @@ struct NodeChannel {
   std::size_t input = 0, output = 0;  ///< accessors
 };
 
-/// Those of an animation, in files that have skins.
+/// The channels of one animation that move nodes. They are read only in files that have skins.
 struct NodeChannels {
   std::vector<NodeChannel> channels;
   std::optional<Error> fault;  ///< why they cannot be read
