@@ -34,7 +34,8 @@ namespace chronormal {
 /// or to its end.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
-  /// How much the answer may take, which has a row for every face of every segment: that of the file behind the motion.
+  /// How much the answer may take: that of the file behind the motion. Rows for every face of every segment are counted
+  /// before anything is computed, and those that have to be found are counted as they are.
   Expansion expansion = Expansion::unlimited();
 };
 
@@ -88,7 +89,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// When and where faces collapse (analysis/collapse.h), decided exactly. Tables:
 ///     ""        segment, face, lower, upper (t), time, turns_over, before, after: one row for each collapse
 ///     always    segment, face: n is zero in the whole segment
-/// Errors: of segment_parts().
+/// Errors: of segment_parts() and of span.expansion.check().
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
 
@@ -98,7 +99,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
 ///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
 ///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
-/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for the direction (0, 0, 0).
+/// Silhouettes are there where they are asked for. Errors: of segment_parts() and of span.expansion.check(); kUsage for
+/// the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
 
@@ -110,7 +112,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
 ///                segment and weight
 /// Where the weights of an animation jump, a point may be elsewhere without a crossing.
-/// Errors: of segment_parts() and of Containment::make().
+/// Errors: of segment_parts(), of Containment::make() and of span.expansion.check().
 [[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
                                                 const QuerySpan& span = {}, const QueryProgress& progress = {});
 

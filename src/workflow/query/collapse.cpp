@@ -23,23 +23,35 @@ std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart&
   return found;
 }
 
+// How many bytes the rows of these take in the answer.
+std::uint64_t bytes_of_collapses(const std::vector<FaceCollapses>& found) {
+  constexpr std::uint64_t kBytesPerCollapse = 2 * sizeof(std::int64_t) + 9 * sizeof(double) + 1;
+  constexpr std::uint64_t kBytesPerAlways = 2 * sizeof(std::int64_t);
+  std::uint64_t bytes = 0;
+  for (const FaceCollapses& one : found)
+    bytes += one.collapses.always ? kBytesPerAlways : kBytesPerCollapse * one.collapses.count;
+  return bytes;
+}
+
 }  // namespace
 
 Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
-  const std::vector<std::vector<FaceCollapses>> found = for_parts<std::vector<FaceCollapses>>(
-      parts.value(), progress, [&](const SegmentPart& part) { return collapses_of(motion, part); });
+  const Result<std::vector<std::vector<FaceCollapses>>> found = for_bounded_parts<std::vector<FaceCollapses>>(
+      parts.value(), span, progress, [&](const SegmentPart& part) { return collapses_of(motion, part); },
+      bytes_of_collapses);
+  if (!found) return found.error();
 
   std::vector<std::int64_t> segments, faces, always_segments, always_faces;
   std::vector<double> lower, upper, times, before, after;
   std::vector<std::uint8_t> turns_over;
   std::size_t turned = 0;
   const auto append = [](std::vector<double>& list, const Vec3d& v) { list.insert(list.end(), {v.x, v.y, v.z}); };
-  for (std::size_t p = 0; p < found.size(); ++p) {
+  for (std::size_t p = 0; p < found.value().size(); ++p) {
     const auto s = static_cast<std::int64_t>(parts.value()[p].segment);
     const Segment segment = motion.segment(parts.value()[p].segment);
-    for (const auto& [face, collapses] : found[p]) {
+    for (const auto& [face, collapses] : found.value()[p]) {
       if (collapses.always) {
         always_segments.push_back(s);
         always_faces.push_back(static_cast<std::int64_t>(face));

@@ -3,6 +3,7 @@
 
 #include "chronormal/analysis/containment.h"
 #include "chronormal/workflow/query.h"
+#include "workflow/query/parts.h"
 
 namespace chronormal {
 namespace {
@@ -24,6 +25,7 @@ std::vector<float> places_at(const PointPaths& points, double share) {
 
 QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& windings, const std::vector<Passed>& all) {
   std::vector<std::uint8_t> inside;
+  inside.reserve(windings.size());
   for (const std::int32_t winding : windings) inside.push_back(winding != 0 ? 1 : 0);
   std::vector<std::int64_t> points, of_segments, faces;
   std::vector<double> times, normals;
@@ -70,8 +72,10 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
     first = std::min(first, motion.segment(s).start_time);
     last = std::max(last, motion.segment(s).end_time);
   }
+  constexpr std::uint64_t kBytesPerCrossing = 3 * sizeof(std::int64_t) + 4 * sizeof(double) + 1;
   std::vector<std::int32_t> windings;
   std::vector<Passed> all;
+  RowsInBounds rows(span.expansion);
   for (std::size_t i = 0; i < parts.value().size(); ++i) {
     const SegmentPart& part = parts.value()[i];
     const Segment segment = motion.segment(part.segment);
@@ -79,11 +83,14 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
     const std::vector<float> start = places(segment.start_time), end = places(segment.end_time);
     const auto from = VectorView<const float>::packed(start), to = VectorView<const float>::packed(end);
     if (i == 0) windings = containment.value().winding_numbers(segment, part.t0, from, to);
+    const std::size_t before = all.size();
     for (const Crossing& crossing : containment.value().crossings(segment, from, to)) {
       if (part.t0 <= crossing.t && crossing.t <= part.t1)
         all.push_back(
             {part.segment, segment.start_time + crossing.t * (segment.end_time - segment.start_time), crossing});
     }
+    if (const Status status = rows.add(kBytesPerCrossing * (all.size() - before), i + 1, parts.value().size()); !status)
+      return status.error();
     if (progress) progress(i + 1, parts.value().size());
   }
   std::stable_sort(all.begin(), all.end(),

@@ -82,6 +82,13 @@ Found facing_of(const Segment& segment, const View& view, bool with_silhouettes,
   return found;
 }
 
+// How many bytes the rows of these take in the answer.
+std::uint64_t bytes_of_fronts(const Found& found) {
+  constexpr std::uint64_t kBytesPerFront = 2 * sizeof(std::int64_t) + 4 * sizeof(double);
+  constexpr std::uint64_t kBytesPerSilhouette = 5 * sizeof(std::int64_t) + 4 * sizeof(double);
+  return kBytesPerFront * found.fronts.size() + kBytesPerSilhouette * found.silhouettes.size();
+}
+
 // The columns that say when.
 struct WhenColumns {
   std::vector<std::int64_t> segments;
@@ -116,27 +123,31 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool si
     first = std::min(first, motion.segment(s).start_time);
     last = std::max(last, motion.segment(s).end_time);
   }
-  const std::vector<Found> found = for_parts<Found>(parts.value(), progress, [&](const SegmentPart& part) {
-    const Segment segment = motion.segment(part.segment);
-    return facing_of(segment, view_in(segment, view, first, last), silhouettes, part);
-  });
+  const Result<std::vector<Found>> found = for_bounded_parts<Found>(
+      parts.value(), span, progress,
+      [&](const SegmentPart& part) {
+        const Segment segment = motion.segment(part.segment);
+        return facing_of(segment, view_in(segment, view, first, last), silhouettes, part);
+      },
+      bytes_of_fronts);
+  if (!found) return found.error();
 
   WhenColumns when, silhouette_when;
   std::vector<std::int64_t> faces, edge_vertices, edge_faces;
   std::size_t always_front = 0, always_back = 0;
-  for (std::size_t p = 0; p < found.size(); ++p) {
+  for (std::size_t p = 0; p < found.value().size(); ++p) {
     const std::size_t s = parts.value()[p].segment;
-    for (const FrontOfFace& front : found[p].fronts) {
+    for (const FrontOfFace& front : found.value()[p].fronts) {
       when.add(s, front.when);
       faces.push_back(static_cast<std::int64_t>(front.face));
     }
-    for (const Silhouette& one : found[p].silhouettes) {
+    for (const Silhouette& one : found.value()[p].silhouettes) {
       silhouette_when.add(s, {one.from, one.to});
       edge_vertices.insert(edge_vertices.end(), one.vertices.begin(), one.vertices.end());
       edge_faces.insert(edge_faces.end(), one.faces.begin(), one.faces.end());
     }
-    always_front += found[p].always_front;
-    always_back += found[p].always_back;
+    always_front += found.value()[p].always_front;
+    always_back += found.value()[p].always_back;
   }
   const auto count = [](std::size_t value) { return static_cast<double>(value); };
   const std::size_t pairs = motion.topology.face_count() * parts.value().size();

@@ -1,10 +1,11 @@
-/// The loop that all questions share: one result for each part of a segment.
+/// The loop that all questions share, one result for each part of a segment, and how large an answer may get.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
@@ -19,18 +20,50 @@ namespace chronormal::inline internal {
   return span.expansion.check(bytes_per_row * rows, "the answer for every face of every segment");
 }
 
-/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts.
-template <class T, class Answer>
-[[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
-                                       const Answer& answer) {
+/// Holds an answer whose rows are only known as they are found to what its span allows, while it grows: what is
+/// written in the end may be a little more, and is checked once more by those who write it.
+class RowsInBounds {
+ public:
+  explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
+
+  /// Adds the bytes of another part, the `done`th of `total`. Errors: of Expansion::check(), once all that was added so far
+  /// is too much.
+  [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
+    bytes_ += bytes;
+    return expansion_.check(bytes_,
+                            "the answer, after " + std::to_string(done) + " of " + std::to_string(total) + " segments");
+  }
+
+ private:
+  const Expansion& expansion_;
+  std::uint64_t bytes_ = 0;
+};
+
+/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. As many parts as
+/// there are threads are answered at a time, and after each time the bytes_of(result) of all of them must be in bounds.
+/// Errors: of RowsInBounds::add().
+template <class T, class Answer, class BytesOf>
+[[nodiscard]] Result<std::vector<T>> for_bounded_parts(std::span<const SegmentPart> parts, const QuerySpan& span,
+                                                       const QueryProgress& progress, const Answer& answer,
+                                                       const BytesOf& bytes_of) {
   std::vector<T> results(parts.size());
+  RowsInBounds rows(span.expansion);
   const std::size_t wave = std::max<std::size_t>(thread_count(), 1);
   for (std::size_t first = 0; first < parts.size(); first += wave) {
     const std::size_t count = std::min(wave, parts.size() - first);
     parallel_for(count, [&](std::size_t i) { results[first + i] = answer(parts[first + i]); });
+    for (std::size_t i = first; i < first + count; ++i)
+      if (const Status status = rows.add(bytes_of(results[i]), i + 1, parts.size()); !status) return status.error();
     if (progress) progress(first + count, parts.size());
   }
   return results;
+}
+
+/// The same for answers of which check_rows() knew how large they get.
+template <class T, class Answer>
+[[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
+                                       const Answer& answer) {
+  return for_bounded_parts<T>(parts, {}, progress, answer, [](const T&) { return std::uint64_t{0}; }).value();
 }
 
 }  // namespace chronormal::inline internal

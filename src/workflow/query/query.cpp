@@ -99,6 +99,7 @@ Status write_query(const QueryAnswer& answer, const std::string& path, bool forc
     for (const QueryColumn& column : table.columns) arrays.emplace_back(prefix + column.name, npy_of(column));
   }
   std::vector<NpzMember> members;
+  members.reserve(arrays.size());
   for (const auto& [name, bytes] : arrays) members.push_back({name, bytes});
   return write_output(path, write_npz(members), force);
 }
