@@ -331,7 +331,7 @@ Status check_files(const BakeArguments& options) {
   std::vector<NamedFile> others = {{"standard output", "-"}}, read = input_files(options.input);
   if (options.drivers) others.push_back({"--drivers", *options.drivers});
   read.insert(read.end(), poses.begin(), poses.end());
-  if (const Status distinct = check_distinct(others, read); !distinct || options.plan) return distinct;
+  if (Status distinct = check_distinct(others, read); !distinct || options.plan) return distinct;
   if (!is_stream(options.common.output)) others.insert(others.begin(), {"OUT", options.common.output});
   return check_distinct(others, poses);
 }

@@ -79,8 +79,7 @@ Result<int> run(const ReportArguments& options) {
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   std::vector<NamedFile> files_read = input_files(options.input);
   if (options.page_template) files_read.push_back({"--template", *options.page_template});
-  const Status distinct =
-      check_distinct({{"OUT", options.common.output}, {"standard output", "-"}}, std::move(files_read));
+  const Status distinct = check_distinct({{"OUT", options.common.output}, {"standard output", "-"}}, files_read);
   if (!distinct) return distinct.error();
   std::string page_template;
   if (!is_container(options)) {

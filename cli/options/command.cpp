@@ -114,7 +114,7 @@ std::vector<Option> PathArgument::table(const std::string& what) {
 }
 
 Result<PathKind> PathArgument::read() const {
-  const Result<PathKind> path = make_path(name);
+  Result<PathKind> path = make_path(name);
   if (!path) return misuse("--path", path.error().message);
   return path;
 }

@@ -162,6 +162,7 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
     own = weight;
   }
   std::vector<double> weights;
+  weights.reserve(given.size());
   for (const std::optional<double>& weight : given) weights.push_back(weight.value_or(0));
   return weights;
 }

@@ -75,7 +75,7 @@ void add_option(const Option& option, CLI::App& command) {
   // A check of the table's own says more of what is wanted than that it is a number.
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
-        const std::string wrong = check ? check(value) : "";
+        std::string wrong = check ? check(value) : "";
         if (!wrong.empty()) return wrong;
         return std::visit([&](const auto* of_type) { return fault_of_number(of_type, value); }, target);
       },

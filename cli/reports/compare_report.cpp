@@ -92,7 +92,7 @@ std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four
 }  // namespace
 
 std::string csv_field(const std::string& field) {
-  const std::string text = printable(field);
+  std::string text = printable(field);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {

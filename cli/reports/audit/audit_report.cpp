@@ -81,6 +81,7 @@ std::string headline(const Audited& input) {
 std::string subject_table(const Audited& input) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   std::vector<double> errors;
+  errors.reserve(subjects.size());
   for (const AuditSubject& subject : subjects) errors.push_back(subject.error.worst);
   Table table;
   table.add_column("motion", "", Align::kLeft);

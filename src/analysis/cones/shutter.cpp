@@ -135,12 +135,12 @@ void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, d
                           std::span<ShutterNormal> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
   assert(0 <= t0 && t0 <= t1 && t1 <= 1);
-  constexpr std::size_t kBlock = 128;
+  constexpr std::size_t kFacesAtATime = 128;
   const double from = local_time(t0), to = local_time(t1);
   const Restriction restriction = Restriction::to(from, to);
-  std::array<ControlNormals, kBlock> memory;
-  for (std::size_t first = 0; first < faces.count; first += kBlock) {
-    const std::span<ControlNormals> normals(memory.data(), std::min(kBlock, faces.count - first));
+  std::array<ControlNormals, kFacesAtATime> memory;
+  for (std::size_t first = 0; first < faces.count; first += kFacesAtATime) {
+    const std::span<ControlNormals> normals(memory.data(), std::min(kFacesAtATime, faces.count - first));
     face_control_normals(segment, {faces.first + first, normals.size()}, normals);
     for (std::size_t i = 0; i < normals.size(); ++i) {
       const IntervalNormals part = part_of(normals[i], restriction);

@@ -109,7 +109,7 @@ Collapses at_root_of(const IntegerPolynomial<1, 2 * kDigits + 1>& linear, const 
     value[k].settle();
     if (value[k].sign() != 0) return {};
     slope[k].add_product(c[1][k], l1, l1.sign());
-    slope[k].add_product(c[2][k], l0, -2 * l1.sign());
+    slope[k].add_product(c[2][k], l0, std::int64_t{-2} * l1.sign());
     slope[k].settle();
   }
   const ExactRoot& root = roots.at[0];

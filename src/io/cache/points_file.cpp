@@ -27,8 +27,9 @@ Result<PointPaths> parse_points(std::string_view bytes, const std::string& name)
       for (std::size_t k = 0; k < 3; ++k) {
         const double value = array.real(array.is_fortran ? i + count * (at + ends * k) : (i * ends + at) * 3 + k);
         if (const char* const fault = binary::coordinate_fault(value); fault != nullptr) {
-          std::string element = std::to_string(i) + ", " + (moves ? std::to_string(at) + ", " : "") + std::to_string(k);
-          return invalid_input(name + ", [" + element + "]", fault);
+          std::string place = name + ", [" + std::to_string(i) + ", ";
+          if (moves) place += std::to_string(at) + ", ";
+          return invalid_input(place + std::to_string(k) + "]", fault);
         }
         (end == 0 ? paths.from : paths.to)[3 * i + k] = value;
       }

@@ -15,7 +15,7 @@ Result<ElementBlend> ElementBlend::make(BlendSet set, const ElementOptions& opti
   for (const BlendTarget& target : set.targets) {
     std::vector<float> moved = set.base;
     for (std::size_t n = 0; n < target.vertices.size(); ++n)
-      for (std::size_t c = 0; c < 3; ++c) moved[3 * target.vertices[n] + c] += target.deltas[3 * n + c];
+      for (std::size_t c = 0; c < 3; ++c) moved[std::size_t{3} * target.vertices[n] + c] += target.deltas[3 * n + c];
     star.keyframes.push_back({std::move(moved), 1, ""});
   }
   star.connect_as_targets();

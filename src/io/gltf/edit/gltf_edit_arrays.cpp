@@ -178,8 +178,8 @@ Status NewArrays::hand_over(const Spool::Take& take) const {
     }
   }
   for (const Stored& stored : arrays_) {
-    const Status status = spool_.hand_over(stored.at + stored.dense, stored.indices + stored.values, take);
-    if (!status) return status;
+    if (Status status = spool_.hand_over(stored.at + stored.dense, stored.indices + stored.values, take); !status)
+      return status;
   }
   return status();
 }

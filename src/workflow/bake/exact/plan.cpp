@@ -148,6 +148,7 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   // Terms along a normal turn nothing one by one; together they may be longer than it is.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
+    left_out.reserve(order.size());
     for (const std::size_t n : order) left_out.push_back(candidates[n].extra);
     turn = meter.turn_without(left_out);
     if (turn * kDegreesPerRadian <= tolerance) break;

@@ -217,6 +217,7 @@ std::vector<bool> new_bases(const DeltaSource& source) {
 std::vector<const VertexVectors*> columns_of(const std::vector<VertexVectors>& own,
                                              const std::vector<VertexVectors>& extras) {
   std::vector<const VertexVectors*> result;
+  result.reserve(own.size() + extras.size());
   for (const VertexVectors& column : own) result.push_back(&column);
   for (const VertexVectors& column : extras) result.push_back(&column);
   return result;
@@ -247,6 +248,7 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   for (std::size_t h = 0; h < all.size(); ++h) all[h] = h;
   std::vector<PoseSet> sets;
   std::vector<WeightTrack> of_tracks;
+  of_tracks.reserve(tracks.size());
   for (const DrivingTrack& driving : tracks) of_tracks.push_back(driving.track);
   for (std::size_t h = 0; h < hosts.size() && !tracks.empty(); ++h) {
     const auto like_me = [&](const PoseSet& set) { return plays_alike(hosts[set.hosts[0]], hosts[h], of_tracks); };

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t kHarmlessFormBlock = 64;
 // Lengths of a sum of unit normals that are tried.
-constexpr double kLongestSum = 2.5, kShortestSum = 0.1, kNextSum = 0.9;
+constexpr double kLongestSum = 2.5, kNextSum = 0.9;
+constexpr int kTriedSums = 31;  // the shortest is a tenth
 // Of the tolerance: what one extra target of a pair may leave half-way, and in squares how little worse it may be.
 constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
 // Corrections that are shorter turn nothing that is judged.
@@ -230,7 +231,8 @@ class Corrector {
     }
     // The length of the sum in that pose is free, as far as two unit vectors reach.
     std::optional<Vec3d> best;
-    for (double size = kLongestSum; size > kShortestSum; size *= kNextSum) {
+    double size = kLongestSum;
+    for (int n = 0; n < kTriedSums; ++n, size *= kNextSum) {
       const Vec3d vector = (1 / t) * (size * right - shown), middle = base.direction + 0.5 * vector;
       const double error = dot(middle, middle) <= 1 ? error_with(vector) : std::numbers::pi;
       if (!(error < result.error_of_two)) continue;

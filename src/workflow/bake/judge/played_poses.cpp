@@ -83,6 +83,7 @@ std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most
     }
   }
   std::vector<Peak> order;
+  order.reserve(peaks.size());
   for (const auto& [pair, peak] : peaks) order.push_back(peak);
   std::stable_sort(order.begin(), order.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
   std::set<std::size_t> taken;

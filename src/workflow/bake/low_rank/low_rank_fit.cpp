@@ -140,6 +140,7 @@ std::vector<double> LowRankFit::errors_with(std::span<const std::size_t> counts)
     }
   });
   std::vector<double> result;
+  result.reserve(errors.size());
   for (std::vector<float>& of_count : errors) result.push_back(quantile(of_count, 0.999));
   return result;
 }

@@ -343,6 +343,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   }
   const auto weights_of = [&](std::size_t instant) {
     std::vector<double> result;
+    result.reserve(kept.size());
     for (const std::size_t k : kept) result.push_back(curves[instant * extras + k] / largest[k]);
     return result;
   };

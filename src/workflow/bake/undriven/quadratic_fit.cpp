@@ -63,8 +63,10 @@ std::vector<PointVertices> points_to_fit(const DeltaSource& source, const RightN
 
 VertexColumns columns_of_points(std::span<const PointVertices> points, const std::vector<VertexVectors>& own) {
   std::vector<std::uint32_t> first;
+  first.reserve(points.size());
   for (const PointVertices& point : points) first.push_back(point.front());
   std::vector<const VertexVectors*> columns;
+  columns.reserve(own.size());
   for (const VertexVectors& column : own) columns.push_back(&column);
   return by_vertex(columns, first);
 }
