@@ -67,11 +67,11 @@ class EndsSideBySide {
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
-      : limits_(PrecisionLimits::for_tolerance(options.tolerance)), part_(part_size(size)) {
+      : limits_(options.tolerance), part_(part_size(size)) {
     if (reuse != nullptr) curves_.blocks = std::exchange(*reuse, {}).blocks;
     curves_.blocks.resize(0);
     curves_.size = size;
-    curves_.keeps_lengths = !(options.tolerance > kExactTolerance);
+    curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
     // There is room for the largest result; memory that is not written costs nothing.
     if (curves_.blocks.capacity() < whole() * kWorst) {
@@ -90,7 +90,7 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        builder_.emplace(parts_[next_], limits_, curves_.keeps_lengths);
+        builder_.emplace(parts_[next_], limits_);
       }
       if (builder_->make_chunk(source)) continue;
       builder_.reset();
@@ -116,7 +116,7 @@ class Build {
         };
         try {
           parts_[p].begin = near.data();
-          PartBuilder builder(parts_[p], limits_, curves_.keeps_lengths);
+          PartBuilder builder(parts_[p], limits_);
           while (builder.make_chunk(source)) {
           }
         } catch (...) {
@@ -179,7 +179,7 @@ class Build {
   [[nodiscard]] std::size_t whole() const { return block_count(curves_.size, kTile) * kTile; }
 
   CurveData curves_;
-  PrecisionLimits limits_;
+  BuildLimits limits_;
   std::size_t part_;  // elements
   std::vector<CurvePart> parts_;
   // For parts that are made one after the other: the next part, its builder, and the bytes of the parts before.

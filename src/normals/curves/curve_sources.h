@@ -1,6 +1,8 @@
 /// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
 ///
-///     write(elements, tiles)   sixteen by sixteen, in float32
+///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
+///     write_in_float(elements, tiles)   the same in float32 throughout, with bounds on the errors, of a source for which
+///                              has_float() is true; not every source has these two
 ///     in_double(elements, tile)   up to sixteen, and how far off those may be; returns which it leaves to the next, as bits
 ///     in_double(i)             one element, and how far off that may be
 ///     exact(i)                 the same without any rounding, where there are positions to make it from
@@ -57,6 +59,10 @@ class FaceNormals {
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
 
   void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
+  [[nodiscard]] bool has_float() const { return segment_.topology->all_triangles(); }
+  void write_in_float(IndexRange faces, std::span<ControlTile> tiles) const {
+    float_triangle_tiles(segment_, faces, tiles);
+  }
   [[nodiscard]] std::uint32_t in_double(IndexRange faces, BoundedTile& tile) const {
     if (segment_.topology->all_triangles()) {
       bounded_triangle_tile(segment_, faces, tile);
@@ -85,6 +91,10 @@ class GroupNormals {
       : segment_(segment), groups_(groups), tiles_(segment, groups, fetch) {}
 
   void write(IndexRange elements, std::span<ControlTile> tiles) const { tiles_.write(elements, tiles); }
+  [[nodiscard]] bool has_float() const { return true; }
+  void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const {
+    tiles_.write_in_float(elements, tiles);
+  }
   [[nodiscard]] std::uint32_t in_double(IndexRange elements, BoundedTile& tile) const {
     return tiles_.write_bounded(elements, tile);
   }

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -138,10 +139,47 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
+// What blocks must keep: whether lengths, and how precise elements have to be, in tiles that are made in double and, where
+// the tolerance allows it, in float32.
+struct BuildLimits {
+  explicit BuildLimits(double tolerance)
+      : with_lengths(!(tolerance > kExactTolerance)),
+        in_double(PrecisionLimits::for_tolerance(tolerance)),
+        in_float(PrecisionLimits::for_float_tiles(tolerance)) {}
+
+  bool with_lengths;
+  PrecisionLimits in_double;
+  std::optional<PrecisionLimits> in_float;
+};
+
+template <class Source>
+concept WritesInFloat = requires(const Source& source, std::span<ControlTile> tiles) {
+  { source.has_float() } -> std::same_as<bool>;
+  source.write_in_float(IndexRange{}, tiles);
+};
+
+// Whether float32 is tried for the next tiles. Where it was in vain it is left alone for a while, and for twice as long
+// where it is in vain once more.
+class FloatTrials {
+ public:
+  [[nodiscard]] bool is_tried() {
+    if (left_alone_ == 0) return true;
+    --left_alone_;
+    return false;
+  }
+  void note(bool in_vain) {
+    left_alone_ = in_vain ? next_ : 0;
+    next_ = in_vain ? std::min(2 * next_, kMost) : kFirst;
+  }
+
+ private:
+  static constexpr std::size_t kFirst = 8, kMost = 64;
+  std::size_t left_alone_ = 0, next_ = kFirst;
+};
+
 class PartBuilder {
  public:
-  PartBuilder(CurvePart& part, const PrecisionLimits& limits, bool with_lengths)
-      : part_(part), limits_(limits), with_lengths_(with_lengths), tiles_(kChunkTiles) {}
+  PartBuilder(CurvePart& part, const BuildLimits& limits) : part_(part), limits_(limits), tiles_(kChunkTiles) {}
 
   // Makes the next chunk of the part; returns whether there are more.
   template <class Source>
@@ -160,13 +198,8 @@ class PartBuilder {
   void add_chunk(Source& source, IndexRange elements) {
     const std::size_t tile_count = (elements.count + kTile - 1) / kTile;
     const std::span<ControlTile> tiles(tiles_.data(), tile_count);
-    for (std::size_t k = 0; k < tile_count; k += kWrittenTiles) {
-      const std::size_t count = std::min(kWrittenTiles, tile_count - k), first = k * kTile;
-      fetch_destination(k, count);
-      source.write({elements.first + first, std::min(count * kTile, elements.count - first)}, tiles.subspan(k, count));
-    }
     TileSummary summaries[kChunkTiles];
-    summarize_tiles(tiles, limits_, std::span(summaries, tile_count));
+    write_tiles(source, elements, tiles, std::span(summaries, tile_count));
 
     Need needs[kChunkTiles];
     for (std::size_t k = 0; k < tile_count; ++k) {
@@ -189,12 +222,45 @@ class PartBuilder {
     const std::size_t bytes_before = part_.bytes;
     std::size_t k = 0;
     for (const NeedRun& run : runs_of(std::span(needs, tile_count))) {
-      const BlockKind kind = kind_for(run.need.precision, run.need.degree, with_lengths_);
+      const BlockKind kind = kind_for(run.need.precision, run.need.degree, limits_.with_lengths);
       pack_tiles(tiles.subspan(k, run.blocks), kind, part_.begin + part_.bytes);
       append_run(elements.first / kTile + k, run.blocks, kind);
       k += run.blocks;
     }
     chunk_bytes_ = part_.bytes - bytes_before;
+  }
+
+  // Writes the tiles of a chunk, and summarizes them: in float32 where that may do, and in double what it does not do for.
+  template <class Source>
+  void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
+                   std::span<TileSummary> summaries) {
+    const auto range_of = [&](std::size_t tile, std::size_t count) {
+      const std::size_t first = tile * kTile;
+      return IndexRange{elements.first + first, std::min(count * kTile, elements.count - first)};
+    };
+    for (std::size_t k = 0; k < tiles.size(); k += kWrittenTiles) {
+      const std::size_t count = std::min(kWrittenTiles, tiles.size() - k);
+      const auto in_double = [&](std::size_t first, std::size_t tile_count) {
+        source.write(range_of(first, tile_count), tiles.subspan(first, tile_count));
+        summarize_tiles(tiles.subspan(first, tile_count), limits_.in_double, summaries.subspan(first, tile_count));
+      };
+      fetch_destination(k, count);
+      if constexpr (WritesInFloat<Source>) {
+        if (limits_.in_float && source.has_float() && float_.is_tried()) {
+          source.write_in_float(range_of(k, count), tiles.subspan(k, count));
+          summarize_tiles(tiles.subspan(k, count), *limits_.in_float, summaries.subspan(k, count));
+          std::size_t in_vain = 0;
+          for (std::size_t i = k; i < k + count; ++i) {
+            if (summaries[i].uncertain == 0 && summaries[i].bending == lanes_of(kTile)) continue;
+            in_double(i, 1);
+            ++in_vain;
+          }
+          float_.note(2 * in_vain > count);
+          continue;
+        }
+      }
+      in_double(k, count);
+    }
   }
 
   // Prefetches the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had. It
@@ -220,14 +286,14 @@ class PartBuilder {
     TileCertificates known;
     if (std::popcount(uncertain) >= kFewest) {
       const std::uint32_t asked = uncertain & ~source.in_double(elements, bounded);
-      certify_tile(bounded, limits_, asked, known);
+      certify_tile(bounded, limits_.in_double, asked, known);
       need.precision = std::max(need.precision, known.precision);
     }
     std::uint32_t flagged = known.flagged, needs_exact = known.needs_exact;
     bool out_of_range = false;
     std::array<std::optional<Examined>, kTile> alone;
     for_lanes(uncertain & ~known.known, [&](std::size_t lane) {
-      alone[lane] = examined(source, elements.first + lane, limits_);
+      alone[lane] = examined(source, elements.first + lane, limits_.in_double);
       const auto& [normals, precision, certain, lane_needs_exact] = *alone[lane];
       if (precision) {
         need.precision = std::max(need.precision, *precision);
@@ -272,7 +338,7 @@ class PartBuilder {
     const std::uint32_t others = lanes_of(elements.count) & ~flagged;
     double largest = 0;
     for_lanes(others, [&](std::size_t lane) {
-      if (!alone[lane]) alone[lane] = examined(source, elements.first + lane, limits_);
+      if (!alone[lane]) alone[lane] = examined(source, elements.first + lane, limits_.in_double);
       largest = std::max(largest, largest_component(alone[lane]->normals));
     });
     const int exponent = std::ilogb(largest) - kLargestExponent;
@@ -300,10 +366,10 @@ class PartBuilder {
   }
 
   CurvePart& part_;
-  const PrecisionLimits& limits_;
-  bool with_lengths_;
+  const BuildLimits& limits_;
   AlignedArray<ControlTile> tiles_;
-  std::size_t made_ = 0;         // elements
+  std::size_t made_ = 0;  // elements
+  FloatTrials float_;
   std::size_t chunk_bytes_ = 0;  // of the last chunk
 };
 

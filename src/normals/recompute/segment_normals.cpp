@@ -49,6 +49,8 @@ constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kP
 // Of groups: a triangle of the fan around an element, which is a point of its path, and a point that was not at hand.
 // (The ratio of these to what preparing took before is that of a Zen 4 of 3.7 GHz.)
 constexpr Row kPreparePoint = {2.75, 2.85, 3.4}, kPreparePointMiss = {0.3, 3, 9};
+// The same of both in float32, where the tolerance allows it and sixteen curves side by side bend.
+constexpr Row kPrepareFloatTriangle = {5.4, 5.5, 6.2}, kPrepareFloatPoint = {1.7, 1.75, 2};
 // An element that is examined on its own, and each of its faces; or one of sixteen that are prepared once more, in double.
 // (The ratio of the latter to preparing is that of a Zen 4, too.)
 constexpr double kExamined = 100, kExaminedFace = 52, kExaminedOfTile = 16;
@@ -72,6 +74,13 @@ Level level_of(double bytes) {
 
 double cost(const Row& row, Level level) { return row.at[level]; }
 
+// What is done in one of two ways, a share of it in the second.
+Row mixed(double share, const Row& first, const Row& second) {
+  Row row{};
+  for (std::size_t i = 0; i < row.at.size(); ++i) row.at[i] = (1 - share) * first.at[i] + share * second.at[i];
+  return row;
+}
+
 // Of a curve, between degrees: 16 to 36 where lengths are kept, 12 to 20 where there is tolerance.
 double curve_bytes_of_element(double degree, double tolerance) {
   const bool is_exact = tolerance <= kExactTolerance;
@@ -79,6 +88,12 @@ double curve_bytes_of_element(double degree, double tolerance) {
   const double low = std::clamp(std::floor(degree), 0.0, 1.0);
   const auto i = static_cast<std::size_t>(low);
   return of_degree[i] + (degree - low) * (of_degree[i + 1] - of_degree[i]);
+}
+
+// The share of the elements that are prepared in float32: by sixteen, of which none is straight or doubtful.
+double share_in_float(const MeshShape& shape, double tolerance) {
+  if (!PrecisionLimits::for_float_tiles(tolerance)) return 0;
+  return std::clamp(shape.degree - 1, 0.0, 1.0) * (1 - std::min(1.0, static_cast<double>(kTile) * shape.doubtful));
 }
 
 // On a sample of faces.
@@ -258,18 +273,19 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
     return faces / elements * face +
            shape.faces_per_element * (cost(term, level) + misses * cost(miss, level_of_terms));
   };
-  const double terms = is_sum ? shape.faces_per_element : 1;
+  const double terms = is_sum ? shape.faces_per_element : 1, in_float = share_in_float(shape, tolerance);
   if (is_sum) {
     costs.recompute =
         sum_of(front_end(kRecomputeKept, kRecomputePolygon, kRecomputeMiss), kRecomputeTerm, kRecomputeTermMiss);
     costs.prepare = shape.faces_per_element * shape.triangles_per_face *
-                    (cost(kPreparePoint, level) + misses * cost(kPreparePointMiss, level_of_positions));
+                    (cost(mixed(in_float, kPreparePoint, kPrepareFloatPoint), level) +
+                     misses * cost(kPreparePointMiss, level_of_positions));
     costs.in_float32 = terms * (cost(kFloatTerm, level) + misses * cost(kFloatMiss, level_of_positions));
     // A mesh in no order keeps the normals of all faces, and needs no window.
     if (shape.lines_per_face <= kScatteredLines) costs.recompute += kRecomputeScattered * shape.scattered * terms;
   } else {
     costs.recompute = front_end(kRecomputeTriangle, kRecomputePolygon, kRecomputeMiss);
-    costs.prepare = front_end(kPrepareTriangle, kPreparePolygon, kPrepareMiss);
+    costs.prepare = front_end(mixed(in_float, kPrepareTriangle, kPrepareFloatTriangle), kPreparePolygon, kPrepareMiss);
     costs.in_float32 = front_end(kFloatTriangle, kFloatTriangle, kFloatMiss);
   }
   costs.in_float32 += vertices / elements * cost(kFloatVertex, level);

@@ -15,9 +15,11 @@
 #include <vector>
 
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "normals/curves/kernels/curve_blocks.h"
 #include "normals/curves/kernels/evaluate.h"
 #include "normals/curves/kernels/pack.h"
+#include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"
 
@@ -148,6 +150,75 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
           const Vec3f u = unit_normals(curves, t).front();
           ASSERT_LE(angle_to(u, c, t), tolerance) << family.name << " times 2^" << exponent << ", t = " << t;
           expect_unit_length(u, t);
+        }
+      }
+    }
+  }
+}
+
+// The normals of all vertices of a mesh of triangles at one t, face after face in long double; and the sums of the lengths
+// that went into them.
+struct VerticesAt {
+  std::vector<std::array<long double, 3>> normals;
+  std::vector<long double> lengths;
+
+  VerticesAt(const Segment& segment, double t) : normals(segment.from.count), lengths(segment.from.count) {
+    using Real3 = std::array<long double, 3>;
+    const auto at = [&](std::uint32_t v) {
+      const Vec3f from = segment.from[v], to = segment.to[v];
+      const auto lerp = [t](long double a, long double b) { return a + t * (b - a); };
+      return Real3{lerp(from.x, to.x), lerp(from.y, to.y), lerp(from.z, to.z)};
+    };
+    for (std::size_t f = 0; f < segment.topology->face_count(); ++f) {
+      const auto face = segment.topology->face(f);
+      const Real3 a = at(face[0]), b = at(face[1]), c = at(face[2]);
+      Real3 cross;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        cross[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+      }
+      for (const std::uint32_t v : face) {
+        for (std::size_t k = 0; k < 3; ++k) normals[v][k] += cross[k];
+        lengths[v] += std::hypot(cross[0], cross[1], cross[2]);
+      }
+    }
+  }
+
+  // How far from it a direction is, in radians; 0 where there is none.
+  [[nodiscard]] double angle_to(const Vec3f& u, std::size_t v) const {
+    const auto& n = normals[v];
+    const long double length = std::hypot(n[0], n[1], n[2]);
+    if (!(length > kBelowDouble * lengths[v])) return 0;
+    const long double along = (u.x * n[0] + u.y * n[1] + u.z * n[2]) / length;
+    const long double across =
+        std::hypot(u.y * n[2] - u.z * n[1], u.z * n[0] - u.x * n[2], u.x * n[1] - u.y * n[0]) / length;
+    return static_cast<double>(std::atan2(across, along));
+  }
+};
+
+// Vertices are added up in float32 where that will do. Their faces are flattened more and more here, into needles and
+// slivers, in one of two ways in the middle of the mesh less than at its ends, so that it does for some of sixteen
+// neighbours and not for others.
+TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in) {
+  for (int flat = 0; flat <= 24; flat += 2) {
+    for (const bool along : {false, true}) {
+      const Motion motion = test::with_positions(fixtures::smooth_morph(24), [&](const fixtures::Point& p) {
+        const double share = std::pow(0.5, flat * (along ? std::fabs(p[0]) : 1));
+        // Slanted, so that what cancels in the products is large.
+        return fixtures::Point{p[0] + 3, share * p[1] + p[0] - 5, share * p[2] - p[0]};
+      });
+      const Segment segment = motion.segment(0);
+      const NormalGroups groups =
+          NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+      for (const double tolerance : {2.4e-4, 2.5e-4, 1e-3, 1e-2, 0.2}) {
+        const NormalCurves curves = NormalCurves::of_groups(segment, groups, {tolerance});
+        for (int step = 0; step <= 32; ++step) {
+          const double t = step / 32.0;
+          const VerticesAt right(segment, t);
+          const std::vector<Vec3f> shown = unit_normals(curves, t);
+          for (std::size_t v = 0; v < shown.size(); ++v) {
+            ASSERT_LE(right.angle_to(shown[v], v), tolerance) << "vertex " << v << ", t = " << t << ", flat " << flat;
+          }
         }
       }
     }

@@ -28,6 +28,22 @@ void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
   }
 }
 
+void FloatFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
+  const PointAccess access = AccessOf(segment);
+  const Floats roundings = RoundingsInFloat(1);
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
+    ControlTile& tile = *tiles++;
+    WithTriangles(segment, access, f, faces.end(), [&](auto known, const std::uint32_t* corners) HWY_ATTR {
+      for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+        const TriangleLanes p = LoadTriangles<known()>(segment, corners + 3 * lane);
+        const Lanes3 e0 = p.b0 - p.a0, e1 = p.b1 - p.a1, f0 = p.c0 - p.a0, f1 = p.c1 - p.a1;
+        const Lanes3 m = Scale(hn::Set(kFloats, 0.5f), Cross(e0, f1) + Cross(e1, f0));
+        StoreInFloat({Cross(e0, f0), m, Cross(e1, f1)}, hn::Mul(roundings, MagnitudeAbove(p)), lane, tile);
+      }
+    });
+  }
+}
+
 void BoundedTriangles(const Segment& segment, IndexRange faces, BoundedTile& tile) {
   FaceTile(segment, AccessOf(segment), faces.first, faces.end(), tile, tile.errors);
 }
@@ -57,6 +73,7 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(FaceTiles);
+HWY_EXPORT(FloatFaceTiles);
 HWY_EXPORT(BoundedTriangles);
 HWY_EXPORT(TriangleControlNormals);
 
@@ -64,6 +81,12 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
   assert(faces.count > 0 && faces.end() <= segment.topology->face_count());
   assert(tiles.size() == (faces.count + kTile - 1) / kTile);
   HWY_DYNAMIC_DISPATCH(FaceTiles)(segment, faces, tiles.data());
+}
+
+void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {
+  assert(segment.topology->all_triangles() && faces.count > 0 && faces.end() <= segment.topology->face_count());
+  assert(tiles.size() == (faces.count + kTile - 1) / kTile);
+  HWY_DYNAMIC_DISPATCH(FloatFaceTiles)(segment, faces, tiles.data());
 }
 
 void bounded_triangle_tile(const Segment& segment, IndexRange faces, BoundedTile& tile) noexcept {

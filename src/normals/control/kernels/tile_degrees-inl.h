@@ -1,4 +1,4 @@
-// The degree of sixteen elements, as degree() in control_normals.h finds it in double.
+// The degree of sixteen elements, as degree() in control_normals.h finds it in double, and what of it float32 can know.
 //
 // Included once for each instruction set, as lanes-inl.h.
 
@@ -39,6 +39,34 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
     hn::Store(hn::Set(kInts, 2), kInts, tile.degree + lane);
   }
   return all;
+}
+
+// What a sum of so many products in float32 is off by, as a share of the absolute products in it (docs/theory.md, section
+// 13): the roundings of a product, and those of its way into the sum.
+HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
+  return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
+}
+
+// The control normals of one vector of lanes in float32.
+struct FloatControlLanes {
+  Lanes3 n0, m, n1;
+};
+
+// Stores what was made in float32, with the error of its components as magnitude; and 2 as the degree where the curve bends
+// by more than four errors and the roundings of the bend itself, or else 1.
+HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
+  std::size_t k = 0;
+  for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {
+    hn::Store(v->x, kFloats, tile.normals[k] + lane);
+    hn::Store(v->y, kFloats, tile.normals[k + 1] + lane);
+    hn::Store(v->z, kFloats, tile.normals[k + 2] + lane);
+    k += 3;
+  }
+  hn::Store(error, kFloats, tile.magnitude + lane);
+  const auto bends = hn::Gt(MaxAbs((c.n0 - c.m) + (c.n1 - c.m)), hn::Mul(hn::Set(kFloats, 8.0f), error));
+  const Ints one = hn::Set(kInts, 1);
+  // The mask is -1 where it holds.
+  hn::Store(hn::Sub(one, hn::BitCast(kInts, hn::VecFromMask(kFloats, bends))), kInts, tile.degree + lane);
 }
 
 HWY_NOINLINE inline void SetDegrees(const ExactTile& exact, ControlTile& tile) {

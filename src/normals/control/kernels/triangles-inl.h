@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "chronormal/motion/motion.h"
 #include "core/rounding.h"
@@ -239,11 +240,15 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
   }
 }
 
-// Sixteen triangles; corners: their 48 vertices. Whether those are far from each other in memory.
-HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const std::uint32_t* corners, ExactTile& tile,
-                             double (*errors)[kTile] = nullptr) {
+template <PointAccess kAccess>
+using AccessConstant = std::integral_constant<PointAccess, kAccess>;
+
+// Calls body(access) with the access that sixteen triangles allow, as a constant; corners: their 48 vertices. Whether those
+// are far from each other in memory.
+template <class Body>
+HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {
-    TriangleTile<PointAccess::kAny>(segment, corners, tile, errors);
+    body(AccessConstant<PointAccess::kAny>());
     return false;
   }
   constexpr std::uint32_t kFar = 1u << 14;  // positions: more than a cache near the core holds
@@ -255,38 +260,49 @@ HWY_INLINE bool TriangleTile(const Segment& segment, PointAccess access, const s
   }
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(segment.from.count - 1));
   if (HWY_UNLIKELY(!hn::AllFalse(tag, hn::Eq(highest, last)))) {
-    TriangleTile<PointAccess::kLastRow>(segment, corners, tile, errors);
+    body(AccessConstant<PointAccess::kLastRow>());
   } else if (access == PointAccess::kPacked) {
-    TriangleTile<PointAccess::kPacked>(segment, corners, tile, errors);
+    body(AccessConstant<PointAccess::kPacked>());
   } else if (access == PointAccess::kEnds) {
-    TriangleTile<PointAccess::kEnds>(segment, corners, tile, errors);
+    body(AccessConstant<PointAccess::kEnds>());
   } else {
-    TriangleTile<PointAccess::kRow>(segment, corners, tile, errors);
+    body(AccessConstant<PointAccess::kRow>());
   }
   const auto far_bits = hn::And(hn::Sub(highest, lowest), hn::Set(tag, ~(kFar - 1)));
   return !hn::AllTrue(tag, hn::Eq(far_bits, hn::Zero(tag)));
 }
 
-// The faces first ... first + 15; those from `end` on repeat the one before. Where `errors` is given, it gets those of
-// BoundedTile, of triangles. first < end
-HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
-                         ExactTile& tile, double (*errors)[kTile] = nullptr) {
+// Calls body(access, corners) for the triangles first ... first + 15, with the access that they allow as a constant and
+// their 48 vertices; those from `end` on repeat the one before. Those that come soon are asked for where they are far from
+// each other. first < end
+template <class Body>
+HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
+                              const Body& body) {
   constexpr std::size_t kAhead = 2;  // tiles
   const Topology& topology = *segment.topology;
-  if (!topology.all_triangles()) {
-    for (std::size_t i = 0; i < kTile; ++i) set_polygon(segment, std::min(first + i, end - 1), i, tile);
-    return;
-  }
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {
-    const bool far = TriangleTile(segment, access, corners, tile, errors);
+    const bool far = WithAccess(segment, access, corners, [&](auto known) HWY_ATTR { body(known, corners); });
     if (far && first + (kAhead + 1) * kTile <= topology.face_count())
       PrefetchPoints(segment, corners + 3 * kAhead * kTile, 3 * kTile);
     return;
   }
   std::uint32_t repeated[3 * kTile];
   for (std::size_t i = 0; i < 3 * kTile; ++i) repeated[i] = corners[3 * std::min(i / 3, end - 1 - first) + i % 3];
-  TriangleTile(segment, access, repeated, tile, errors);
+  WithAccess(segment, access, repeated, [&](auto known) HWY_ATTR { body(known, repeated); });
+}
+
+// The faces first ... first + 15; those from `end` on repeat the one before. Where `errors` is given, it gets those of
+// BoundedTile, of triangles. first < end
+HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
+                         ExactTile& tile, double (*errors)[kTile] = nullptr) {
+  if (!segment.topology->all_triangles()) {
+    for (std::size_t i = 0; i < kTile; ++i) set_polygon(segment, std::min(first + i, end - 1), i, tile);
+    return;
+  }
+  WithTriangles(segment, access, first, end, [&](auto known, const std::uint32_t* corners) HWY_ATTR {
+    TriangleTile<known()>(segment, corners, tile, errors);
+  });
 }
 
 // Sixteen rows of nine doubles: the components of a face.

@@ -83,13 +83,10 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
 }
 
 // Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1, n(t).a >= min c(k).a for all t.
-HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16) {
+HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16,
+                               Floats noise_square) {
   // As in TestPiece.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
-  // Of `magnitude`, which is not less than the largest component: noise is below 2^-45 of it (12 u for a face, and u
-  // for each of up to 100 that are added), so that it turns n(t) by less than 2^-24, and no control normal is below
-  // 2^-21 of the largest.
-  const Floats noise_square = hn::Set(kFloats, 0x1p-42f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 
   Lanes3 n0 = LoadTileVector(tile, 0, lane), m = LoadTileVector(tile, 1, lane), n1 = LoadTileVector(tile, 2, lane);
@@ -153,12 +150,14 @@ void SummarizeTiles(const ControlTile* tiles, std::size_t count, const Precision
   const auto square = [](double ratio) { return static_cast<float>(kSafe * ratio * ratio); };
   const Floats square11 = hn::Set(kFloats, square(limits.largest_ratio11));
   const Floats square16 = hn::Set(kFloats, square(limits.largest_ratio16));
+  const Floats noise_square =
+      hn::Set(kFloats, static_cast<float>(1 / (limits.largest_magnitude * limits.largest_magnitude)));
   const Precision above16 = limits.sum_ratio_scaled16 >= 3 ? Precision::kScaled16 : Precision::k32;
 
   for (std::size_t i = 0; i < count; ++i) {
     LaneTests all;
     for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
-      const LaneTests some = TestLanes(tiles[i], lane, square11, square16);
+      const LaneTests some = TestLanes(tiles[i], lane, square11, square16, noise_square);
       all.certain |= some.certain << lane;
       all.fits11 |= some.fits11 << lane;
       all.fits16 |= some.fits16 << lane;
@@ -354,6 +353,15 @@ PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   limits.sum_ratio_scaled16 = error / (kSqrt3 / 32767 + 4e-7);
   // No more than 64, so that |n(t)|^2 stays in the range of float32.
   limits.sum_ratio32 = std::fmin(64, std::fmax(limits.sum_ratio32, radians / 3.4e-7));
+  return limits;
+}
+
+std::optional<PrecisionLimits> PrecisionLimits::for_float_tiles(double radians) noexcept {
+  constexpr double kSqrt3 = 1.7320508075688772, kShare = 1.0 / 32, kSmallest = 0x1p-12;
+  if (!(radians >= kSmallest)) return std::nullopt;
+  const double tolerance = std::fmin(radians, kLargestTolerance);
+  PrecisionLimits limits = for_tolerance((1 - kShare) * tolerance);
+  limits.largest_magnitude = 0.99 * kShare * tolerance / kSqrt3;
   return limits;
 }
 

@@ -82,6 +82,15 @@ HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, s
   }
 }
 
+// Asks for the points of the rows that are kRowsAhead behind these.
+HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std::uint32_t* indices, std::size_t rows) {
+  for (std::size_t i = 0; i < kTile * rows; ++i) {
+    const std::size_t vertex = indices[kTile * kRowsAhead + i];
+    hwy::Prefetch(segment.from.x + vertex * segment.from.stride);
+    if (access != PointAccess::kEnds) hwy::Prefetch(segment.to.x + vertex * segment.to.stride);
+  }
+}
+
 // Whether a path has the last vertex, behind which 16 bytes of a packed row would end beyond the array.
 HWY_INLINE bool HasLast(const std::uint32_t* indices, std::size_t rows, std::size_t vertex_count) {
   const hn::RebindToUnsigned<FloatTag> tag;
@@ -231,6 +240,69 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
   }
 }
 
+// ---- tiles in float32 ----------------------------------------------------------------------------------------------
+
+// Writes a tile in float32 throughout, with its error in place of its magnitude.
+template <PointAccess kAccess>
+HWY_INLINE void FloatTile(const Segment& segment, const std::uint32_t* indices, std::size_t rows, ControlTile& tile) {
+  // A little more than twice the products, for their rounding and that of their sum, and something where one of them
+  // underflows.
+  const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
+  const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
+  const Floats roundings = RoundingsInFloat(rows / 2 + 1);
+  for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+    const auto load = [&](std::size_t r, Lanes3& from, Lanes3& to)
+                          HWY_ATTR { LoadBothEnds<kAccess, 1>(segment, indices + kTile * r + lane, from, to); };
+    Lanes3 centre0, centre1, before0, before1, point0, point1;
+    load(0, centre0, centre1);
+    load(1, before0, before1);
+    const Floats zero = hn::Zero(kFloats);
+    Lanes3 n0{zero, zero, zero}, m = n0, n1 = n0;
+    Floats magnitude = zero;
+    const auto add = [&](const Lanes3& e0, const Lanes3& e1, const Lanes3& d0, const Lanes3& d1) HWY_ATTR {
+      n0 = n0 + Cross(e0, d0);
+      n1 = n1 + Cross(e1, d1);
+      m = m + (Cross(e0, d1) + Cross(e1, d0));
+      const Floats e = MaxAbs(e0, e1), d = MaxAbs(d0, d1);
+      magnitude = hn::Add(magnitude, hn::Add(hn::Mul(factor, hn::Mul(e, d)), hn::Min(hn::Min(e, d), tiny)));
+    };
+    std::size_t r = 2;
+    for (; r + 1 < rows; r += 2) {
+      Lanes3 after0, after1;
+      load(r, point0, point1);
+      load(r + 1, after0, after1);
+      add(point0 - centre0, point1 - centre1, after0 - before0, after1 - before1);
+      before0 = after0;
+      before1 = after1;
+    }
+    if (r < rows) {
+      load(r, point0, point1);
+      add(before0 - centre0, before1 - centre1, point0 - centre0, point1 - centre1);
+    }
+    m = Scale(hn::Set(kFloats, 0.5f), m);
+    StoreInFloat({n0, m, n1}, hn::Mul(roundings, magnitude), lane, tile);
+  }
+}
+
+void FloatGroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tiles) {
+  const Segment& segment = input.segment;
+  const RingSlices& rings = input.rings;
+  const PointAccess access = AccessOf(segment);
+  const std::size_t all_rows = rings.first_row[rings.count];
+  for (std::size_t first = elements.first; first < elements.end(); first += kTile) {
+    const std::size_t first_row = rings.first_row[first / kTile], rows = rings.first_row[first / kTile + 1] - first_row;
+    const std::uint32_t* const indices = rings.indices + kTile * first_row;
+    if (input.fetch && first_row + rows + kRowsAhead <= all_rows) FetchRows(segment, access, indices, rows);
+    if (access == PointAccess::kEnds) {
+      FloatTile<PointAccess::kEnds>(segment, indices, rows, *tiles++);
+    } else if (access == PointAccess::kPacked && !HasLast(indices, rows, segment.from.count)) {
+      FloatTile<PointAccess::kPacked>(segment, indices, rows, *tiles++);
+    } else {
+      FloatTile<PointAccess::kAny>(segment, indices, rows, *tiles++);
+    }
+  }
+}
+
 void BoundedGroupTile(const RingInput& input, std::size_t slice, BoundedTile& tile) {
   const std::size_t first_row = input.rings.first_row[slice], rows = input.rings.first_row[slice + 1] - first_row;
   PointColumns points[1 + kMostPathPoints];
@@ -250,13 +322,7 @@ void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tile
     ControlTile& tile = *tiles++;
     const std::size_t first_row = rings.first_row[first / kTile], rows = rings.first_row[first / kTile + 1] - first_row;
     const std::uint32_t* const indices = rings.indices + kTile * first_row;
-    if (input.fetch && first_row + rows + kRowsAhead <= all_rows) {
-      for (std::size_t i = 0; i < kTile * rows; ++i) {
-        const std::size_t vertex = indices[kTile * kRowsAhead + i];
-        hwy::Prefetch(segment.from.x + vertex * segment.from.stride);
-        if (access != PointAccess::kEnds) hwy::Prefetch(segment.to.x + vertex * segment.to.stride);
-      }
-    }
+    if (input.fetch && first_row + rows + kRowsAhead <= all_rows) FetchRows(segment, access, indices, rows);
     LoadRing(input, access, indices, rows, points);
     SumRing(points, rows, exact);
     const std::uint32_t doubtful = RoundTile(points, rows, exact, tile);
@@ -277,6 +343,7 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(GroupTilesOf);
+HWY_EXPORT(FloatGroupTilesOf);
 HWY_EXPORT(BoundedGroupTile);
 
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
@@ -303,6 +370,18 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) const 
   const auto left_out = rings_->left_out();
   auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
   for (; next != left_out.end() && *next < elements.end(); ++next) set_alone(*next, elements, tiles);
+}
+
+void GroupTiles::write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept {
+  assert(elements.count > 0 && elements.first % kTile == 0 && elements.end() <= groups_->size());
+  assert(tiles.size() == (elements.count + kTile - 1) / kTile);
+  HWY_DYNAMIC_DISPATCH(FloatGroupTilesOf)({segment_, *groups_, rings_->view(), fetch_}, elements, tiles.data());
+  const auto left_out = rings_->left_out();
+  auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
+  for (; next != left_out.end() && *next < elements.end(); ++next) {
+    const std::size_t i = *next - elements.first;
+    tiles[i / kTile].magnitude[i % kTile] = std::numeric_limits<float>::infinity();
+  }
 }
 
 std::uint32_t GroupTiles::write_bounded(IndexRange elements, BoundedTile& tile) const noexcept {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstring>
 #include <initializer_list>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <string>
@@ -19,6 +20,7 @@
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/float_tiles.h"
 #include "tests/support/hard_motions.h"
 
 namespace chronormal::face_tiles_test {
@@ -308,6 +310,53 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
         ASSERT_EQ(found[count].n0.x, 7);
       }
     }
+  }
+}
+
+// ---- in float32 ----------------------------------------------------------------------------------------------------
+
+// The tiles of all triangles in float32, on all targets with the same bits, against those of one face at a time.
+void look_at(test::FloatTileFaults& seen, const Motion& motion) {
+  const Segment segment = motion.segment(0);
+  const std::size_t count = segment.topology->face_count();
+  std::vector<ControlTile> first;
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    std::vector<ControlTile> tiles((count + kTile - 1) / kTile);
+    float_triangle_tiles(segment, {0, count}, tiles);
+    if (first.empty()) first = tiles;
+    if (std::memcmp(first.data(), tiles.data(), tiles.size() * sizeof(ControlTile)) != 0)
+      seen.fault = std::string("other bits on ") + target_name(target);
+  }
+  for (std::size_t f = 0; f < count; ++f)
+    seen.look_at(first[f / kTile], f % kTile, one_face(segment, f), static_cast<double>(largest_products(segment, f)),
+                 1);
+}
+
+TEST(FloatFaceTiles, are_off_by_no_more_than_they_say) {
+  test::FloatTileFaults seen;
+  for (const std::size_t cells : {1U, 2U, 5U, 40U}) look_at(seen, fixtures::smooth_morph(cells));
+  EXPECT_EQ(seen.bending, seen.elements);
+  EXPECT_LT(seen.largest_bound, 2e-6);
+  fixtures::Random random(20261125);
+  for (int round = 0; round < 40; ++round) {
+    const double flat = std::ldexp(1, -static_cast<int>(random.below(24))),
+                 scale = std::ldexp(1, static_cast<int>(random.below(60)) - 30), away = random.below(2) == 0 ? 0 : 1000;
+    look_at(seen, test::with_positions(fixtures::smooth_morph(12), [&](const Point& p) {
+              return Point{scale * (p[0] + away), scale * (flat * p[1] - away), scale * flat * p[2]};
+            }));
+  }
+  EXPECT_EQ(seen.fault, "");
+  std::cout << "  largest error: " << seen.largest_share << " of its bound\n";
+  EXPECT_GT(seen.largest_share, 0.05);
+}
+
+TEST(FloatFaceTiles, never_take_a_line_for_a_curve) {
+  for (int kind = 0; kind < 4; ++kind) {
+    test::FloatTileFaults seen;
+    look_at(seen, test::of_low_degree(fixtures::smooth_morph(12), kind));
+    EXPECT_EQ(seen.fault, "") << kind;
+    EXPECT_EQ(seen.bending, 0U) << kind;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
+#include <iostream>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/float_tiles.h"
 
 namespace chronormal::group_tiles_test {
 namespace {
@@ -312,6 +314,93 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
       });
       ASSERT_EQ(difference_on_all_targets(motion), "") << scale << " " << offset;
     }
+  }
+}
+
+// ---- in float32 ----------------------------------------------------------------------------------------------------
+
+// The tiles of all elements in float32, on all targets with the same bits, against sums in double.
+void look_at(test::FloatTileFaults& seen, const Segment& segment, const NormalGroups& groups) {
+  std::vector<ControlTile> first;
+  for (const auto target : supported_targets()) {
+    const ScopedTarget scope(target);
+    std::vector<ControlTile> tiles((groups.size() + kTile - 1) / kTile);
+    GroupTiles(segment, groups, !first.empty()).write_in_float({0, groups.size()}, tiles);
+    if (first.empty()) first = tiles;
+    if (std::memcmp(first.data(), tiles.data(), tiles.size() * sizeof(ControlTile)) != 0)
+      seen.fault = std::string("other bits on ") + target_name(target);
+  }
+  const Expected expected = expected_of(segment, groups);
+  const Rings& rings = rings_around(*segment.topology, groups);
+  const auto left_out = rings.left_out();
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    const ControlTile& tile = first[e / kTile];
+    const std::size_t rows = rings.view().first_row[e / kTile + 1] - rings.view().first_row[e / kTile];
+    if (!std::binary_search(left_out.begin(), left_out.end(), static_cast<std::uint32_t>(e))) {
+      seen.look_at(tile, e % kTile, expected.normals[e], expected.magnitudes[e], (rows - 1) / 2);
+    } else if (!std::isinf(tile.magnitude[e % kTile])) {
+      seen.fault = "a bound for element " + std::to_string(e);
+    }
+  }
+}
+
+void look_at(test::FloatTileFaults& seen, const Motion& motion) {
+  look_at(seen, motion.segment(0), vertices_of(motion));
+}
+
+TEST(FloatGroupTiles, are_off_by_no_more_than_they_say) {
+  test::FloatTileFaults seen;
+  for (std::size_t columns = 1; columns < 12; ++columns) look_at(seen, grid(columns, 7));
+  look_at(seen, grid(60, 60));
+  EXPECT_EQ(seen.bending, seen.elements);  // every vertex of these moves, so that float32 knows that the curves bend
+  EXPECT_LT(seen.largest_bound, 1e-5);
+  for (const bool of_polygons : {false, true}) {
+    const Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(5) : fixtures::icosphere(3), 0.1, 6);
+    look_at(seen, motion);
+    look_at(seen, motion.segment(0),
+            NormalGroups::by_crease_angle(motion, separate_points(motion.topology.vertex_count()), 20).value());
+  }
+  look_at(seen, in_another_order(grid(70, 70), true));
+  EXPECT_EQ(seen.fault, "");
+  std::cout << "  largest error: " << seen.largest_share << " of its bound\n";
+  EXPECT_GT(seen.largest_share, 0.02);  // or the bounds would be of little use
+}
+
+TEST(FloatGroupTiles, say_so_of_needles_and_slivers_and_far_from_the_origin) {
+  fixtures::Random random(20261125);
+  for (int round = 0; round < 60; ++round) {
+    test::FloatTileFaults seen;
+    const double flat = std::ldexp(1, -static_cast<int>(random.below(24))),
+                 scale = std::ldexp(1, static_cast<int>(random.below(60)) - 30), away = random.below(2) == 0 ? 0 : 1000;
+    look_at(
+        seen, test::with_positions(grid(12, 12), [&](const Point& p) {
+          return Point{scale * (p[0] + away), scale * (flat * p[1] - away), scale * p[2] * (round % 3 == 0 ? flat : 1)};
+        }));
+    ASSERT_EQ(seen.fault, "") << "round " << round;
+  }
+}
+
+TEST(FloatGroupTiles, leave_a_vertex_of_many_faces_to_double) {
+  std::vector<Point> from = {{0, 0, 1}}, to = {{0.1, 0.2, 1.5}};
+  std::vector<std::uint32_t> corners;
+  constexpr std::uint32_t kCount = 100;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    from.push_back({std::cos(0.06 * i), std::sin(0.06 * i), 0});
+    to.push_back({std::cos(0.06 * i), 2 * std::sin(0.06 * i), 0.25});
+    corners.insert(corners.end(), {0U, 1 + i, 1 + (i + 1) % kCount});
+  }
+  test::FloatTileFaults seen;
+  look_at(seen, fixtures::make_motion(fixtures::make_triangles(kCount + 1, corners), from, to));
+  EXPECT_EQ(seen.fault, "");
+  EXPECT_EQ(seen.elements, kCount);  // all but one
+}
+
+TEST(FloatGroupTiles, never_take_a_line_for_a_curve) {
+  for (int kind = 0; kind < 4; ++kind) {
+    test::FloatTileFaults seen;
+    look_at(seen, test::of_low_degree(grid(30, 30), kind));
+    EXPECT_EQ(seen.fault, "") << kind;
+    EXPECT_EQ(seen.bending, 0U) << kind;
   }
 }
 

@@ -1,0 +1,68 @@
+/// What tiles that were made in float32 promise, held against control normals in double.
+#ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
+#define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "normals/control/kernels/control_tile.h"
+
+namespace chronormal::test {
+
+/// The motion with another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they grow
+/// along x; or nothing moves.
+[[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
+  const auto& from = motion.keyframes[0].positions;
+  auto& to = motion.keyframes[1].positions;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const float ends[] = {i % 3 == 2 ? to[i] : from[i], from[i] + 0.1F, i % 3 == 0 ? 1.7F * from[i] : from[i], from[i]};
+    to[i] = ends[kind];
+  }
+  return motion;
+}
+
+/// What was seen of some elements; `fault` is the last thing that was wrong, or nothing.
+struct FloatTileFaults {
+  std::size_t elements = 0;
+  std::size_t bending = 0;   ///< elements whose degree is said to be 2
+  double largest_share = 0;  ///< of an error in its bound
+  double largest_bound = 0;  ///< as a share of the absolute products
+  std::string fault;
+
+  /// Looks at one element. `right` are its control normals, `products` at least the sum of the absolute products in any of their
+  /// components, and `count` how many cross products were added up.
+  void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
+               std::size_t count) {
+    const std::string place = "element " + std::to_string(elements++);
+    const double bound = tile.magnitude[lane], unit_roundoff = 0x1p-24;
+    const bool in_range = bound <= std::numeric_limits<float>::max() && products > 1e-30;
+    if (in_range && !(bound >= unit_roundoff * static_cast<double>(count + 5) * products))
+      fault = "the bound of " + place + " is too small";
+    if (in_range) largest_bound = std::max(largest_bound, bound / products);
+    std::size_t k = 0;
+    for (const Vec3d& v : {right.n0, right.m, right.n1}) {
+      for (const double component : {v.x, v.y, v.z}) {
+        const double off = std::fabs(double{tile.normals[k++][lane]} - component);
+        if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
+        // What underflows is too little for any curve to have it. NaN is beyond a bound, and needs none that is infinite.
+        if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
+          fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
+      }
+    }
+    if (tile.degree[lane] == 2) {
+      ++bending;
+      if (in_range && degree(right) != 2) fault = "a line is taken for a curve, " + place;
+    } else if (tile.degree[lane] != 1) {
+      fault = "there is no degree, " + place;
+    }
+  }
+};
+
+}  // namespace chronormal::test
+
+#endif  // CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
