@@ -298,9 +298,12 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
     const CurveOptions options{tolerance};
     const auto faces = everything(NormalCurves::of_faces(segment, options));
     const auto vertices = everything(NormalCurves::of_groups(segment, groups, options));
-    EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
-              everything(NormalCurves(normals, options), Say::kNoLengths))
-        << "by way of control normals";
+    // Compact curves are prepared in float32 where that will do, and control normals are in double.
+    if (tolerance <= kExactTolerance) {
+      EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
+                everything(NormalCurves(normals, options), Say::kNoLengths))
+          << "by way of control normals";
+    }
     for (const std::size_t threads : {1u, 2u, 3u, 8u}) {
       const ThreadLimit limit(threads);
       EXPECT_EQ(faces, everything(NormalCurves::of_faces(segment, options, Threads::kAll))) << threads;
